@@ -1,0 +1,1 @@
+"""Public entry of the reference (signatures fixed; body follows)."""

@@ -1,0 +1,105 @@
+"""The types that travel: the motion of a mechanism over time, and its state at one instant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.scene import Point
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LinkMotion:
+    """Angle ``theta`` [rad] (continuous, not wrapped), ``omega`` [rad/s], ``alpha`` [rad/s^2]."""
+
+    theta: Array
+    omega: Array
+    alpha: Array
+
+
+@dataclass(frozen=True)
+class PointMotion:
+    """Position [m], velocity [m/s], acceleration [m/s^2], each of shape (T, 2)."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True)
+class SliderMotion:
+    """Displacement along the line [m], speed [m/s], acceleration [m/s^2] against the guide."""
+
+    displacement: Array
+    speed: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What a motion may be wrong by: the same keys, arrays of shape (T,), never negative.
+
+    For points the bound holds for the length of the error vector. Infinite where rounding leaves
+    nothing certain (velocities at a singular position).
+    """
+
+    links: Mapping[str, LinkMotion]
+    points: Mapping[str, PointMotion]
+    sliders: Mapping[str, SliderMotion]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of a mechanism, sampled at ``time_s`` (T,).
+
+    What a producer does not give is NaN (an engine without accelerations). ``conditioning`` holds,
+    per dyad of the reference (named by its inner joint), the sine of the transmission angle or its
+    like: 1 is best, 0 is singular. ``bound`` is the reference's own error, where it was asked for.
+    """
+
+    time_s: Array
+    links: Mapping[str, LinkMotion]
+    points: Mapping[str, PointMotion]
+    sliders: Mapping[str, SliderMotion]
+    conditioning: Mapping[str, Array] = field(default_factory=dict)
+    bound: Bound | None = None
+
+    def state(self, index: int = 0) -> State:
+        """The sample ``index`` as a state."""
+        return State(
+            time_s=float(self.time_s[index]),
+            theta={n: float(m.theta[index]) for n, m in self.links.items()},
+            omega={n: float(m.omega[index]) for n, m in self.links.items()},
+            alpha={n: float(m.alpha[index]) for n, m in self.links.items()},
+            position={n: _pair(m.position[index]) for n, m in self.points.items()},
+            velocity={n: _pair(m.velocity[index]) for n, m in self.points.items()},
+            acceleration={n: _pair(m.acceleration[index]) for n, m in self.points.items()},
+            displacement={n: float(m.displacement[index]) for n, m in self.sliders.items()},
+            speed={n: float(m.speed[index]) for n, m in self.sliders.items()},
+        )
+
+
+@dataclass(frozen=True)
+class State:
+    """A mechanism at one instant: links by name [rad, rad/s, rad/s^2], points [m, m/s, m/s^2],
+    sliders [m, m/s]."""
+
+    time_s: float
+    theta: Mapping[str, float]
+    omega: Mapping[str, float]
+    alpha: Mapping[str, float]
+    position: Mapping[str, Point]
+    velocity: Mapping[str, Point]
+    acceleration: Mapping[str, Point]
+    displacement: Mapping[str, float]
+    speed: Mapping[str, float]
+
+
+def _pair(row: Array) -> Point:
+    """A row of two as plain floats."""
+    return float(row[0]), float(row[1])

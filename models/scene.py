@@ -1,0 +1,120 @@
+"""What a mechanism is: links, pins, sliders, one driver, and the assembly branch.
+
+Pins are shared point names: two links, or a link and the ground, that list the same point are
+pinned there. A slider lets a point, or a whole link, run along a line of another body::
+
+    block (no `link`)                     sliding link (`link = "yoke"`)
+
+      rod                                        |  yoke
+        \\                                        |
+    -----[C]------  line of `on`          =====[  Y  ]=====  line of `on`
+     the block is pinned to the rod        the yoke does not turn against the line
+
+All lengths in m, angles in rad, masses in kg. Counter-clockwise is positive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from models.laws import Law
+
+Point = tuple[float, float]
+GROUND = "ground"
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid link.
+
+    ``points`` and ``centre_m`` (the centre of mass) are in the link's own frame; ``inertia_kg_m2``
+    is about the centre of mass.
+    """
+
+    name: str
+    points: Mapping[str, Point]
+    mass_kg: float
+    centre_m: Point
+    inertia_kg_m2: float
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A prismatic pair: ``point`` runs on the line of body ``on``.
+
+    The line passes through ``through_m`` in direction ``direction_rad``, both in the frame of
+    ``on``; the displacement of the slider is measured from ``through_m`` along the direction.
+    Without ``link`` the slider is a block pinned at ``point``, with its own mass (0: no body is
+    needed) and with the orientation of the line. With ``link`` that link itself slides: its frame
+    keeps the angle ``angle_rad`` to the line, and ``point`` is one of its points.
+    """
+
+    name: str
+    point: str
+    on: str
+    through_m: Point
+    direction_rad: float
+    link: str | None = None
+    angle_rad: float = 0.0
+    mass_kg: float = 0.0
+    inertia_kg_m2: float = 0.0
+
+
+@dataclass(frozen=True)
+class Driver:
+    """The link that is driven about its ground pin, and the law it follows."""
+
+    link: str
+    law: Law
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A planar mechanism with one driver.
+
+    ``branch`` holds +1 or -1 per assembly choice, by the name of the pin (dyad of two links: +1
+    where the pin lies to the left of the line from the first outer pin to the second, the links
+    in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
+    is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
+    unless the scene has it.
+    """
+
+    name: str
+    source: str
+    ground: Mapping[str, Point]
+    links: Mapping[str, Link]
+    sliders: Mapping[str, Slider]
+    driver: Driver
+    branch: Mapping[str, int] = field(default_factory=dict)
+    gravity_m_s2: Point = (0.0, 0.0)
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    note: str = ""
+
+    @property
+    def pins(self) -> dict[str, tuple[str, ...]]:
+        """Every named point with the bodies that list it, ground first, then links in order."""
+        bodies: dict[str, list[str]] = {point: [GROUND] for point in self.ground}
+        for link in self.links.values():
+            for point in link.points:
+                bodies.setdefault(point, []).append(link.name)
+        return {point: tuple(names) for point, names in bodies.items()}
+
+    @property
+    def longest_m(self) -> float:
+        """The longest distance between two points of one link: the scale that errors are over."""
+        return max(_span(link.points) for link in self.links.values())
+
+    @property
+    def driver_pivot(self) -> str:
+        """The point that pins the driver to the ground."""
+        return next(point for point in self.links[self.driver.link].points if point in self.ground)
+
+
+def _span(points: Mapping[str, Point]) -> float:
+    """The largest distance between two of the points [m]."""
+    places = list(points.values())
+    return max(
+        (((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a in places for b in places),
+        default=0.0,
+    )

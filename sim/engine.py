@@ -1,0 +1,183 @@
+"""What an engine is to crankcheck: a session that is opened, stepped and read; and what a run left.
+
+One adapter per engine, each in its own file, imported only when it is asked for (`sim.registry`).
+An adapter turns the engine's own coordinates into `Poses`; everything after that is shared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.motion import Motion, State
+from models.scene import Point, Scene
+
+Array = NDArray[np.float64]
+Status = Literal[
+    "ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"
+]
+Drive = Literal["prescribed", "servo"]
+SettingValue = float | int | str
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One engine setting: its value, and why a profile chose it."""
+
+    value: SettingValue
+    reason: str
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A named, complete set of the engine settings that influence accuracy."""
+
+    name: str
+    engine: str
+    summary: str
+    settings: Mapping[str, Setting]
+
+
+@dataclass(frozen=True)
+class BodyPose:
+    """Motion of one body's frame.
+
+    ``origin`` (T, 2) [m], ``theta`` (T,) [rad] continuous, ``velocity`` (T, 2) of the origin
+    [m/s], ``omega`` (T,) [rad/s]; ``origin_acceleration`` (T, 2) and ``alpha`` (T,) are NaN where
+    the engine reports none.
+    """
+
+    origin: Array
+    theta: Array
+    velocity: Array
+    omega: Array
+    origin_acceleration: Array
+    alpha: Array
+
+
+@dataclass(frozen=True)
+class Poses:
+    """The bodies of the engine over time: every link, and each slider block that has a body."""
+
+    time_s: Array
+    links: Mapping[str, BodyPose]
+    blocks: Mapping[str, BodyPose]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """The model as the engine holds it, read back before the first step.
+
+    ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
+    quantities belong: a velocity logged with the positions of time t belongs to
+    t + velocity_shift * dt.
+    """
+
+    version: str
+    mass_kg: Mapping[str, float]
+    inertia_kg_m2: Mapping[str, float]
+    gravity_m_s2: Point
+    start: Poses
+    settings: Mapping[str, SettingValue]
+    velocity_shift: float
+    acceleration_shift: float
+
+
+@dataclass(frozen=True)
+class Log:
+    """What a stretch of stepping left: poses at the logged steps, and how it ended."""
+
+    poses: Poses
+    steps_done: int
+    diverged: bool
+    warnings: tuple[str, ...]
+
+
+class Session(Protocol):
+    """One opened model, at its initial state."""
+
+    def facts(self) -> Facts:
+        """The model as the engine holds it now."""
+        ...
+
+    def step(self, steps: int) -> None:
+        """Advance without logging, in native code where the engine can."""
+        ...
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance and log the current state and every ``every``-th step after it."""
+        ...
+
+    def read(self) -> Poses:
+        """The current state, as poses of one sample."""
+        ...
+
+
+class Engine(Protocol):
+    """A physics engine with its profiles."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def profiles(self) -> Mapping[str, Profile]: ...
+
+    def version(self) -> str:
+        """The installed version; EngineError with the command that installs it if it is missing."""
+        ...
+
+    def open(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> Session:
+        """A session at ``state``; EngineError where the engine cannot hold the scene."""
+        ...
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Wall time of the stepping [s] and the steps it took; logging is part of it when ``logged``."""
+
+    wall_s: float
+    steps: int
+    logged: bool
+
+    @property
+    def us_per_step(self) -> float:
+        return 1e6 * self.wall_s / self.steps if self.steps else float("nan")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One scene in one engine: what moved, how it ended, with which settings, at which cost.
+
+    ``gaps`` holds per pin or slider how far the bodies that share it have come apart (T,) [m].
+    ``velocity_time_s`` and ``acceleration_time_s`` are the instants that the reported velocities
+    and accelerations belong to. ``motion`` is None where the run never started; ``stopped_at_s``
+    is the last time that was reached.
+    """
+
+    scene: str
+    engine: str
+    version: str
+    profile: str
+    drive: Drive
+    dt_s: float
+    status: Status
+    reason: str
+    settings: Mapping[str, SettingValue]
+    motion: Motion | None = None
+    gaps: Mapping[str, Array] = field(default_factory=dict)
+    velocity_time_s: Array | None = None
+    acceleration_time_s: Array | None = None
+    stopped_at_s: float = 0.0
+    warnings: tuple[str, ...] = ()
+    cost: Cost | None = None
