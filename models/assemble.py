@@ -1,0 +1,181 @@
+"""From the tables of a scene file to a Scene: short forms written out, defaults filled in, names checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from pydantic import BaseModel
+
+from models.errors import SceneError
+from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.schema import (
+    ConstantDriver,
+    FromRestDriver,
+    LinkTable,
+    OscillatingDriver,
+    SceneTable,
+    SliderTable,
+)
+
+ROD_KG_PER_M = 1.0
+BLOCK_OF_LONGEST = 0.1
+"""Side of a square slider block with mass, over the longest link, where no inertia is given."""
+
+
+def scene_from_table(table: SceneTable, driver: BaseModel, place: str) -> Scene:
+    """The scene that the tables describe.
+
+    Raises
+    ------
+    SceneError
+        Names that do not fit together, links without length, masses that cannot be derived.
+    """
+    faults: list[str] = []
+    points = {name: _points(link) for name, link in table.links.items()}
+    faults += _faults_of_names(table, points, driver)
+    faults += _faults_of_lengths(table, points)
+    if faults:
+        raise SceneError(place, faults)
+    links = {name: _link(name, link, points[name], faults) for name, link in table.links.items()}
+    longest = max(_longest(p)[0] for p in points.values())
+    sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
+    try:
+        law = _law(driver)
+    except ValueError as error:
+        faults.append(f"driver: {error}")
+    if longest == 0.0:
+        faults.append("links: no link has two points, so the scene has no length; add a point")
+    if faults:
+        raise SceneError(place, faults)
+    return Scene(
+        name=table.name,
+        source=table.source,
+        note=table.note,
+        ground=dict(table.ground.points),
+        links=links,
+        sliders=sliders,
+        driver=Driver(str(getattr(driver, "link")), law),
+        branch=dict(table.branch),
+        gravity_m_s2=table.gravity_m_s2,
+        tolerance=dict(table.tolerance),
+    )
+
+
+def _points(link: LinkTable) -> dict[str, Point]:
+    """All points of a link in its frame, the bar written out."""
+    bar: dict[str, Point] = {}
+    if link.bar is not None and link.length_m is not None:
+        bar = {link.bar[0]: (0.0, 0.0), link.bar[1]: (link.length_m, 0.0)}
+    return bar | dict(link.points)
+
+
+def _faults_of_names(
+    table: SceneTable, points: Mapping[str, Mapping[str, Point]], driver: BaseModel
+) -> list[str]:
+    """References to things that the scene does not have."""
+    faults = []
+    bodies = [GROUND, *table.links]
+    everywhere = set(table.ground.points).union(*points.values())
+    if GROUND in table.links:
+        faults.append("links.ground: the ground has its own table [ground]; name the link otherwise")
+    for name, slider in table.sliders.items():
+        key = f"sliders.{name}"
+        point = slider.point or name
+        if slider.on not in bodies:
+            faults.append(f"{key}.on: found {slider.on}; use one of {', '.join(bodies)}")
+        if slider.link is not None and slider.link not in table.links:
+            faults.append(f"{key}.link: found {slider.link}; use one of {', '.join(table.links)}")
+        if slider.link is not None and slider.link == slider.on:
+            faults.append(f"{key}.on: link {slider.on} slides on itself; name another body")
+        owners = {slider.link: points.get(slider.link, {})} if slider.link else {}
+        if slider.link and slider.link in table.links and point not in owners[slider.link]:
+            have = ", ".join(points[slider.link])
+            faults.append(f"{key}.point: {slider.link} has no point {point}; it has {have}")
+        pinned = [n for n, s in table.sliders.items() if (s.point or n) == point and not s.link]
+        if not slider.link and point not in everywhere and len(pinned) < 2:
+            faults.append(f"{key}.point: no body has a point {point}; set point to one of "
+                          f"{', '.join(sorted(everywhere))}")
+    link = getattr(driver, "link")
+    if link not in table.links:
+        faults.append(f"driver.link: found {link}; use one of {', '.join(table.links)}")
+    elif not set(points[link]) & set(table.ground.points):
+        faults.append(f"driver.link: {link} has no ground pin to turn about; give it a ground point")
+    choices = everywhere | set(table.sliders)
+    faults += [f"branch.{n}: no pin or slider of that name" for n in table.branch if n not in choices]
+    return faults
+
+
+def _faults_of_lengths(
+    table: SceneTable, points: Mapping[str, Mapping[str, Point]]
+) -> list[str]:
+    """Points that coincide, and links whose mass cannot be spread over a length."""
+    faults = []
+    for name, places in [(GROUND, table.ground.points), *points.items()]:
+        names = list(places)
+        faults += [
+            f"{'' if name == GROUND else 'links.'}{name}: length {a}{b} is 0; set the points apart"
+            for i, a in enumerate(names)
+            for b in names[i + 1 :]
+            if math.dist(places[a], places[b]) == 0.0
+        ]
+    for name, link in table.links.items():
+        if link.bar is not None and set(link.bar) & set(link.points):
+            faults.append(f"links.{name}.points: the ends of the bar stand there already")
+        given = (link.mass_kg, link.centre_m, link.inertia_kg_m2)
+        if len(points[name]) < 2 and None in given:
+            faults.append(f"links.{name}: one point has no length to derive a mass from; give "
+                          "mass_kg, centre_m and inertia_kg_m2, or a second point")
+    return faults
+
+
+def _longest(points: Mapping[str, Point]) -> tuple[float, Point, Point]:
+    """The largest distance between two points, and the two."""
+    places = list(points.values())
+    pairs = [(math.dist(a, b), a, b) for i, a in enumerate(places) for b in places[i:]]
+    return max(pairs, key=lambda pair: pair[0])
+
+
+def _link(name: str, table: LinkTable, points: dict[str, Point], faults: list[str]) -> Link:
+    """A link whose missing mass data are those of a uniform slender rod on its longest span."""
+    length, a, b = _longest(points)
+    mass = ROD_KG_PER_M * length if table.mass_kg is None else table.mass_kg
+    centre = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) if table.centre_m is None else table.centre_m
+    inertia = mass * length**2 / 12 if table.inertia_kg_m2 is None else table.inertia_kg_m2
+    if mass == 0.0 and inertia > 0.0:
+        faults.append(f"links.{name}: inertia_kg_m2 is {inertia} with mass_kg 0; give both or none")
+    return Link(name, points, mass, centre, inertia)
+
+
+def _slider(name: str, table: SliderTable, longest: float) -> Slider:
+    """A slider with angles in rad and the inertia of a square block where it has a mass."""
+    mass = table.mass_kg or 0.0
+    side = BLOCK_OF_LONGEST * longest
+    inertia = mass * side**2 / 6 if table.inertia_kg_m2 is None else table.inertia_kg_m2
+    return Slider(
+        name=name,
+        point=table.point or name,
+        on=table.on,
+        through_m=table.through_m,
+        direction_rad=math.radians(table.direction_deg),
+        link=table.link,
+        angle_rad=math.radians(table.angle_deg),
+        mass_kg=mass,
+        inertia_kg_m2=inertia,
+    )
+
+
+def _law(driver: BaseModel) -> Law:
+    """The law of motion of a driver table. Raises ValueError for numbers that drive nothing."""
+    if isinstance(driver, OscillatingDriver):
+        return Oscillating(
+            math.radians(driver.centre_deg),
+            math.radians(driver.amplitude_deg),
+            driver.frequency_rad_s,
+            math.radians(driver.phase_deg),
+        )
+    if isinstance(driver, FromRestDriver):
+        return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
+    assert isinstance(driver, ConstantDriver)
+    return ConstantSpeed(math.radians(driver.start_deg), driver.speed_rad_s)

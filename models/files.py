@@ -1,0 +1,170 @@
+"""Scene files: find them, read them, and say everything that is wrong with one at once."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from models.assemble import scene_from_table
+from models.errors import CrankcheckError, SceneError
+from models.scene import Scene
+from models.schema import DRIVERS, SceneTable
+
+SCENE_FOLDER = Path(__file__).parent / "scenes"
+MOST_BYTES = 1_000_000
+M = TypeVar("M", bound=BaseModel)
+
+
+def shipped() -> dict[str, Path]:
+    """The scenes that come with crankcheck: name to file, in alphabetical order."""
+    return {path.stem: path for path in sorted(SCENE_FOLDER.glob("*.toml"))}
+
+
+def load_scene(name_or_path: str) -> Scene:
+    """Read a shipped scene by name, or a scene file by path.
+
+    Parameters
+    ----------
+    name_or_path : str
+        ``fourbar-lecture-1``, or anything that ends in ``.toml`` or names a file.
+
+    Raises
+    ------
+    CrankcheckError
+        Nothing there; the message suggests the near names.
+    SceneError
+        A file with faults, all of them in one message.
+    """
+    known = shipped()
+    if name_or_path in known:
+        return read_scene(known[name_or_path])
+    path = Path(name_or_path)
+    try:
+        there = path.exists()
+    except (OSError, ValueError):  # a name too long for the system, or with a null byte
+        there = False
+    if there:
+        return read_scene(path)
+    near = difflib.get_close_matches(path.stem[:200], known, n=3, cutoff=0.5)
+    hint = f"Did you mean {' or '.join(near)}?" if near else "`crankcheck scenes` lists the names."
+    shown = name_or_path if len(name_or_path) <= 80 else name_or_path[:77] + "..."
+    raise CrankcheckError(f"scene {shown!r}: neither a shipped scene nor a file. {hint}")
+
+
+def read_scene(path: Path) -> Scene:
+    """Read one scene file. Raises SceneError with every fault of the file."""
+    return parse_scene(_read_text(path), str(path))
+
+
+def parse_scene(text: str, place: str) -> Scene:
+    """A scene from TOML text; ``place`` names it in messages. Raises SceneError."""
+    try:
+        raw = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise SceneError(place, [f"not valid TOML: {str(error)[:300]}"]) from None
+    faults: list[str] = []
+    table = _validated(SceneTable, raw, "", faults)
+    driver = _driver(raw.get("driver"), faults)
+    if faults or table is None or driver is None:
+        raise SceneError(place, faults)
+    return scene_from_table(table, driver, place)
+
+
+def _read_text(path: Path) -> str:
+    """The text of a scene file, or SceneError that says why it could not be read."""
+    if path.is_dir():
+        raise SceneError(str(path), ["a directory; name a scene file in it, one that ends in .toml"])
+    try:
+        raw = path.read_bytes()
+        if len(raw) > MOST_BYTES:
+            fault = f"{len(raw)} bytes; a scene file has at most {MOST_BYTES}"
+            raise SceneError(str(path), [fault])
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        raise SceneError(str(path), ["not UTF-8 text; save the file as UTF-8"]) from None
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise SceneError(str(path), [f"cannot be read: {why}; check its permissions"]) from None
+
+
+def _driver(raw: object, faults: list[str]) -> BaseModel | None:
+    """The driver table under the model of its law."""
+    if isinstance(raw, list):
+        faults.append(f"driver: found {len(raw)} drivers; a scene has one [driver] table")
+        return None
+    if not isinstance(raw, Mapping):
+        return None  # already a fault of SceneTable
+    law = raw.get("law", "constant")
+    model = DRIVERS.get(law) if isinstance(law, str) else None
+    if model is None:
+        faults.append(f"driver.law: found {_short(law)}; use one of {', '.join(DRIVERS)}")
+        return None
+    if isinstance(raw.get("link"), list):
+        faults.append(f"driver.link: found {_short(raw['link'])}; a scene has one driver, one link")
+        return None
+    return _validated(model, raw, "driver.", faults)
+
+
+def _validated(
+    model: type[M], raw: Mapping[str, object], prefix: str, faults: list[str]
+) -> M | None:
+    """``raw`` as ``model``, or None with its faults appended."""
+    try:
+        return model.model_validate(raw)
+    except ValidationError as error:
+        for fault in error.errors():
+            if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
+                continue  # `_driver` says it better
+            faults.append(_line(model, prefix, fault["loc"], fault["type"], fault["msg"], fault["input"]))
+        return None
+
+
+def _line(
+    model: type[BaseModel],
+    prefix: str,
+    loc: tuple[int | str, ...],
+    kind: str,
+    message: str,
+    found: object,
+) -> str:
+    """One fault in one line: key, what was found, what would work."""
+    parts = [str(part) for part in loc if part != "[key]"]
+    key = prefix + ".".join(part if len(part) <= 60 else part[:57] + "..." for part in parts)
+    if kind == "missing":
+        return f"{key}: missing; add it"
+    if kind == "extra_forbidden":
+        known = _keys_at(model, loc)
+        near = difflib.get_close_matches(parts[-1][:200], known, n=1)
+        return f"{key}: unknown key; " + (f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}")
+    if kind == "string_pattern_mismatch":
+        message = "a name is a letter, then up to 39 letters, digits, - or _"
+    if kind == "value_error":
+        return f"{key or 'scene'}: {message.removeprefix('Value error, ')}"
+    return f"{key}: found {_short(found)}; {message[0].lower()}{message[1:]}"
+
+
+def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
+    """The keys that the table holding the unknown key ``loc`` may have."""
+    from models import schema
+
+    tables: dict[str, type[BaseModel]] = {
+        "ground": schema.GroundTable,
+        "links": schema.LinkTable,
+        "sliders": schema.SliderTable,
+    }
+    owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
+    return list(owner.model_fields)
+
+
+def _short(found: object) -> str:
+    """What was found, short enough for a message."""
+    if isinstance(found, float) and not math.isfinite(found):
+        return str(found)
+    text = repr(found)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,110 @@
+"""The shape of a scene file, as pydantic models: keys, types and the rules of one table at a time."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
+Text = Annotated[str, StringConstraints(max_length=2000)]
+Number = Annotated[float, Field(allow_inf_nan=False, strict=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Place = tuple[Number, Number]
+
+
+class Table(BaseModel):
+    """A table of the file: unknown keys are faults, nothing is changed after reading."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class GroundTable(Table):
+    points: dict[Name, Place] = Field(min_length=1)
+
+
+class LinkTable(Table):
+    """``bar`` with ``length_m`` is short for two points on the link's x-axis."""
+
+    bar: tuple[Name, Name] | None = None
+    length_m: Positive | None = None
+    points: dict[Name, Place] = Field(default_factory=dict)
+    mass_kg: NonNegative | None = None
+    centre_m: Place | None = None
+    inertia_kg_m2: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _bar_goes_with_length(self) -> LinkTable:
+        if (self.bar is None) != (self.length_m is None):
+            raise ValueError('bar and length_m go together: bar = ["A", "B"], length_m = 0.1')
+        if self.bar is None and not self.points:
+            raise ValueError('a link needs points: bar = ["A", "B"] with length_m, or points = {...}')
+        if self.bar is not None and self.bar[0] == self.bar[1]:
+            raise ValueError(f"the bar joins point {self.bar[0]} to itself; name two points")
+        return self
+
+
+class SliderTable(Table):
+    on: Name
+    point: Name | None = None
+    link: Name | None = None
+    through_m: Place = (0.0, 0.0)
+    direction_deg: Number = 0.0
+    angle_deg: Number = 0.0
+    mass_kg: NonNegative | None = None
+    inertia_kg_m2: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _a_sliding_link_has_its_own_mass(self) -> SliderTable:
+        if self.link is not None and (self.mass_kg is not None or self.inertia_kg_m2 is not None):
+            raise ValueError(f"the slider is link {self.link}: give mass and inertia there")
+        if self.link is None and self.angle_deg != 0.0:
+            raise ValueError("angle_deg needs link = ...: a block has the direction of its line")
+        return self
+
+
+class ConstantDriver(Table):
+    link: Name
+    law: Literal["constant"] = "constant"
+    speed_rad_s: Number
+    start_deg: Number = 0.0
+
+
+class OscillatingDriver(Table):
+    link: Name
+    law: Literal["oscillating"]
+    centre_deg: Number
+    amplitude_deg: Number
+    frequency_rad_s: Number
+    phase_deg: Number = 0.0
+
+
+class FromRestDriver(Table):
+    link: Name
+    law: Literal["from-rest"]
+    speed_rad_s: Number
+    rise_s: Positive
+    start_deg: Number = 0.0
+
+
+class SceneTable(Table):
+    """A whole scene file; its driver table is checked by `DRIVERS` after its law is known."""
+
+    name: Name
+    source: Annotated[str, StringConstraints(min_length=1, max_length=2000)]
+    note: Text = ""
+    ground: GroundTable
+    links: dict[Name, LinkTable] = Field(min_length=1)
+    sliders: dict[Name, SliderTable] = Field(default_factory=dict)
+    driver: dict[str, object]
+    branch: dict[Name, Literal[-1, 1]] = Field(default_factory=dict)
+    gravity_m_s2: Place = (0.0, 0.0)
+    tolerance: dict[Name, Positive] = Field(default_factory=dict)
+
+
+DRIVERS: dict[str, type[ConstantDriver] | type[OscillatingDriver] | type[FromRestDriver]] = {
+    "constant": ConstantDriver,
+    "oscillating": OscillatingDriver,
+    "from-rest": FromRestDriver,
+}
