@@ -16,8 +16,16 @@ class Law(Protocol):
     """A smooth law of motion of the driver.
 
     ``period_s`` is what one "turn" of a run means for the law, and ``peak_speed_rad_s`` the
-    speed that errors of velocity are divided by; both are positive.
+    speed that errors of velocity are divided by; both are positive. ``offset_rad`` and
+    ``fastest_rad_s``, the constant part of the angle and the fastest circular frequency in the
+    law, are what the rounding of the law grows with.
     """
+
+    @property
+    def offset_rad(self) -> float: ...
+
+    @property
+    def fastest_rad_s(self) -> float: ...
 
     @property
     def period_s(self) -> float: ...
@@ -55,6 +63,14 @@ class ConstantSpeed:
             raise ValueError("speed_rad_s is 0: a driver at rest drives nothing")
 
     @property
+    def offset_rad(self) -> float:
+        return abs(self.start_rad)
+
+    @property
+    def fastest_rad_s(self) -> float:
+        return abs(self.speed_rad_s)
+
+    @property
     def period_s(self) -> float:
         return math.tau / abs(self.speed_rad_s)
 
@@ -89,6 +105,14 @@ class Oscillating:
         _finite(self)
         if self.amplitude_rad == 0.0 or self.frequency_rad_s == 0.0:
             raise ValueError("an oscillating driver needs an amplitude and a frequency that are not 0")
+
+    @property
+    def offset_rad(self) -> float:
+        return abs(self.centre_rad) + abs(self.amplitude_rad * self.phase_rad)
+
+    @property
+    def fastest_rad_s(self) -> float:
+        return abs(self.frequency_rad_s)
 
     @property
     def period_s(self) -> float:
@@ -129,6 +153,14 @@ class FromRest:
         _finite(self)
         if self.speed_rad_s == 0.0 or self.rise_s <= 0.0:
             raise ValueError("a start from rest needs speed_rad_s other than 0 and rise_s above 0")
+
+    @property
+    def offset_rad(self) -> float:
+        return abs(self.start_rad)
+
+    @property
+    def fastest_rad_s(self) -> float:
+        return max(abs(self.speed_rad_s), math.tau / self.rise_s)
 
     @property
     def period_s(self) -> float:

@@ -1,0 +1,1 @@
+"""Closed-form solvers of the five class II Assur groups, one per file."""

@@ -1,0 +1,160 @@
+"""What every dyad solver takes and gives: turning and sliding unknowns, moving lines, closure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.plane import (
+    EPS,
+    AngleError,
+    Array,
+    PointKinematics,
+    Real,
+    Vec,
+)
+
+
+CLOSED = 16 * EPS
+"""A dyad open by no more than this, over the lengths in its closure, is closed but for rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turning:
+    """An unknown rotation: unit vector, rate [rad/s], acceleration [rad/s^2], bounds if asked."""
+
+    turn: Vec
+    omega: Real
+    alpha: Real
+    error: AngleError | None
+
+
+@dataclass(frozen=True, slots=True)
+class SlideError:
+    """Bounds on a slider's displacement [m], speed [m/s], acceleration [m/s^2]."""
+
+    displacement: Real
+    speed: Real
+    acceleration: Real
+
+
+@dataclass(frozen=True, slots=True)
+class Sliding:
+    """An unknown displacement [m], its rate [m/s] and acceleration [m/s^2], bounds if asked."""
+
+    s: Real
+    speed: Real
+    acceleration: Real
+    error: SlideError | None
+
+
+@dataclass(frozen=True, slots=True)
+class MovingLine:
+    """A line of a known body: a point of it, its direction, and the rotation of the body."""
+
+    point: PointKinematics
+    along: Vec
+    omega: Real
+    alpha: Real
+    error: AngleError | None
+
+    def at(self, s: Real) -> Vec:
+        """The place at displacement ``s`` from the point."""
+        return self.point.p + self.along * s
+
+    def velocity(self, s: Real) -> Vec:
+        """The velocity of the body's own point there."""
+        return self.point.v + self.along.perp() * (self.omega * s)
+
+    def acceleration(self, s: Real, speed: Real) -> Vec:
+        """The acceleration of what slides there at ``speed``, less the relative one (Coriolis in)."""
+        across = self.alpha * s + 2.0 * self.omega * speed
+        return self.point.a + self.along.perp() * across - self.along * (self.omega**2 * s)
+
+    def errors(self, s: Real, speed: Real, es: Real, ev: Real) -> tuple[Real, Real, Real]:
+        """Bounds on the errors of `at`, `velocity`, `acceleration` where s, speed have es, ev."""
+        assert self.point.error is not None
+        assert self.error is not None
+        e, p = self.error, self.point.error
+        w, g, d, v = abs(self.omega), abs(self.alpha), np.abs(s), np.abs(speed)
+        position = p.position + d * e.theta
+        velocity = p.velocity + d * e.omega + w * (d * e.theta + es) + e.omega * es
+        acceleration = (
+            p.acceleration
+            + d * (e.alpha + e.omega * (2.0 * w + e.omega))
+            + (g + w * w) * (d * e.theta + es)
+            + 2.0 * (v * e.omega + w * ev + e.omega * ev + w * v * e.theta)
+            + (e.alpha + e.omega * (2.0 * w + e.omega)) * es
+        )
+        return position, velocity, acceleration
+
+    def sizes(self, s: Real, speed: Real) -> tuple[Real, Real, Real]:
+        """The sums of the lengths of the terms of `at`, `velocity`, `acceleration`."""
+        w, d = abs(self.omega), np.abs(s)
+        return (
+            self.point.p.norm() + d,
+            self.point.v.norm() + w * d,
+            self.point.a.norm() + (abs(self.alpha) + w * w) * d + 2.0 * w * np.abs(speed),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Dyad:
+    """The solved dyad.
+
+    ``sine`` is its conditioning (1 best, 0 singular); ``short_m``, given for a stretched solution
+    only, is by how much the dyad is short of closing [m] (negative: it closes).
+    """
+
+    first: Turning | Sliding
+    second: Turning | Sliding
+    sine: Real
+    short_m: Real | None = None
+
+
+class OpenError(Exception):
+    """The dyad cannot be assembled at some samples.
+
+    ``short_m`` says by how much the closure fails at each sample (positive where it does) [m].
+    """
+
+    def __init__(self, short_m: Array) -> None:
+        self.short_m = short_m
+        super().__init__(f"the dyad is open by up to {np.max(short_m):.3g} m")
+
+
+def closing_root(
+    square: Real, shortage: Callable[[], tuple[Real, Real]], stretch: bool
+) -> tuple[Real, Real | None]:
+    """The square root of what closure leaves, 0 where rounding has taken it below 0.
+
+    Parameters
+    ----------
+    square : Array or float
+        Positive where the dyad closes.
+    shortage : Callable
+        By how much the dyad is short of closing [m] (negative: it closes), and the sum of the
+        lengths that this is the difference of; asked for only where it matters.
+    stretch : bool
+        Solve the dyad as if stretched where it is open, instead of raising.
+
+    Returns
+    -------
+    tuple
+        The root, and the shortage where ``stretch``.
+
+    Raises
+    ------
+    OpenError
+        Where the dyad is open by more than rounding.
+    """
+    if stretch:
+        return np.sqrt(np.maximum(square, 0.0)), shortage()[0]
+    if np.min(square) < 0.0:
+        short, scale = shortage()
+        if np.any(short > CLOSED * scale):
+            raise OpenError(np.broadcast_to(np.asarray(short), np.shape(square)))
+        return np.sqrt(np.maximum(square, 0.0)), None
+    return np.sqrt(square), None

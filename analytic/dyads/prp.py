@@ -1,0 +1,94 @@
+"""PRP: two blocks pinned to each other, each on a known line (fixed or moving).
+
+::
+
+      G1 --- s1 ---> e1
+                 P                 G1 + s1 e1 = G2 + s2 e2
+      G2 --- s2 ---> e2
+
+One assembly only; singular where the lines are parallel.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.parts import Dyad, MovingLine, OpenError, SlideError, Sliding
+from analytic.plane import EPS, Real
+
+
+def solve(
+    line1: MovingLine,
+    line2: MovingLine,
+    *,
+    certified: bool = False,
+    stretch: bool = False,
+) -> Dyad:
+    """Solve a PRP dyad: the point where two moving lines cross.
+
+    Parameters
+    ----------
+    line1, line2 : MovingLine
+        The lines of the two blocks.
+    certified : bool
+        Give error bounds; the lines must then carry theirs.
+    stretch : bool
+        Let parallel lines pass (the answer is not finite) instead of raising.
+
+    Returns
+    -------
+    Dyad
+        The displacements s1, s2; ``sine`` of the angle between the lines.
+
+    Raises
+    ------
+    OpenError
+        The lines are parallel.
+
+    Notes
+    -----
+    Linear in its unknowns. Error about eps (|G1| + |G2| + s) / sine.
+    """
+    det = -line1.along.cross(line2.along)
+    jacobian = Jacobian(line1.along, -line2.along, det)
+    if not stretch and np.min(np.abs(det)) == 0.0:
+        apart = line2.point.p - line1.point.p
+        raise OpenError(np.abs(apart.cross(line1.along)) + np.zeros_like(det))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s1, s2 = jacobian.solve(line2.point.p - line1.point.p)
+        v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
+        a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
+    first, second = Sliding(s1, v1, a1, None), Sliding(s2, v2, a2, None)
+    if not certified:
+        return Dyad(first, second, np.abs(det), -np.abs(det) if stretch else None)
+    e1, e2 = _errors(line1, line2, jacobian, first, second)
+    return Dyad(Sliding(s1, v1, a1, e1), Sliding(s2, v2, a2, e2), np.abs(det))
+
+
+def _errors(
+    line1: MovingLine, line2: MovingLine, jacobian: Jacobian, first: Sliding, second: Sliding
+) -> tuple[SlideError, SlideError]:
+    """Bounds of the two displacements with their derivatives."""
+    assert line1.error is not None
+    assert line2.error is not None
+    s1, s2, v1, v2 = first.s, second.s, first.speed, second.speed
+    gap = (line1.at(s1) - line2.at(s2)).norm()
+    place = line1.errors(s1, v1, 0.0, 0.0)[0] + line2.errors(s2, v2, 0.0, 0.0)[0]
+    sizes1, sizes2 = line1.sizes(s1, v1), line2.sizes(s2, v2)
+    residual = gap + place + ROUNDING * (sizes1[0] + sizes2[0])
+    # The loop is linear in s1, s2, but its lines turn with the errors of their bodies; that share
+    # is in the residual, and in the columns below.
+    turn1, turn2 = line1.error.theta + 2 * EPS, line2.error.theta + 2 * EPS
+    nowhere: Real = np.inf
+    e1, e2 = certify(jacobian, residual, Curvature(0.0, 0.0, 0.0), (nowhere, nowhere))
+    lost = np.abs(jacobian.det) <= 2.0 * (turn1 + turn2)
+    e1, e2 = np.where(lost, np.inf, e1), np.where(lost, np.inf, e2)
+    certificate = Certificate(jacobian, e1, e2, turn1, turn2)
+    drift = line1.errors(s1, v1, e1, 0.0)[1] + line2.errors(s2, v2, e2, 0.0)[1]
+    r1, r2 = certificate.above(v1, v2, drift, sizes1[1] + sizes2[1])
+    shove = line1.errors(s1, v1, e1, r1)[2] + line2.errors(s2, v2, e2, r2)[2]
+    a1, a2 = certificate.above(
+        first.acceleration, second.acceleration, shove, sizes1[2] + sizes2[2]
+    )
+    return SlideError(e1, r1, a1), SlideError(e2, r2, a2)

@@ -1,0 +1,63 @@
+"""RPP: a block pinned at a known point slides on a link that itself slides on a known line.
+
+::
+
+      G --- s1 ---> e      known line (fixed or moving) of the sliding link
+            |
+            | k            line of the block on the sliding link, at a constant angle to e
+            P1             P1 = G + s1 e + s2 k
+
+The directions e and k both turn with the known body, so this is the crossing of two moving lines:
+the known one, and the line through P1 along k. One assembly only; the conditioning is constant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from analytic.dyads import prp
+from analytic.dyads.parts import Dyad, MovingLine, Sliding
+from analytic.plane import PointKinematics, Vec
+
+
+def solve(
+    p1: PointKinematics,
+    line: MovingLine,
+    inner: Vec,
+    *,
+    certified: bool = False,
+    stretch: bool = False,
+) -> Dyad:
+    """Solve an RPP dyad.
+
+    Parameters
+    ----------
+    p1 : PointKinematics
+        The pin of the block.
+    line : MovingLine
+        The line on which the link slides.
+    inner : Vec
+        Unit vector of the block's line k against e: the constant angle from e to k.
+    certified, stretch
+        As for `analytic.dyads.prp.solve`.
+
+    Returns
+    -------
+    Dyad
+        The displacement s1 of the link along its line, and s2 of the block along k;
+        ``sine`` of the angle between the two lines.
+
+    Raises
+    ------
+    OpenError
+        The two lines are parallel.
+    """
+    across = MovingLine(p1, line.along.turned(inner), line.omega, line.alpha, line.error)
+    found = prp.solve(line, across, certified=certified, stretch=stretch)
+    assert isinstance(found.second, Sliding)
+    # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
+    second = found.second
+    block = replace(
+        second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration
+    )
+    return Dyad(found.first, block, found.sine)

@@ -1,0 +1,120 @@
+"""RPR: a block pinned at a known point slides on a link that turns about another known point.
+
+::
+
+           P1 block                +1: the block lies from the foot of P2 on the line
+          /                            in the line's direction
+         /  e                      P1 = P2 + s e + h e'      (e' = e turned by +90 deg)
+       P2  (line at distance h)
+
+Singular where s = 0: the line is tangent to the circle about P2 of radius h.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.parts import Dyad, SlideError, Sliding, Turning, closing_root
+from analytic.plane import EPS, AngleError, PointKinematics, Real
+
+
+def solve(
+    p1: PointKinematics,
+    p2: PointKinematics,
+    offset: float,
+    branch: int,
+    *,
+    certified: bool = False,
+    stretch: bool = False,
+) -> Dyad:
+    """Solve an RPR dyad.
+
+    Parameters
+    ----------
+    p1 : PointKinematics
+        The pin of the block.
+    p2 : PointKinematics
+        The pin of the link that carries the line.
+    offset : float
+        Distance h of the line from P2 [m], positive to the left of its direction.
+    branch : int
+        The sign of the displacement s.
+    certified, stretch
+        As for `analytic.dyads.rrr.solve`.
+
+    Returns
+    -------
+    Dyad
+        The direction of the line, and the displacement s along it from the foot of P2;
+        ``sine`` is |s| over the distance of the pins.
+
+    Raises
+    ------
+    OpenError
+        The pins are nearer to each other than the line is to P2.
+
+    Notes
+    -----
+    Error about eps (|P1| + |P2|) / |s| in the angle.
+    """
+    d = p1.p - p2.p
+    d2 = d.square()
+    square = d2 - offset * offset if offset else d2
+
+    def shortage() -> tuple[Real, Real]:
+        apart = np.sqrt(d2)
+        return abs(offset) - apart, abs(offset) + apart
+
+    root, short = closing_root(square, shortage, stretch)
+    s = branch * root
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (d * s - d.perp() * offset) * (1.0 / d2)
+        across = along.perp()
+        jacobian = Jacobian(across * s - along * offset, along, -s)
+        w, speed = jacobian.solve(p1.v - p2.v)
+        inertia = d * (w * w) - across * (2.0 * w * speed)
+        g, acceleration = jacobian.solve(p1.a - p2.a + inertia)
+        sine = np.abs(s) / np.sqrt(d2)
+    turning, sliding = Turning(along, w, g, None), Sliding(s, speed, acceleration, None)
+    if not certified:
+        return Dyad(turning, sliding, sine, short)
+    e1, e2 = _errors(p1, p2, offset, jacobian, turning, sliding)
+    return Dyad(Turning(along, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
+
+
+def _errors(
+    p1: PointKinematics,
+    p2: PointKinematics,
+    offset: float,
+    jacobian: Jacobian,
+    turning: Turning,
+    sliding: Sliding,
+) -> tuple[AngleError, SlideError]:
+    """Bounds of the angle and the displacement with their derivatives."""
+    assert p1.error is not None
+    assert p2.error is not None
+    s, along = sliding.s, turning.turn
+    w, v = np.abs(turning.omega), np.abs(sliding.speed)
+    arm = np.hypot(s, offset)
+    gap = (p1.p - p2.p - along * s - along.perp() * offset).norm()
+    size = p1.p.norm() + p2.p.norm() + 2.0 * (np.abs(s) + abs(offset))
+    residual = gap + p1.error.position + p2.error.position + ROUNDING * size
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
+        # Where the two pins nearly meet the direction of the line is not determined at all.
+        turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
+    t, es = certify(jacobian, residual, Curvature(arm, 1.0, 0.0), (turn, fold + residual))
+    certificate = Certificate(jacobian, t, es, arm * t + es, t)
+    r, ev = certificate.above(
+        w, v, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()
+    )
+    swing = r * (2.0 * w + r) * (arm + arm * t + es) + w * w * (arm * t + es)
+    coriolis = 2.0 * ((w + r) * (v + ev) - w * v + w * v * t)
+    g, ea = certificate.above(
+        turning.alpha,
+        sliding.acceleration,
+        p1.error.acceleration + p2.error.acceleration + swing + coriolis,
+        p1.a.norm() + p2.a.norm() + w * w * arm + 2.0 * w * v,
+    )
+    return AngleError(t + 4 * EPS, r, g), SlideError(es, ev, ea)

@@ -1,0 +1,119 @@
+"""RRP: a link from a known point to a pin that slides on a known line (fixed or moving).
+
+::
+
+          P1                       +1: the pin lies on the side of the line's direction,
+           \\ l                         seen from the foot of the perpendicular from P1
+            \\
+    --G------C---> e               P1 + l u = G + s e
+
+Singular where the link stands across the line.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.parts import Dyad, MovingLine, SlideError, Sliding, Turning, closing_root
+from analytic.plane import EPS, AngleError, PointKinematics, Real
+
+
+def solve(
+    p1: PointKinematics,
+    line: MovingLine,
+    length: float,
+    branch: int,
+    *,
+    certified: bool = False,
+    stretch: bool = False,
+) -> Dyad:
+    """Solve an RRP dyad.
+
+    Parameters
+    ----------
+    p1 : PointKinematics
+        The outer pin of the link.
+    line : MovingLine
+        The line of the inner pin.
+    length : float
+        Distance from P1 to the inner pin [m].
+    branch : int
+        +1 where the pin lies from the foot of P1 on the line in the line's direction, else -1.
+    certified, stretch
+        As for `analytic.dyads.rrr.solve`.
+
+    Returns
+    -------
+    Dyad
+        The direction from P1 to the pin, and the displacement s; ``sine`` of the angle between
+        the link and the perpendicular of the line.
+
+    Raises
+    ------
+    OpenError
+        The line is further from P1 than the link is long.
+
+    Notes
+    -----
+    Error about eps (|P1| + |G| + s) / sine in the displacement.
+    """
+    away = line.point.p - p1.p
+    height = line.along.cross(away)
+    square = (length - height) * (length + height)
+
+    def shortage() -> tuple[Real, Real]:
+        return np.abs(height) - length, np.abs(height) + length
+
+    root, short = closing_root(square, shortage, stretch)
+    reach = branch * root
+    if stretch:
+        height = np.clip(height, -length, length)
+    s = reach - line.along.dot(away)
+    u = (line.along * reach + line.along.perp() * height) * (1.0 / length)
+    jacobian = Jacobian(u.perp() * length, -line.along, reach)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w, speed = jacobian.solve(line.velocity(s) - p1.v)
+        pull = jacobian.c1.perp() * (w * w)
+        g, acceleration = jacobian.solve(line.acceleration(s, speed) - p1.a - pull)
+    sine = np.abs(reach) * (1.0 / length)
+    turning, sliding = Turning(u, w, g, None), Sliding(s, speed, acceleration, None)
+    if not certified:
+        return Dyad(turning, sliding, sine, short)
+    e1, e2 = _errors(p1, line, length, jacobian, turning, sliding)
+    return Dyad(Turning(u, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
+
+
+def _errors(
+    p1: PointKinematics,
+    line: MovingLine,
+    length: float,
+    jacobian: Jacobian,
+    turning: Turning,
+    sliding: Sliding,
+) -> tuple[AngleError, SlideError]:
+    """Bounds of the angle and the displacement with their derivatives."""
+    assert p1.error is not None
+    assert line.error is not None
+    s, speed, w = sliding.s, sliding.speed, np.abs(turning.omega)
+    gap = (p1.p + turning.turn * length - line.at(s)).norm()
+    place, _, _ = line.errors(s, speed, 0.0, 0.0)
+    size = p1.p.norm() + 2.0 * length + 2.0 * line.sizes(s, speed)[0]
+    residual = gap + p1.error.position + place + ROUNDING * size
+    fold = 2.0 * np.abs(jacobian.det) + 2.0 * np.sqrt(residual * length)
+    folds: tuple[Real, Real] = (np.minimum(fold / length, np.pi), fold + residual)
+    t, es = certify(jacobian, residual, Curvature(length, 0.0, 0.0), folds)
+    certificate = Certificate(jacobian, t, es, length * t, line.error.theta + 2 * EPS)
+    _, drift, _ = line.errors(s, speed, es, 0.0)
+    r, ev = certificate.above(
+        w, speed, p1.error.velocity + drift, p1.v.norm() + line.sizes(s, speed)[1]
+    )
+    _, _, shove = line.errors(s, speed, es, ev)
+    pull = length * (r * (2.0 * w + r) + w * w * t)
+    g, ea = certificate.above(
+        turning.alpha,
+        sliding.acceleration,
+        p1.error.acceleration + shove + pull,
+        p1.a.norm() + length * w * w + line.sizes(s, speed)[2],
+    )
+    return AngleError(t + 4 * EPS, r, g), SlideError(es, ev, ea)

@@ -1,0 +1,132 @@
+"""RRR: two links between two known points, pinned to each other.
+
+::
+
+              C                    +1: C to the left of P1 -> P2
+          l1 / \\ l2
+           /    \\                  P1 + l1 u1 = P2 + l2 u2
+         P1 ---- P2
+
+Position from the triangle's sides (its area in Heron's form, so that no angle is formed); singular
+where C lies on the line P1 P2 (toggle).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.parts import Dyad, Turning, closing_root
+from analytic.plane import EPS, AngleError, PointKinematics, Real, Vec
+
+
+def solve(
+    p1: PointKinematics,
+    p2: PointKinematics,
+    l1: float,
+    l2: float,
+    branch: int,
+    *,
+    certified: bool = False,
+    stretch: bool = False,
+) -> Dyad:
+    """Solve an RRR dyad.
+
+    Parameters
+    ----------
+    p1, p2 : PointKinematics
+        The outer pins.
+    l1, l2 : float
+        Distances of the inner pin C from P1 and from P2 [m].
+    branch : int
+        +1 where C lies to the left of the line from P1 to P2, else -1.
+    certified : bool
+        Give error bounds; the points must then carry theirs.
+    stretch : bool
+        Where the dyad cannot close, take the two links in line instead of raising.
+
+    Returns
+    -------
+    Dyad
+        The directions P1 C and P2 C as turning unknowns; ``sine`` of the transmission angle.
+
+    Raises
+    ------
+    OpenError
+        The pins are too far apart, or too near.
+
+    Notes
+    -----
+    Error about eps (|P1| + |P2| + l1 + l2) / (l sine) in the angles; rates and accelerations lose
+    another factor 1 / sine relative to their size.
+    """
+    d = p2.p - p1.p
+    d2 = d.square()
+    outer, inner = (l1 + l2) ** 2, (l1 - l2) ** 2
+    square = (outer - d2) * (d2 - inner)
+
+    def shortage() -> tuple[Real, Real]:
+        apart = np.sqrt(d2)
+        return np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart), apart + l1 + l2
+
+    root, short = closing_root(square, shortage, stretch)
+    twice_area = 0.5 * root
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = 1.0 / d2
+        height = (branch * inverse) * twice_area
+        half = 0.5 * (l1 * l1 - l2 * l2) * inverse
+        across = d.perp() * height
+        u1 = (d * (0.5 + half) + across) * (1.0 / l1)
+        u2 = (d * (half - 0.5) + across) * (1.0 / l2)
+        jacobian = Jacobian(u1.perp() * l1, u2.perp() * -l2, -branch * twice_area)
+        w1, w2 = jacobian.solve(p2.v - p1.v)
+        pull = jacobian.c1.perp() * (w1 * w1) + jacobian.c2.perp() * (w2 * w2)
+        g1, g2 = jacobian.solve(p2.a - p1.a - pull)
+    sine = twice_area * (1.0 / (l1 * l2))
+    first, second = Turning(u1, w1, g1, None), Turning(u2, w2, g2, None)
+    if not certified:
+        return Dyad(first, second, sine, short)
+    e1, e2 = _errors(p1, p2, l1, l2, jacobian, first, second, np.sqrt(d2))
+    return Dyad(Turning(u1, w1, g1, e1), Turning(u2, w2, g2, e2), sine)
+
+
+def _errors(
+    p1: PointKinematics,
+    p2: PointKinematics,
+    l1: float,
+    l2: float,
+    jacobian: Jacobian,
+    first: Turning,
+    second: Turning,
+    apart: Real,
+) -> tuple[AngleError, AngleError]:
+    """Bounds of the two angles, rates and accelerations."""
+    assert p1.error is not None
+    assert p2.error is not None
+    gap = (p1.p + first.turn * l1 - p2.p - second.turn * l2).norm()
+    # The unit vectors are off unit length by rounding, which the residual does not tell apart.
+    size = p1.p.norm() + p2.p.norm() + 2.0 * (l1 + l2)
+    residual = gap + p1.error.position + p2.error.position + ROUNDING * size
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bend = np.sqrt(residual * l1 * l2 / apart)
+        fold = 2.0 * np.abs(jacobian.det) / apart + 2.0 * bend
+    folds = (_at_most_pi(fold / l1), _at_most_pi(fold / l2))
+    t1, t2 = certify(jacobian, residual, Curvature(l1, 0.0, l2), folds)
+    certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2)
+    w1, w2 = np.abs(first.omega), np.abs(second.omega)
+    r1, r2 = certificate.above(
+        w1, w2, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()
+    )
+    pulls = l1 * (r1 * (2.0 * w1 + r1) + w1 * w1 * t1) + l2 * (r2 * (2.0 * w2 + r2) + w2 * w2 * t2)
+    a1, a2 = certificate.above(
+        first.alpha,
+        second.alpha,
+        p1.error.acceleration + p2.error.acceleration + pulls,
+        p1.a.norm() + p2.a.norm() + l1 * w1 * w1 + l2 * w2 * w2,
+    )
+    return AngleError(t1 + 4 * EPS, r1, a1), AngleError(t2 + 4 * EPS, r2, a2)
+
+
+def _at_most_pi(angle: Real) -> Real:
+    """No angle is wrong by more than half a turn; nor is one that was not found at all."""
+    return np.fmin(angle, np.pi)

@@ -1,0 +1,82 @@
+"""The driver's reachable range: the angles in which every dyad closes.
+
+Found by the shortage of closure over a turn of the driver, its sign changes refined by bisection.
+Source: rotatability of a driver, e.g. Norton, Design of Machinery, section 4.10 (limit positions);
+for the four-bar `analytic.fourbar` has the closed form, and a test holds this one to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from analytic.dyads.parts import CLOSED
+from analytic.plane import Array
+from analytic.steps import Chunk
+from models.scene import Scene
+
+SCAN = 1440
+"""Angles of the first look at a turn: an unreachable range narrower than 0.25 deg may hide."""
+
+Range = tuple[float, float]
+Stretched = Callable[[Array], Chunk]
+
+
+def shortage(scene: Scene, stretched: Stretched, theta: Array) -> Array:
+    """By how much the mechanism fails to close at driver angles ``theta`` (T,) [m]; <= 0 closes."""
+    chunk = stretched(theta)
+    short = np.full(theta.shape, -np.inf)
+    for value in chunk.shortage.values():
+        short = np.maximum(short, np.nan_to_num(value, nan=np.inf))
+    return short - CLOSED * 4.0 * scene.longest_m
+
+
+def ranges(scene: Scene, stretched: Stretched) -> list[Range]:
+    """The reachable driver angles within a turn, as (from, to) [rad] in increasing order.
+
+    [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all.
+    A range may run beyond pi where it holds that angle.
+    """
+    grid = np.linspace(-math.pi, math.pi, SCAN + 1)
+    closes = shortage(scene, stretched, grid) <= 0.0
+    if closes.all():
+        return [(-math.pi, math.pi)]
+    edges = np.flatnonzero(closes[1:] != closes[:-1])
+    if not len(edges):
+        return []
+    found = _bisect(scene, stretched, grid[edges], grid[edges + 1], closes[edges])
+    opens = [float(a) for a, was in zip(found, closes[edges], strict=True) if not was]
+    ends = [float(a) for a, was in zip(found, closes[edges], strict=True) if was]
+    if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
+        ends = [*ends[1:], ends[0] + math.tau]
+    return list(zip(opens, ends, strict=True))
+
+
+def _bisect(
+    scene: Scene, stretched: Stretched, low: Array, high: Array, closes_low: Array
+) -> Array:
+    """The angles at which closing begins or ends, each on the side that closes."""
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        same = (shortage(scene, stretched, middle) <= 0.0) == closes_low
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.where(closes_low, low, high)
+
+
+def describe_reach(scene: Scene, stretched: Stretched) -> str:
+    """The reachable range in words, for a message."""
+    found = ranges(scene, stretched)
+    if not found:
+        grid = np.linspace(-math.pi, math.pi, SCAN + 1)
+        short = shortage(scene, stretched, grid)
+        best = int(np.argmin(short))
+        return (
+            f"It cannot be assembled at any angle of {scene.driver.link}: it comes nearest at "
+            f"{math.degrees(grid[best]):.4g} deg, open by {short[best]:.3g} m; change a length."
+        )
+    spans = " and ".join(
+        f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in found
+    )
+    return f"{scene.driver.link} can stand at {spans} (and whole turns from there)."
