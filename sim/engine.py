@@ -89,12 +89,17 @@ class Facts:
 
 @dataclass(frozen=True)
 class Log:
-    """What a stretch of stepping left: poses at the logged steps, and how it ended."""
+    """What a stretch of stepping left: poses at the logged steps, and how it ended.
+
+    ``wall_s`` is the time that stepping and logging took; what is computed from the log
+    afterwards (accelerations, poses) is not part of it.
+    """
 
     poses: Poses
     steps_done: int
     diverged: bool
     warnings: tuple[str, ...]
+    wall_s: float
 
 
 class Session(Protocol):

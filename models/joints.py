@@ -1,0 +1,110 @@
+"""The joints of a scene: which bodies there are, and what ties them to one another.
+
+::
+
+    bodies   ground, every link, every slider block that has a mass
+    pin      point P shared by k bodies: k - 1 binary hinges
+    prism    a block with mass, or a sliding link, on the line of another body
+    slot     a block without mass: point P of a body runs on the line of another body
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from models.scene import GROUND, Point, Scene, Slider
+
+
+@dataclass(frozen=True)
+class Pin:
+    """Point ``point`` is shared by all of ``bodies`` (two or more)."""
+
+    point: str
+    bodies: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Prism:
+    """``body`` slides along the line of ``slider.on`` and does not turn against it."""
+
+    slider: Slider
+    body: str
+
+
+@dataclass(frozen=True)
+class Slot:
+    """``slider.point`` of one of ``bodies`` runs along the line of ``slider.on``; both may turn."""
+
+    slider: Slider
+    bodies: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Joints:
+    """All joints of a scene, in the order of the file."""
+
+    pins: tuple[Pin, ...]
+    prisms: tuple[Prism, ...]
+    slots: tuple[Slot, ...]
+
+
+def block_name(slider: Slider) -> str:
+    """The name of the body of a slider block; no link can have it, as link names hold no space."""
+    return f"block {slider.name}"
+
+
+def blocks(scene: Scene) -> dict[str, Slider]:
+    """The slider blocks that are bodies, those with a mass, by body name."""
+    return {block_name(s): s for s in scene.sliders.values() if s.link is None and s.mass_kg > 0.0}
+
+
+def bodies(scene: Scene) -> tuple[str, ...]:
+    """Every moving body: the links in the order of the file, then the blocks with mass."""
+    return (*scene.links, *blocks(scene))
+
+
+def carriers(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Every named point with the bodies that carry it, blocks with mass included."""
+    found = {point: list(names) for point, names in scene.pins.items()}
+    for name, slider in blocks(scene).items():
+        found.setdefault(slider.point, []).append(name)
+    for slider in scene.sliders.values():
+        found.setdefault(slider.point, [])
+    return {point: tuple(names) for point, names in found.items()}
+
+
+def joints(scene: Scene) -> Joints:
+    """The joints of the scene; a massless block at a point that no body carries has none to hold."""
+    points = carriers(scene)
+    pins = tuple(Pin(point, names) for point, names in points.items() if len(names) > 1)
+    prisms, slots = [], []
+    for slider in scene.sliders.values():
+        if slider.link is not None:
+            prisms.append(Prism(slider, slider.link))
+        elif slider.mass_kg > 0.0:
+            prisms.append(Prism(slider, block_name(slider)))
+        else:
+            held = tuple(name for name in points[slider.point] if name != slider.on)
+            slots.append(Slot(slider, held))
+    return Joints(pins, tuple(prisms), tuple(slots))
+
+
+def local_point(scene: Scene, body: str, point: str) -> Point:
+    """A point in the frame of a body that carries it [m]; a block has its point at its origin."""
+    if body == GROUND:
+        return scene.ground[point]
+    if body in scene.links:
+        return scene.links[body].points[point]
+    return 0.0, 0.0
+
+
+def sliding_angle(slider: Slider) -> float:
+    """Angle of a sliding body against the frame of its guide [rad]; constant."""
+    return slider.direction_rad + (slider.angle_rad if slider.link is not None else 0.0)
+
+
+def turned(vector: Point, angle_rad: float) -> Point:
+    """The vector turned counter-clockwise by the angle."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]

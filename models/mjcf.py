@@ -1,0 +1,265 @@
+"""The MJCF text of a scene for MuJoCo: one body per link, assembled, loops closed at pins.
+
+The mechanism lies in the x-y plane and every hinge turns about z. Bodies stand where the given
+state has them; ``ref`` of each joint makes its coordinate read as the angle against the parent
+body, or as the displacement of the slider. Each loop is closed by an ``equality/connect`` between
+two sites, one on each body at that body's own coordinates of the point, so link lengths are exact.
+The assembled state is the keyframe ``assembled``.
+
+A massless slider block needs no body: the body that it would be pinned to carries a slide and a
+hinge. The crank is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism
+cannot change its speed. A law other than constant speed comes as a control stream: the motor's
+control is the angular acceleration of the crank.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from xml.sax.saxutils import escape, quoteattr
+
+from models.errors import EngineError
+from models.joints import bodies, local_point
+from models.laws import ConstantSpeed
+from models.motion import State
+from models.poses import centre_of, inertia_scale, mass_of
+from models.scene import GROUND, Scene
+from models.tree import Limb, Tree, plan
+
+FLYWHEEL_RATIO = 1e12
+"""Armature of the driven hinge over the inertia scale of the scene."""
+LEAST_MASS = 1e-15
+"""MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
+Attributes = Mapping[str, str | float | int | Sequence[float]]
+
+
+@dataclass(frozen=True)
+class Writing:
+    """What may be chosen about the text; what is left out is MuJoCo's own default.
+
+    ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
+    ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo.
+    """
+
+    close: tuple[str, ...] = ()
+    option: Attributes = field(default_factory=dict)
+    flag: Attributes = field(default_factory=dict)
+    connect: Attributes = field(default_factory=dict)
+    flywheel_ratio: float = FLYWHEEL_RATIO
+    servo_gain: float | None = None
+
+
+DEFAULT = Writing()
+
+
+def build(scene: Scene, state: State, writing: Writing = DEFAULT) -> str:
+    """The MJCF text of ``scene`` assembled at ``state``; the same input gives the same text.
+
+    Raises
+    ------
+    EngineError
+        A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop.
+    """
+    _check_masses(scene)
+    tree = plan(scene, state, writing.close)
+    lines = [
+        f"<mujoco model={quoteattr(scene.name)}>",
+        f"  <!-- {_comment(scene.source)} -->",
+        "  <!-- Planar: the mechanism lies in the x-y plane, hinges turn about z. SI units, rad. -->",
+        '  <compiler angle="radian" inertiafromgeom="false"/>',
+        *_options(scene, writing),
+        *_defaults(scene, writing),
+        *_world(scene, tree, writing),
+        *_equality(tree),
+        *_actuator(scene, writing),
+        *_keyframe(scene, state, tree, writing),
+        "</mujoco>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def driver_joint(scene: Scene) -> str:
+    """The name of the driven hinge."""
+    return f"{scene.driver.link}.{scene.driver_pivot}"
+
+
+def has_control(scene: Scene, writing: Writing) -> bool:
+    """Whether the model has an actuator that wants a control at each step."""
+    return writing.servo_gain is not None or not isinstance(scene.driver.law, ConstantSpeed)
+
+
+def armature(scene: Scene, writing: Writing) -> float:
+    """Inertia of the flywheel on the crank [kg m^2]; 0 under a servo."""
+    return 0.0 if writing.servo_gain is not None else writing.flywheel_ratio * inertia_scale(scene)
+
+
+def _check_masses(scene: Scene) -> None:
+    """Refuse bodies that MuJoCo cannot move."""
+    for body in bodies(scene):
+        mass, inertia = mass_of(scene, body)
+        if mass < LEAST_MASS or inertia < LEAST_MASS:
+            raise EngineError(
+                f"{body}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; MuJoCo moves no body with "
+                f"less than {LEAST_MASS:g} of either, give both"
+            )
+
+
+def _options(scene: Scene, writing: Writing) -> list[str]:
+    """Solver options; gravity is always written, as MuJoCo's default is that of the earth."""
+    gravity = (*scene.gravity_m_s2, 0.0)
+    own = _attributes({"gravity": gravity} | dict(writing.option))
+    if not writing.flag:
+        return [f"  <option{own}/>"]
+    return [f"  <option{own}>", f"    <flag{_attributes(writing.flag)}/>", "  </option>"]
+
+
+def _defaults(scene: Scene, writing: Writing) -> list[str]:
+    """What all elements share: hinges about z, and capsules that touch nothing and weigh nothing."""
+    thin = 0.012 * scene.longest_m
+    seen = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
+    lines = [
+        "  <default>",
+        f"    <geom{_attributes(seen)} rgba=\"0.35 0.5 0.65 1\"/>",
+        f"    <site{_attributes({'size': 1.5 * thin})} rgba=\"0.8 0.3 0.2 1\"/>",
+        '    <joint axis="0 0 1"/>',
+    ]
+    if writing.connect:
+        lines.append(f"    <equality{_attributes(writing.connect)}/>")
+    return [*lines, "  </default>"]
+
+
+def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
+    """The bodies, children inside their parents, and the sites of the closing pins."""
+    lines = ["  <worldbody>", *_sites(scene, tree, GROUND, "    ")]
+    lines += _children(scene, tree, writing, GROUND, "    ")
+    return [*lines, "  </worldbody>"]
+
+
+def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str) -> list[str]:
+    """The bodies that hang on ``parent``."""
+    lines: list[str] = []
+    for limb in (limb for limb in tree.limbs if limb.parent == parent):
+        turn = {"euler": (0.0, 0.0, limb.angle_rad)} if limb.angle_rad else {}
+        place = {"name": limb.body, "pos": (*limb.offset, 0.0)} | turn
+        lines.append(f"{pad}<body{_attributes(place)}>")
+        lines += _freedoms(scene, limb, writing, pad + "  ")
+        lines += _matter(scene, limb.body, pad + "  ")
+        lines += _sites(scene, tree, limb.body, pad + "  ")
+        lines += _children(scene, tree, writing, limb.body, pad + "  ")
+        lines.append(f"{pad}</body>")
+    return lines
+
+
+def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]:
+    """The joints of a body; the driver's hinge carries the flywheel."""
+    lines = []
+    for freedom in limb.freedoms:
+        row: dict[str, str | float | int | Sequence[float]] = {"name": freedom.name}
+        if freedom.kind == "slide":
+            row |= {"type": "slide", "axis": (*freedom.axis, 0.0)}
+        else:
+            row |= {"type": "hinge", "pos": (*freedom.anchor, 0.0)}
+        row["ref"] = freedom.ref
+        if freedom.name == driver_joint(scene) and writing.servo_gain is None:
+            row["armature"] = armature(scene, writing)
+        lines.append(f"{pad}<joint{_attributes(row)}/>")
+    return lines
+
+
+def _matter(scene: Scene, body: str, pad: str) -> list[str]:
+    """Mass, and capsules to look at.
+
+    All three moments of inertia are that about z: only it matters in the plane, and MuJoCo
+    refuses the flat bodies that would be exact.
+    """
+    mass, inertia = mass_of(scene, body)
+    row = {"pos": (*centre_of(scene, body), 0.0), "mass": mass, "diaginertia": (inertia,) * 3}
+    lines = [f"{pad}<inertial{_attributes(row)}/>"]
+    if body not in scene.links:
+        side = 0.04 * scene.longest_m
+        return [*lines, f"{pad}<geom{_attributes({'type': 'box', 'size': (side, side, side)})}/>"]
+    points = list(scene.links[body].points.values())
+    for end in points[1:]:
+        lines.append(f"{pad}<geom{_attributes({'fromto': (*points[0], 0.0, *end, 0.0)})}/>")
+    return lines
+
+
+def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
+    """The sites of a body where loops close, each at the body's own coordinates of the point."""
+    points = dict.fromkeys(c.point for c in tree.closures if body in c.bodies)
+    return [
+        f"{pad}<site{_attributes({'name': f'{body}.{p}', 'pos': (*local_point(scene, body, p), 0.0)})}/>"
+        for p in points
+    ]
+
+
+def _equality(tree: Tree) -> list[str]:
+    """One connect per pin that closes a loop."""
+    rows = [
+        {"name": f"{c.point}: {c.bodies[0]} to {c.bodies[1]}"}
+        | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
+        for c in tree.closures
+    ]
+    lines = [f"    <connect{_attributes(row)}/>" for row in rows]
+    return ["  <equality>", *lines, "  </equality>"] if lines else []
+
+
+def _actuator(scene: Scene, writing: Writing) -> list[str]:
+    """The servo, or the motor that follows a law other than constant speed."""
+    if not has_control(scene, writing):
+        return []
+    joint = {"name": "drive", "joint": driver_joint(scene)}
+    if writing.servo_gain is not None:
+        lines = [
+            "    <!-- control: angular velocity of the crank [rad/s] -->",
+            f"    <velocity{_attributes(joint | {'kv': writing.servo_gain})}/>",
+        ]
+    else:
+        lines = [
+            "    <!-- control: angular acceleration of the crank [rad/s^2] -->",
+            f"    <motor{_attributes(joint | {'gear': armature(scene, writing)})}/>",
+        ]
+    return ["  <actuator>", *lines, "  </actuator>"]
+
+
+def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
+    """The assembled state; joints count from the ground outwards, depth first, as MuJoCo does."""
+    freedoms = [f for limb in depth_first(tree) for f in limb.freedoms]
+    row: dict[str, str | float | int | Sequence[float]] = {
+        "name": "assembled",
+        "qpos": tuple(f.ref for f in freedoms),
+        "qvel": tuple(f.rate for f in freedoms),
+    }
+    if has_control(scene, writing):
+        link = scene.driver.link
+        servo = writing.servo_gain is not None
+        row["ctrl"] = state.omega[link] if servo else state.alpha[link]
+    return ["  <keyframe>", f"    <key{_attributes(row)}/>", "  </keyframe>"]
+
+
+def depth_first(tree: Tree, parent: str = GROUND) -> list[Limb]:
+    """The limbs in the order in which MuJoCo numbers them."""
+    ordered: list[Limb] = []
+    for limb in tree.limbs:
+        if limb.parent == parent:
+            ordered += [limb, *depth_first(tree, limb.body)]
+    return ordered
+
+
+def _attributes(row: Attributes) -> str:
+    """Attributes of an element; numbers in the shortest form that reads back as the same double."""
+    return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
+
+
+def _text(value: str | float | int | Sequence[float]) -> str:
+    """A value as MJCF text."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int | float):
+        return repr(value if isinstance(value, int) else float(value) + 0.0)
+    return " ".join(_text(number) for number in value)
+
+
+def _comment(text: str) -> str:
+    """Text that may stand in an XML comment."""
+    return escape(text).replace("--", "- -")

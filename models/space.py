@@ -1,0 +1,174 @@
+"""The pymunk space of a scene: a body per link, joints as constraints, no shapes.
+
+Bodies have their origin at the centre of gravity, as Chipmunk wants it; `Body.local` keeps where
+the link's own frame lies. The crank is a kinematic body on its pivot. A massless slider block is a
+groove that the point of its link runs in. A body that slides on the ground cannot turn: it gets an
+infinite moment; on a moving guide a gear of ratio 1 holds its angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import pymunk
+
+from models.errors import EngineError
+from models.joints import (
+    Joints,
+    Prism,
+    Slot,
+    bodies,
+    joints,
+    local_point,
+    sliding_angle,
+    turned,
+)
+from models.motion import State
+from models.poses import along, centre_of, frames, mass_of
+from models.scene import GROUND, Point, Scene, Slider
+
+
+@dataclass(frozen=True)
+class SpaceModel:
+    """A space, its moving bodies by name in the order they were added, and the crank.
+
+    ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
+    ``motor`` is the servo, where there is one.
+    """
+
+    space: pymunk.Space
+    bodies: Mapping[str, pymunk.Body]
+    centre: Mapping[str, Point]
+    crank: pymunk.Body
+    motor: pymunk.SimpleMotor | None
+
+
+def build(scene: Scene, state: State, *, servo: bool = False) -> SpaceModel:
+    """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
+
+    Raises
+    ------
+    EngineError
+        A link without mass that has to move freely, or a massless block that no body carries.
+    """
+    space = pymunk.Space()
+    space.gravity = scene.gravity_m_s2
+    held = joints(scene)
+    fixed_angle = {p.body for p in held.prisms if p.slider.on == GROUND}
+    where = frames(scene, state)
+    made: dict[str, pymunk.Body] = {GROUND: space.static_body}
+    centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
+    for name in bodies(scene):
+        kinematic = name == scene.driver.link and not servo
+        pivot = scene.driver_pivot
+        centre[name] = local_point(scene, name, pivot) if kinematic else centre_of(scene, name)
+        body = _body(scene, name, kinematic, name in fixed_angle)
+        body.position = where[name].at(centre[name])
+        body.angle = where[name].theta
+        body.velocity = where[name].velocity_at(body.position) if not kinematic else (0.0, 0.0)
+        body.angular_velocity = where[name].omega
+        made[name] = body
+        space.add(body)
+    motor = None
+    crank = made[scene.driver.link]
+    if servo:
+        motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
+        space.add(_plain(motor))
+    for constraint in _constraints(scene, state, held, made, centre, servo):
+        space.add(_plain(constraint))
+    del made[GROUND]
+    return SpaceModel(space, made, centre, crank, motor)
+
+
+def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
+    """A body with the mass of the scene."""
+    if kinematic:
+        return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    mass, inertia = mass_of(scene, name)
+    if mass <= 0.0 or (inertia <= 0.0 and not fixed_angle):
+        raise EngineError(
+            f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; pymunk moves no body without "
+            "both, give them"
+        )
+    return pymunk.Body(mass, math.inf if fixed_angle else inertia)
+
+
+def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
+    """The constraint without collision bookkeeping; there are no shapes."""
+    constraint.collide_bodies = False
+    return constraint
+
+
+def _constraints(
+    scene: Scene,
+    state: State,
+    held: Joints,
+    made: Mapping[str, pymunk.Body],
+    centre: Mapping[str, Point],
+    servo: bool,
+) -> list[pymunk.Constraint]:
+    """All pins and slides; the kinematic crank needs no pin to the ground."""
+
+    def anchor(body: str, local: Point) -> Point:
+        return local[0] - centre[body][0], local[1] - centre[body][1]
+
+    def on_body(body: str, point: str) -> Point:
+        return anchor(body, local_point(scene, body, point))
+
+    def pin(point: str, a: str, b: str) -> pymunk.Constraint:
+        return pymunk.PivotJoint(made[a], made[b], on_body(a, point), on_body(b, point))
+
+    found: list[pymunk.Constraint] = []
+    for joint in held.pins:
+        first, *others = _pinned_bodies(scene, joint.bodies)
+        for other in others:
+            driven = {first, other} == {GROUND, scene.driver.link} and not servo
+            if not (driven and joint.point == scene.driver_pivot):
+                found.append(pin(joint.point, first, other))
+    for slide in (*held.prisms, *held.slots):
+        slider, rider = slide.slider, _rider(slide)
+        ends = [anchor(slider.on, end) for end in _groove(scene, state, slider, rider)]
+        point = on_body(rider, slider.point)
+        found.append(pymunk.GrooveJoint(made[slider.on], made[rider], ends[0], ends[1], point))
+        if isinstance(slide, Prism) and slider.on != GROUND:
+            angle = sliding_angle(slider)
+            found.append(pymunk.GearJoint(made[slider.on], made[rider], angle, 1.0))
+    return found
+
+
+def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The bodies of a pin, immovable ones first, so that all others hang on the firmest."""
+    firm = {GROUND: 0, scene.driver.link: 1}
+    return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
+
+
+def _rider(slide: Prism | Slot) -> str:
+    """The body whose point runs in the groove."""
+    if isinstance(slide, Prism):
+        return slide.body
+    if not slide.bodies:
+        raise EngineError(
+            f"slider {slide.slider.name}: no body carries point {slide.slider.point}; give "
+            f"sliders.{slide.slider.name} a mass_kg above 0"
+        )
+    return slide.bodies[0]
+
+
+def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:
+    """Ends of a groove in the frame of the guide [m], far enough that no motion reaches them."""
+    where = frames(scene, state)
+    place = where[rider].at(local_point(scene, rider, slider.point))
+    now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
+    reach = 2.0 * sum(_reach(scene, name) for name in (GROUND, *scene.links))
+    u = turned((1.0, 0.0), slider.direction_rad)
+    a, b = now - reach, now + reach
+    x, y = slider.through_m
+    return (x + a * u[0], y + a * u[1]), (x + b * u[0], y + b * u[1])
+
+
+def _reach(scene: Scene, body: str) -> float:
+    """The largest distance between two points of a body [m]."""
+    places = list((scene.ground if body == GROUND else scene.links[body].points).values())
+    return max((math.dist(a, b) for a in places for b in places), default=0.0)

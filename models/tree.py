@@ -1,0 +1,244 @@
+"""A mechanism as a tree of bodies plus the pins that close its loops, for engines that need one.
+
+Which joints stay in the tree is chosen by Kruskal's rule with this priority: the driver's pin,
+then prismatic pairs and slots (an engine can close a loop at a pin, not at a slide), then ground
+pins, then the other pins in the order of the file; pins named in ``close`` come last. In a
+four-bar A B C D this closes the loop at C.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from models.errors import EngineError
+from models.joints import (
+    Prism,
+    Slot,
+    bodies,
+    joints,
+    local_point,
+    turned,
+)
+from models.motion import State
+from models.poses import Frame, along, frames
+from models.scene import GROUND, Point, Scene, Slider
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """One joint coordinate of a body in the tree.
+
+    ``anchor`` [m] (of a hinge) and ``axis_rad`` (of a slide, its direction) are in the body's own
+    frame; ``ref`` is the coordinate at the assembled state, so that the coordinate reads as the
+    angle of the body against its parent [rad] or as the displacement of the slider [m]; ``rate``
+    is its rate there.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    anchor: Point
+    axis_rad: float
+    ref: float
+    rate: float
+
+    @property
+    def axis(self) -> Point:
+        """Direction of a slide in the frame of the body, exact along the axes."""
+        return turned((1.0, 0.0), self.axis_rad)
+
+
+@dataclass(frozen=True)
+class Limb:
+    """A body of the tree: where it sits in its parent when assembled, and its joints in order."""
+
+    body: str
+    parent: str
+    offset: Point
+    angle_rad: float
+    freedoms: tuple[Freedom, ...]
+
+
+@dataclass(frozen=True)
+class Closure:
+    """A pin that closes a loop: both bodies carry the point."""
+
+    point: str
+    bodies: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Tree:
+    """The limbs, parents before children, and the pins that close the loops."""
+
+    limbs: tuple[Limb, ...]
+    closures: tuple[Closure, ...]
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """A joint that may stay in the tree."""
+
+    a: str
+    b: str
+    point: str
+    slider: Slider | None = None
+    turns: bool = True
+
+
+class _Groups:
+    """Which bodies are tied together already (union-find)."""
+
+    def __init__(self) -> None:
+        self._parent: dict[object, object] = {}
+
+    def root(self, item: object) -> object:
+        """The representative of the group of an item."""
+        while (parent := self._parent.get(item, item)) != item:
+            item = parent
+        return item
+
+    def join(self, a: object, b: object) -> bool:
+        """Tie two groups; False if they are one already."""
+        a, b = self.root(a), self.root(b)
+        if a == b:
+            return False
+        self._parent[b] = a
+        return True
+
+
+def plan(scene: Scene, state: State, close: Sequence[str] = ()) -> Tree:
+    """The tree of a scene at an assembled state, with the loops closed at pins.
+
+    Raises
+    ------
+    EngineError
+        A pin in ``close`` that does not exist or cannot close a loop; a slider that would have to
+        close a loop and so needs a mass; a body that hangs on nothing.
+    """
+    _check_close(scene, close)
+    together, at_point = _Groups(), _Groups()
+    edges: list[_Edge] = []
+    for choices in _choices(scene, close):
+        kept = next((e for e in choices if together.join(e.a, e.b)), None)
+        if kept is not None:
+            edges.append(kept)
+            if kept.slider is None:
+                at_point.join((kept.point, kept.a), (kept.point, kept.b))
+        elif choices[0].slider is not None:
+            raise EngineError(_needs_mass(choices[0].slider))
+    closures = _closures(scene, at_point)
+    for point in close:
+        if point not in {c.point for c in closures}:
+            able = ", ".join(dict.fromkeys(c.point for c in plan(scene, state).closures))
+            raise EngineError(
+                f"close = {point}: no loop of {scene.name} can be closed there; the default is {able}"
+            )
+    return Tree(_limbs(scene, state, edges), closures)
+
+
+def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
+    """The joints in order of priority; each entry lists equally good ways to hold one joint."""
+    pivot = scene.driver_pivot
+    yield [_Edge(GROUND, scene.driver.link, pivot)]
+    found = joints(scene)
+    for held in (*found.prisms, *found.slots):
+        yield _slides(held)
+    pairs = [
+        (pin.point, _Edge(a, b, pin.point))
+        for pin in found.pins
+        for i, a in enumerate(pin.bodies)
+        for b in pin.bodies[i + 1 :]
+    ]
+
+    def rank(pair: tuple[str, _Edge]) -> int:
+        return 2 if pair[0] in close else int(pair[1].a != GROUND)
+
+    for _, edge in sorted(pairs, key=rank):
+        yield [edge]
+
+
+def _slides(held: Prism | Slot) -> list[_Edge]:
+    """The ways to hold a slide."""
+    slider = held.slider
+    if isinstance(held, Prism):
+        return [_Edge(slider.on, held.body, slider.point, slider, turns=False)]
+    if not held.bodies:
+        raise EngineError(_needs_mass(slider))
+    return [_Edge(slider.on, body, slider.point, slider) for body in held.bodies]
+
+
+def _needs_mass(slider: Slider) -> str:
+    """The cure for a slide that would have to close a loop."""
+    return (
+        f"slider {slider.name}: a massless block cannot be held here, as MuJoCo closes loops only "
+        f"at pins; give sliders.{slider.name} a mass_kg above 0"
+    )
+
+
+def _check_close(scene: Scene, close: Sequence[str]) -> None:
+    """Refuse points to close at that are not pins, and the driver's own."""
+    pins = [pin.point for pin in joints(scene).pins]
+    for point in close:
+        if point not in pins or point == scene.driver_pivot:
+            able = ", ".join(p for p in pins if p != scene.driver_pivot)
+            raise EngineError(f"close = {point}: not a pin that can close a loop; one of {able}")
+
+
+def _closures(scene: Scene, at_point: _Groups) -> tuple[Closure, ...]:
+    """The pins that the tree leaves open: one closure between each two groups at a point."""
+    found = []
+    for pin in joints(scene).pins:
+        first = pin.bodies[0]
+        for body in pin.bodies[1:]:
+            if at_point.join((pin.point, first), (pin.point, body)):
+                found.append(Closure(pin.point, (first, body)))
+    return tuple(found)
+
+
+def _limbs(scene: Scene, state: State, edges: Sequence[_Edge]) -> tuple[Limb, ...]:
+    """The limbs, from the ground outwards."""
+    where = frames(scene, state)
+    placed, limbs = [GROUND], []
+    for parent in placed:  # grows as bodies are placed
+        for edge in edges:
+            child = {edge.a: edge.b, edge.b: edge.a}.get(parent)
+            if child is not None and child not in placed:
+                placed.append(child)
+                limbs.append(_limb(scene, where, edge, parent, child))
+    loose = [body for body in bodies(scene) if body not in placed]
+    if loose:
+        raise EngineError(f"{scene.name}: {', '.join(loose)} hangs on nothing; pin it to a link")
+    return tuple(limbs)
+
+
+def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child: str) -> Limb:
+    """One body against its parent, its joint written as one or two coordinates."""
+    base, body = where[parent], where[child]
+    angle = body.theta - base.theta
+    hinge = Freedom(f"{child}.{edge.point}", "hinge", (0.0, 0.0), 0.0, angle, body.omega - base.omega)
+    if edge.slider is None:
+        anchor = local_point(scene, child, edge.point)
+        arm = turned(anchor, angle)
+        pivot = local_point(scene, parent, edge.point)
+        offset = (pivot[0] - arm[0], pivot[1] - arm[1])
+        return Limb(child, parent, offset, angle, (_anchored(hinge, anchor),))
+    slider, guide = edge.slider, where[edge.slider.on]
+    rider = edge.b
+    place = where[rider].at(local_point(scene, rider, edge.point))
+    ref, rate = along(slider, guide, place, where[rider].velocity_at(place))
+    rides = child == rider  # else the child is the guide, and moves backwards under the rider
+    axis = slider.direction_rad + (-angle if rides else math.pi)
+    slide = Freedom(f"{child}.{slider.name}.slide", "slide", (0.0, 0.0), axis, ref, rate)
+    offset = base.into(body.origin)
+    if not edge.turns:
+        return Limb(child, parent, offset, angle, (slide,))
+    hinge = _anchored(hinge, body.into(place))
+    return Limb(child, parent, offset, angle, (slide, hinge) if rides else (hinge, slide))
+
+
+def _anchored(hinge: Freedom, anchor: Point) -> Freedom:
+    """The hinge at a point of the body."""
+    return Freedom(hinge.name, hinge.kind, anchor, 0.0, hinge.ref, hinge.rate)

@@ -1,0 +1,98 @@
+"""Motion of the bodies of a tree from its joint coordinates, vectorised over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.scene import GROUND, Point
+from models.tree import Freedom, Limb
+from sim.engine import BodyPose
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class _Moving:
+    """A frame over time while the joints of its body are applied; complex numbers for the plane."""
+
+    place: Array
+    theta: Array
+    speed: Array
+    omega: Array
+    push: Array
+    alpha: Array
+
+    def shifted(self, arm: Array) -> _Moving:
+        """The same body seen from a point ``arm`` away, an arm that turns with the body."""
+        turn = 1j * self.omega
+        return _Moving(
+            self.place + arm,
+            self.theta,
+            self.speed + turn * arm,
+            self.omega,
+            self.push + (1j * self.alpha - self.omega**2) * arm,
+            self.alpha,
+        )
+
+
+def body_poses(
+    limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array
+) -> Mapping[str, BodyPose]:
+    """Poses of all bodies.
+
+    Parameters
+    ----------
+    limbs : Sequence[Limb]
+        Parents before children; the columns of ``q`` follow their freedoms in this order.
+    q, rate, acceleration : Array
+        Joint coordinates, rates and accelerations [rad or m, per s, per s^2], shape (T, n).
+    """
+    still = np.zeros(len(q))
+    ground = still.astype(np.complex128)
+    moving = {GROUND: _Moving(ground, still, ground, still, ground, still)}
+    column = 0
+    for limb in limbs:
+        base = moving[limb.parent]
+        body = base.shifted(_arm(base.theta, limb.offset))
+        body.theta = body.theta + limb.angle_rad
+        for freedom in limb.freedoms:
+            shift = q[:, column] - freedom.ref
+            body = _moved(body, freedom, shift, rate[:, column], acceleration[:, column])
+            column += 1
+        moving[limb.body] = body
+    return {limb.body: _pose(moving[limb.body]) for limb in limbs}
+
+
+def _moved(body: _Moving, freedom: Freedom, shift: Array, rate: Array, push: Array) -> _Moving:
+    """The frame after one more joint coordinate."""
+    if freedom.kind == "hinge":
+        pivot = body.shifted(_arm(body.theta, freedom.anchor))
+        pivot.theta = pivot.theta + shift
+        pivot.omega = pivot.omega + rate
+        pivot.alpha = pivot.alpha + push
+        return pivot.shifted(-_arm(pivot.theta, freedom.anchor))
+    axis = _arm(body.theta, freedom.axis)
+    slid = body.shifted(axis * shift)
+    slid.speed = slid.speed + axis * rate
+    slid.push = slid.push + axis * push + 2j * body.omega * axis * rate
+    return slid
+
+
+def _arm(theta: Array, local: Point) -> Array:
+    """A vector of a body's frame in the plane."""
+    return np.asarray(np.exp(1j * theta) * complex(*local))
+
+
+def _pose(body: _Moving) -> BodyPose:
+    """The frame as real arrays."""
+
+    def pair(number: Array) -> Array:
+        return np.stack([number.real, number.imag], axis=-1)
+
+    return BodyPose(
+        pair(body.place), body.theta, pair(body.speed), body.omega, pair(body.push), body.alpha
+    )

@@ -1,0 +1,103 @@
+"""Before the first step: is the model in the engine the scene that was asked for?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.errors import EngineError
+from models.joints import bodies
+from models.motion import State
+from models.poses import Frame, frames, launched, mass_of
+from models.scene import Scene
+from sim.drive import start_speed
+from sim.engine import BodyPose, Drive, Facts
+from sim.measure import gaps
+
+SAME = 1e-9
+"""Relative difference that counts as none: rounding of a few operations, far below any error."""
+SHUT = 1e-12
+"""Loop gap at the start, over the longest link, that counts as assembled."""
+
+
+def refuse_other_model(
+    scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive
+) -> None:
+    """Raise EngineError, naming everything that differs, unless the engine holds the scene.
+
+    Compared are mass, inertia, gravity, position and angle of every body, loop gaps, and the
+    velocities at the instant that the engine's own belong to. A prescribed crank need not have a
+    mass, nor a body that cannot turn an inertia.
+    """
+    faults = [*_matter(scene, facts, drive), *_state(scene, state, facts, dt_s), *_gaps(scene, facts)]
+    if faults:
+        raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
+
+
+def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
+    """Differences of mass, inertia and gravity."""
+    for body in bodies(scene):
+        mass, inertia = mass_of(scene, body)
+        if body not in facts.mass_kg:
+            if body != scene.driver.link or drive != "prescribed":
+                yield f"{body} has no mass_kg"
+        elif not math.isclose(facts.mass_kg[body], mass, rel_tol=SAME):
+            yield f"{body} has mass_kg {facts.mass_kg[body]:g}, not {mass:g}"
+        held = facts.inertia_kg_m2.get(body, inertia)
+        if not math.isclose(held, inertia, rel_tol=SAME):
+            yield f"{body} has inertia_kg_m2 {held:g}, not {inertia:g}"
+    if math.dist(facts.gravity_m_s2, scene.gravity_m_s2) > SAME * math.hypot(*scene.gravity_m_s2):
+        yield f"gravity is {facts.gravity_m_s2}, not {scene.gravity_m_s2} m/s^2"
+
+
+def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[str]:
+    """Differences of position and velocity.
+
+    Angular velocities are compared at the engine's own instant. Velocities of origins there follow
+    from a chord in one engine and a tangent in another, so they may differ by half a step's
+    acceleration. The crank of a law other than constant speed starts with a chord of the law.
+    """
+    delay = facts.velocity_shift * dt_s
+    wanted = frames(scene, launched(state, delay))
+    law = scene.driver.law
+    crank = start_speed(law, state.time_s, dt_s, facts.velocity_shift)
+    slack = abs(crank - wanted[scene.driver.link].omega)
+    peak = max(law.peak_speed_rad_s, *(abs(w) for w in state.omega.values()))
+    length = _size(scene, state)
+    push = max(math.hypot(*a) for a in state.acceleration.values())
+    poses = facts.start.links | {
+        f"block {name}": pose for name, pose in facts.start.blocks.items()
+    }
+    for body in bodies(scene):
+        frame, pose = wanted[body], poses[body]
+        turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, math.tau))
+        if not turn <= SAME:
+            yield f"{body} stands at {pose.theta[0]:g} rad, not {frame.theta:g}"
+        yield from _place(body, pose, frame, length)
+        if not abs(pose.omega[0] - frame.omega) <= SAME * peak + 4.0 * slack:
+            yield f"{body} turns at {pose.omega[0]:g} rad/s, not {frame.omega:g}"
+        off = float(np.hypot(*(pose.velocity[0] - frame.velocity)))
+        if not off <= (SAME * peak + 4.0 * slack) * length + 2.0 * abs(delay) * push:
+            yield f"{body} moves at {pose.velocity[0]} m/s, not {frame.velocity}"
+
+
+def _place(body: str, pose: BodyPose, frame: Frame, length: float) -> Iterator[str]:
+    """A body whose frame is elsewhere."""
+    if not np.hypot(*(pose.origin[0] - frame.origin)) <= SAME * length:
+        yield f"{body} lies at {pose.origin[0]}, not {frame.origin} m"
+
+
+def _gaps(scene: Scene, facts: Facts) -> Iterator[str]:
+    """Joints that are open at the start."""
+    limit = SHUT * max(scene.longest_m, float(max(np.abs(p.origin).max() for p in
+                                                  facts.start.links.values())))
+    for name, gap in gaps(scene, facts.start).items():
+        if not gap[0] <= limit:
+            yield f"{name} is open by {gap[0]:.2e} m"
+
+
+def _size(scene: Scene, state: State) -> float:
+    """The longest length or coordinate [m], which rounding scales with."""
+    return max(scene.longest_m, *(math.hypot(*p) for p in state.position.values()))

@@ -1,0 +1,60 @@
+"""What an engine is told at each step so that the crank is where the law wants it at the samples.
+
+All rules are open loop: they follow from the law alone, and the engine's own arithmetic is exact
+for them up to rounding, because a crank that is heavy or kinematic does not feel the mechanism.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.laws import ConstantSpeed, Law
+
+Array = NDArray[np.float64]
+
+
+def angles(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
+    """Crank angle [rad] at the steps ``first`` to ``last``, both included."""
+    return law.at(start_s + dt_s * np.arange(first, last + 1))[0]
+
+
+def chords(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
+    """Mean angular velocity [rad/s] from each step to the next, for the steps ``first``..``last``."""
+    if isinstance(law, ConstantSpeed):
+        return np.full(last - first + 1, law.speed_rad_s)
+    return np.diff(angles(law, start_s, dt_s, first, last + 1)) / dt_s
+
+
+def start_speed(law: Law, start_s: float, dt_s: float, velocity_shift: float) -> float:
+    """Angular velocity [rad/s] that the crank starts with.
+
+    Half a step before or after the start (``velocity_shift`` -0.5 or 0.5) it is the chord. With
+    velocities at the samples (0) and a torque that is constant within a step, the speed that
+    makes the angles exact alternates about the law unless it starts theta''' dt^2 / 12 below it.
+    """
+    if isinstance(law, ConstantSpeed):
+        return law.speed_rad_s
+    if velocity_shift != 0.0:
+        first = 0 if velocity_shift > 0.0 else -1
+        return float(chords(law, start_s, dt_s, first, first)[0])
+    times = start_s + dt_s * np.array([-1.0, 0.0, 1.0])
+    _, omega, alpha = law.at(times)
+    return float(omega[1] - (alpha[2] - alpha[0]) / 2.0 * dt_s / 12.0)
+
+
+def pushes(law: Law, start_s: float, dt_s: float, steps: int, velocity_shift: float) -> Array:
+    """Angular acceleration [rad/s^2] of each of the ``steps`` from the start on.
+
+    Velocity before position (``velocity_shift`` -0.5): second differences of the angle. Constant
+    acceleration within the step (0): from theta' = theta + v dt + a dt^2 / 2, v' = v + a dt.
+    """
+    theta = angles(law, start_s, dt_s, -1, steps)
+    if velocity_shift != 0.0:
+        return np.diff(theta, 2) / dt_s**2
+    chord = np.diff(theta[1:]) / dt_s
+    sign = (-1.0) ** np.arange(steps)
+    start = start_speed(law, start_s, dt_s, velocity_shift)
+    before = np.concatenate([[0.0], np.cumsum(2.0 * sign * chord)[:-1]])
+    speed = sign * (start - before)
+    return 2.0 * (chord - speed) / dt_s

@@ -1,0 +1,344 @@
+"""MuJoCo: hinges and slides as joint coordinates, loops closed by soft `connect` constraints."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+from numpy.typing import NDArray
+
+from models import mjcf
+from models.errors import EngineError
+from models.joints import blocks
+from models.motion import State
+from models.poses import launched
+from models.scene import Scene
+from models.tree import plan
+from sim import drive as drives
+from sim.chain import body_poses
+from sim.engine import (
+    Drive,
+    Facts,
+    Log,
+    Poses,
+    Profile,
+    Setting,
+    SettingValue,
+)
+from sim.settings import SettingError
+
+Array = NDArray[np.float64]
+FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
+INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
+DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+AS_SHIPPED = Profile(
+    "as-shipped",
+    "mujoco",
+    "MuJoCo's own defaults",
+    {
+        "integrator": Setting("Euler", "default: semi-implicit Euler"),
+        "solver": Setting("Newton", "default"),
+        "iterations": Setting(100, "default"),
+        "tolerance": Setting(1e-8, "default; divided by flywheel_ratio, see the profile tuned"),
+        "solref_timeconst_s": Setting(0.02, "default: loops close with a time constant of 0.02 s"),
+        "solref_timeconst_steps": Setting(0.0, "not used: the time constant is given in seconds"),
+        "solref_dampratio": Setting(1.0, "default: critical damping"),
+        "solimp_dmin": Setting(0.9, "default: constraints give way by 10 % at no gap"),
+        "solimp_dmax": Setting(0.95, "default: and by 5 % at gaps over the width"),
+        "solimp_width": Setting(0.001, "default [m]"),
+        "islands": Setting("enable", "default"),
+        "close": Setting("", "the pins that `models.tree` chooses; names with commas between"),
+        "flywheel_ratio": Setting(mjcf.FLYWHEEL_RATIO, "the drive, not an engine default"),
+        "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
+    },
+)
+TUNED = Profile(
+    "tuned",
+    "mujoco",
+    "Fourth-order steps and loops as stiff as the step allows",
+    dict(AS_SHIPPED.settings)
+    | {
+        "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
+        "tolerance": Setting(
+            0.0,
+            "the stopping rule is scaled by the inertia of the whole model, and the flywheel makes "
+            "it stop before the first iteration; Newton needs one",
+        ),
+        "solref_timeconst_steps": Setting(
+            4.0,
+            "4 dt: at 2 dt (the least MuJoCo allows) RK4 resolves the closing spring badly, above "
+            "5 dt the soft constraint gives way more; measured on the four-bar at 1e-3 s",
+        ),
+        "solimp_dmin": Setting(0.9999, "the most MuJoCo allows: give way by 0.01 % only"),
+        "solimp_dmax": Setting(0.9999, "as dmin: no dependence on the gap"),
+        "islands": Setting("disable", "one loop system: 10 % faster, same numbers"),
+    },
+)
+
+
+class MujocoEngine:
+    """The adapter."""
+
+    name = "mujoco"
+    profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
+
+    def version(self) -> str:
+        """The version of the C library."""
+        return str(mujoco.mj_versionString())
+
+    def open(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> MujocoSession:
+        """A session at ``state``; EngineError where MuJoCo cannot hold the scene."""
+        return MujocoSession(scene, state, settings, dt_s, drive)
+
+
+ENGINE = MujocoEngine()
+
+
+def writing(
+    scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
+) -> mjcf.Writing:
+    """The choices of the MJCF text that the settings amount to."""
+    integrator = str(settings["integrator"])
+    if integrator not in INTEGRATORS:
+        raise SettingError(
+            f"setting integrator: found {integrator!r}; use one of {', '.join(INTEGRATORS)}"
+        )
+    ratio = float(settings["flywheel_ratio"])
+    tolerance = float(settings["tolerance"])
+    servo = None
+    if drive == "servo":
+        scale = mjcf.inertia_scale(scene) * scene.driver.law.peak_speed_rad_s
+        servo = float(settings["servo_gain"]) * scale
+    steps = float(settings["solref_timeconst_steps"])
+    timeconst = steps * dt_s if steps else float(settings["solref_timeconst_s"])
+    dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
+    return mjcf.Writing(
+        close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
+        option={
+            "timestep": dt_s,
+            "integrator": integrator,
+            "solver": str(settings["solver"]),
+            "iterations": int(settings["iterations"]),
+            "tolerance": tolerance / ratio if servo is None else tolerance,
+        },
+        flag={"island": str(settings["islands"])},
+        connect={
+            "solref": (timeconst, float(settings["solref_dampratio"])),
+            "solimp": (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0),
+        },
+        flywheel_ratio=ratio,
+        servo_gain=servo,
+    )
+
+
+def text(
+    scene: Scene,
+    state: State,
+    settings: Mapping[str, SettingValue],
+    dt_s: float,
+    drive: Drive = "prescribed",
+) -> str:
+    """The MJCF text that a run with these settings loads."""
+    return mjcf.build(scene, state, writing(scene, settings, dt_s, drive))
+
+
+class MujocoSession:
+    """One model in MuJoCo. Velocities of all integrators but RK4 lag by half a step."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> None:
+        self._scene, self._dt, self._settings = scene, dt_s, settings
+        self._start_s, self._done = state.time_s, 0
+        self._shift = 0.0 if settings["integrator"] == "RK4" else -0.5
+        chosen = writing(scene, settings, dt_s, drive)
+        start = launched(state, self._shift * dt_s)
+        self._limbs = mjcf.depth_first(plan(scene, start, chosen.close))
+        self._warnings: list[str] = []
+        with self._quiet():
+            self._model = _compiled(mjcf.build(scene, start, chosen))
+        self._data = mujoco.MjData(self._model)
+        mujoco.mj_resetDataKeyframe(self._model, self._data, 0)
+        self._servo = chosen.servo_gain is not None
+        self._controlled = mjcf.has_control(scene, chosen)
+        crank = self._model.joint(mjcf.driver_joint(scene)).dofadr[0]
+        law = scene.driver.law
+        self._data.qvel[crank] = drives.start_speed(law, state.time_s, dt_s, self._shift)
+        self._pushes = np.empty(0)
+        with self._quiet():
+            mujoco.mj_forward(self._model, self._data)
+
+    def facts(self) -> Facts:
+        """The model as MuJoCo holds it now."""
+        model = self._model
+        names = [limb.body for limb in self._limbs]
+        opt = model.opt
+        held: dict[str, SettingValue] = dict(self._settings) | {
+            "timestep_s": float(opt.timestep),
+            "tolerance": float(opt.tolerance),
+            "iterations": int(opt.iterations),
+            "integrator": INTEGRATORS[int(opt.integrator)],
+        }
+        if model.neq:
+            held["solref_timeconst_s"] = float(model.eq_solref[0, 0])
+            held["solref_dampratio"] = float(model.eq_solref[0, 1])
+        return Facts(
+            version=ENGINE.version(),
+            mass_kg={n: float(model.body(n).mass[0]) for n in names},
+            inertia_kg_m2={n: float(model.body(n).inertia[2]) for n in names},
+            gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
+            start=self.read(),
+            settings=held,
+            velocity_shift=self._shift,
+            acceleration_shift=0.0,
+        )
+
+    def step(self, steps: int) -> None:
+        """Advance in C without logging."""
+        if not steps:
+            return
+        with self._quiet():
+            if self._controlled:
+                self._roll(steps)
+            else:
+                mujoco.mj_step(self._model, self._data, steps)
+        self._done += steps
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance in C, log every step, keep every ``every``-th."""
+        first = self._full_state()[None]
+        began = time.perf_counter()
+        with self._quiet():
+            states = self._roll(steps)
+        wall = time.perf_counter() - began
+        kept = np.concatenate([first, states[every - 1 :: every]])
+        at = self._done + every * np.arange(len(kept))
+        good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
+        good &= np.isfinite(kept).all(axis=1)
+        diverged = any(self._data.warning[kind].number for kind in DIVERGED)
+        count = len(kept) if good.all() else int(np.argmin(good))
+        with self._quiet():
+            poses = self._poses(kept[:count], at[:count])
+        self._done += steps
+        return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
+
+    def read(self) -> Poses:
+        """The current state."""
+        with self._quiet():
+            return self._poses(self._full_state()[None], np.array([self._done]))
+
+    def taken(self) -> tuple[str, ...]:
+        """The warnings so far, each once."""
+        return tuple(dict.fromkeys(self._warnings))
+
+    def _roll(self, steps: int) -> Array:
+        """States after each of the next steps, (steps, n)."""
+        warm = self._data.qacc_warmstart[None].copy()
+        control = self._controls(steps)
+        given: dict[str, Any] = {} if control is None else {"control": control[None, :, None]}
+        states, _ = rollout.rollout(
+            self._model,
+            self._data,
+            self._full_state()[None],
+            nstep=steps,
+            initial_warmstart=warm,
+            **given,
+        )
+        return np.asarray(states[0])
+
+    def _controls(self, steps: int) -> Array | None:
+        """The control of each of the next steps; None where the model has no actuator."""
+        if not self._controlled:
+            return None
+        law, end = self._scene.driver.law, self._done + steps
+        if self._servo:
+            times = self._start_s + self._dt * np.arange(self._done, end)
+            return law.at(times)[1]
+        if len(self._pushes) < end + 1:
+            longer = max(end + 1, 2 * len(self._pushes))
+            self._pushes = drives.pushes(law, self._start_s, self._dt, longer, self._shift)
+        return self._pushes[self._done : end]
+
+    def _full_state(self) -> Array:
+        """Time, positions and velocities as MuJoCo stores them."""
+        state = np.empty(mujoco.mj_stateSize(self._model, FULL))
+        mujoco.mj_getState(self._model, self._data, state, FULL)
+        return state
+
+    def _poses(self, states: Array, at: NDArray[np.int64]) -> Poses:
+        """Poses of logged states; accelerations are those of `mj_forward` at each state."""
+        nq, nv = self._model.nq, self._model.nv
+        q, rate = states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
+        found = body_poses(self._limbs, q, rate, self._accelerations(states, at))
+        held = blocks(self._scene)
+        return Poses(
+            time_s=self._start_s + self._dt * at,
+            links={name: found[name] for name in self._scene.links},
+            blocks={slider.name: found[body] for body, slider in held.items()},
+        )
+
+    def _accelerations(self, states: Array, at: NDArray[np.int64]) -> Array:
+        """Joint accelerations of the states (T, nv), computed on a copy of the data."""
+        model, data = self._model, mujoco.MjData(self._model)
+        found = np.empty((len(states), model.nv))
+        control = self._control_at(at)
+        for row, state in enumerate(states):
+            mujoco.mj_setState(model, data, state, FULL)
+            if control is not None:
+                data.ctrl[0] = control[row]
+            mujoco.mj_forward(model, data)
+            found[row] = data.qacc
+            data.qacc_warmstart[:] = data.qacc
+        return found
+
+    def _control_at(self, at: NDArray[np.int64]) -> Array | None:
+        """The law's own speed or acceleration at the steps, for the actuator."""
+        if not self._controlled:
+            return None
+        _, omega, alpha = self._scene.driver.law.at(self._start_s + self._dt * at)
+        return omega if self._servo else alpha
+
+    @contextmanager
+    def _quiet(self) -> Iterator[None]:
+        """Collect MuJoCo's warnings instead of printing them and writing MUJOCO_LOG.TXT."""
+        before = mujoco.get_mju_user_warning()
+        mujoco.set_mju_user_warning(self._warnings.append)
+        try:
+            yield
+        finally:
+            mujoco.set_mju_user_warning(before)
+
+
+def _compiled(xml: str) -> Any:
+    """The compiled model. Raises EngineError with MuJoCo's own words."""
+    try:
+        return mujoco.MjModel.from_xml_string(xml)
+    except ValueError as error:
+        raise EngineError(f"MuJoCo refuses the model: {error}") from error
+
+
+def closed_at(scene: Scene, state: State, close: Sequence[str] = ()) -> tuple[str, ...]:
+    """The pins that close the loops."""
+    return tuple(closure.point for closure in plan(scene, state, close).closures)

@@ -1,0 +1,235 @@
+"""pymunk (Chipmunk): every joint an impulse constraint, solved by iteration at each step."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+
+import numpy as np
+import pymunk
+import pymunk.batch
+from numpy.typing import NDArray
+
+from models.joints import block_name, blocks
+from models.laws import ConstantSpeed
+from models.motion import State
+from models.poses import launched
+from models.scene import Scene
+from models.space import SpaceModel, build
+from sim import drive as drives
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, SettingValue
+
+Array = NDArray[np.float64]
+FIELDS = (
+    pymunk.batch.BodyFields.POSITION
+    | pymunk.batch.BodyFields.ANGLE
+    | pymunk.batch.BodyFields.VELOCITY
+    | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+)
+WIDTH = 6
+"""Numbers per body: x, y, angle, vx, vy, omega."""
+VELOCITY_SHIFT = 0.5
+"""Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
+
+AS_SHIPPED = Profile(
+    "as-shipped",
+    "pymunk",
+    "pymunk's own defaults",
+    {
+        "iterations": Setting(10, "default"),
+        "error_bias": Setting(
+            (1.0 - 0.1) ** 60.0, "default: a joint error loses 10 % in 1/60 s, so errors fall as dt"
+        ),
+        "damping": Setting(1.0, "default: none"),
+    },
+)
+TUNED = Profile(
+    "tuned",
+    "pymunk",
+    "Joint errors removed within the step",
+    {
+        "iterations": Setting(100, "error_bias matters only as far as the iteration converges"),
+        "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
+        "damping": Setting(1.0, "none"),
+    },
+)
+
+
+class PymunkEngine:
+    """The adapter."""
+
+    name = "pymunk"
+    profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
+
+    def version(self) -> str:
+        """The version of pymunk."""
+        return str(pymunk.version)
+
+    def open(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> PymunkSession:
+        """A session at ``state``; EngineError where pymunk cannot hold the scene."""
+        return PymunkSession(scene, state, settings, dt_s, drive)
+
+
+ENGINE = PymunkEngine()
+
+
+class PymunkSession:
+    """One space."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> None:
+        self._scene, self._dt, self._settings = scene, dt_s, settings
+        self._start_s, self._done = state.time_s, 0
+        start = launched(state, VELOCITY_SHIFT * dt_s)
+        self._model: SpaceModel = build(scene, start, servo=drive == "servo")
+        self._space = self._model.space
+        self._space.iterations = int(settings["iterations"])
+        self._space.damping = float(settings["damping"])
+        for constraint in self._space.constraints:
+            constraint.error_bias = float(settings["error_bias"])
+        law = scene.driver.law
+        self._constant = isinstance(law, ConstantSpeed)
+        first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
+        self._model.crank.angular_velocity = first
+        self._buffer = pymunk.batch.Buffer()
+        self._rows = _rows(self._model)
+
+    def facts(self) -> Facts:
+        """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
+        free = {
+            name: body
+            for name, body in self._model.bodies.items()
+            if body.body_type == pymunk.Body.DYNAMIC
+        }
+        space = self._space
+        first = next(iter(space.constraints))
+        return Facts(
+            version=ENGINE.version(),
+            mass_kg={n: b.mass for n, b in free.items()},
+            inertia_kg_m2={n: b.moment for n, b in free.items() if math.isfinite(b.moment)},
+            gravity_m_s2=(space.gravity[0], space.gravity[1]),
+            start=self.read(),
+            settings=dict(self._settings)
+            | {
+                "timestep_s": self._dt,
+                "iterations": int(space.iterations),
+                "damping": float(space.damping),
+                "error_bias": float(first.error_bias),
+            },
+            velocity_shift=VELOCITY_SHIFT,
+            acceleration_shift=0.0,
+        )
+
+    def step(self, steps: int) -> None:
+        """Advance without logging."""
+        self._advance(steps, 0)
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance; one batch call per logged step appends all bodies to one buffer."""
+        self._buffer.clear()
+        at = self._done + every * np.arange(steps // every + 1)
+        began = time.perf_counter()
+        self._log()
+        self._advance(steps, every)
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        wall = time.perf_counter() - began
+        rows = rows.reshape(len(at), -1, WIDTH)
+        good = np.isfinite(rows).all(axis=(1, 2))
+        count = len(at) if good.all() else int(np.argmin(good))
+        poses = self._poses(rows[:count], at[:count])
+        return Log(poses, (count - 1) * every, count < len(at), (), wall)
+
+    def read(self) -> Poses:
+        """The current state."""
+        self._buffer.clear()
+        self._log()
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        return self._poses(rows.reshape(1, -1, WIDTH), np.array([self._done]))
+
+    def _log(self) -> None:
+        """Append the current state of all bodies to the buffer."""
+        pymunk.batch.get_space_bodies(self._space, FIELDS, self._buffer)
+
+    def _advance(self, steps: int, every: int) -> None:
+        """Step; log after every ``every``-th step, or never if it is 0."""
+        step, dt = self._space.step, self._dt
+        crank, motor = self._model.crank, self._model.motor
+        if self._constant and not every:
+            for _ in range(steps):
+                step(dt)
+            self._done += steps
+            return
+        log, buffer, space = pymunk.batch.get_space_bodies, self._buffer, self._space
+        if self._constant:
+            for _ in range(steps // every):
+                for _ in range(every):
+                    step(dt)
+                log(space, FIELDS, buffer)
+            for _ in range(steps % every):
+                step(dt)
+            self._done += steps
+            return
+        law, first = self._scene.driver.law, self._done + 1
+        theta = drives.angles(law, self._start_s, dt, first, first + steps - 1)
+        chord = drives.chords(law, self._start_s, dt, first, first + steps - 1)
+        for k, (angle, speed) in enumerate(zip(theta.tolist(), chord.tolist(), strict=True), 1):
+            if motor is not None:
+                motor.rate = speed
+            else:  # the step turns the crank by speed * dt to `angle`, then others see `speed`
+                crank.angle = angle - speed * dt
+                crank.angular_velocity = speed
+            step(dt)
+            if every and k % every == 0:
+                log(space, FIELDS, buffer)
+        self._done += steps
+
+    def _poses(self, rows: Array, at: NDArray[np.int64]) -> Poses:
+        """Poses of the links' own frames from the bodies' centres of gravity."""
+        found = {
+            name: _pose(rows[:, row], self._model.centre[name]) for name, row in self._rows.items()
+        }
+        held = blocks(self._scene)
+        return Poses(
+            time_s=self._start_s + self._dt * at,
+            links={name: found[name] for name in self._scene.links},
+            blocks={s.name: found[block_name(s)] for s in held.values()},
+        )
+
+
+def _rows(model: SpaceModel) -> dict[str, int]:
+    """Which row of a batch belongs to which body; the static body of the space has one too."""
+    buffer = pymunk.batch.Buffer()
+    pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
+    order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
+    return {name: order.index(body.id) for name, body in model.bodies.items()}
+
+
+def _pose(row: Array, centre: tuple[float, float]) -> BodyPose:
+    """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
+    theta, omega = row[:, 2], row[:, 5]
+    c, s = np.cos(theta), np.sin(theta)
+    arm = np.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]], axis=-1)
+    across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+    none = np.full(len(theta), np.nan)
+    return BodyPose(
+        origin=row[:, 0:2] - arm,
+        theta=theta,
+        velocity=row[:, 3:5] - omega[:, None] * across,
+        omega=omega,
+        origin_acceleration=np.full((len(theta), 2), np.nan),
+        alpha=none,
+    )

@@ -1,0 +1,65 @@
+"""The engines by name; an engine's package is imported only when the engine is asked for."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+from models.errors import EngineError
+from sim.engine import Engine
+
+ENGINES: Mapping[str, str] = {
+    "mujoco": "sim.mujoco_engine",
+    "pymunk": "sim.pymunk_engine",
+}
+"""Name to module; each module has an ``ENGINE``. To add an engine, add a file and a line here."""
+
+
+@dataclass(frozen=True)
+class Availability:
+    """Whether an engine can be used here: its version, or the command that installs it."""
+
+    name: str
+    version: str | None
+    install: str
+
+
+def engine(name: str) -> Engine:
+    """The engine of that name.
+
+    Raises
+    ------
+    EngineError
+        No such engine (the message suggests near names), or its package is not installed.
+    """
+    if name not in ENGINES:
+        near = difflib.get_close_matches(name, ENGINES, n=2, cutoff=0.4)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(ENGINES)}"
+        raise EngineError(f"engine {name!r}: unknown; {hint}")
+    try:
+        module = importlib.import_module(ENGINES[name])
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.split(".")[0] != name:
+            raise
+        raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
+    return cast(Engine, module.ENGINE)
+
+
+def install_command(name: str) -> str:
+    """The command that installs an engine's package."""
+    return f"pip install {name}"
+
+
+def available() -> tuple[Availability, ...]:
+    """All engines, installed or not."""
+    found = []
+    for name in ENGINES:
+        try:
+            version: str | None = engine(name).version()
+        except EngineError:
+            version = None
+        found.append(Availability(name, version, install_command(name)))
+    return tuple(found)

@@ -1,0 +1,250 @@
+"""Run one scene in one engine, and time it."""
+
+from __future__ import annotations
+
+import gc
+import statistics
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.errors import EngineError
+from models.motion import State
+from models.scene import Scene
+from sim.check import refuse_other_model
+from sim.engine import (
+    BodyPose,
+    Cost,
+    Drive,
+    Engine,
+    Facts,
+    Log,
+    Poses,
+    Run,
+    Session,
+    SettingValue,
+    Status,
+)
+from sim.measure import gaps, motion
+from sim.registry import engine as engine_of
+from sim.settings import SettingError, profile_of, resolved
+
+Array = NDArray[np.float64]
+LEAST_STEPS_PER_PERIOD = 8
+CHUNK_STEPS = 4000
+"""Steps between two looks at whether the run has diverged."""
+RUNAWAY = 1e6
+"""Angular velocity over the driver's peak speed that counts as diverged."""
+
+
+def run(
+    scene: Scene,
+    state: State,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    steps: int,
+    every: int = 1,
+    drive: Drive = "prescribed",
+    settings: Mapping[str, SettingValue] | None = None,
+) -> Run:
+    """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
+
+    Returns
+    -------
+    Run
+        Also for a scene that the engine cannot hold (status ``unsupported``), a run that came
+        apart (``diverged``, stopped early) and an engine that failed (``crashed``), with a reason.
+
+    Raises
+    ------
+    EngineError
+        An unknown engine, profile or setting, a missing package, a step that is not positive or
+        leaves under 8 steps in a period, or a model in the engine that is not the scene.
+    """
+    chosen = engine_of(engine) if isinstance(engine, str) else engine
+    held = resolved(profile_of(chosen, profile), settings)
+    _check_steps(scene, dt_s, steps, every)
+    blank = Run(
+        scene.name, chosen.name, chosen.version(), profile, drive, dt_s, "ok", "", settings=held
+    )
+    try:
+        session = chosen.open(scene, state, held, dt_s, drive)
+    except SettingError:
+        raise
+    except EngineError as error:
+        return replace(blank, status="unsupported", reason=str(error))
+    facts = session.facts()
+    refuse_other_model(scene, state, facts, dt_s, drive)
+    return _recorded(replace(blank, settings=facts.settings), scene, session, facts, steps, every)
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall times [s] of several repeats of the same ``steps``; logging is part when ``logged``."""
+
+    walls_s: tuple[float, ...]
+    steps: int
+    logged: bool
+
+    @property
+    def best(self) -> Cost:
+        """The fastest repeat: the one that was disturbed least."""
+        return Cost(min(self.walls_s), self.steps, self.logged)
+
+    @property
+    def median(self) -> Cost:
+        """The middle repeat."""
+        return Cost(statistics.median(self.walls_s), self.steps, self.logged)
+
+
+def time_run(
+    scene: Scene,
+    state: State,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    steps: int,
+    every: int = 0,
+    repeats: int = 5,
+    drive: Drive = "prescribed",
+    settings: Mapping[str, SettingValue] | None = None,
+) -> Timing:
+    """Time the stepping alone, or with logging where ``every`` is above 0.
+
+    Each repeat opens a new session and steps it warm first; the collector is off meanwhile.
+    Raises EngineError as `run` does, and for a scene that the engine cannot hold.
+    """
+    chosen = engine_of(engine) if isinstance(engine, str) else engine
+    held = resolved(profile_of(chosen, profile), settings)
+    _check_steps(scene, dt_s, steps, max(every, 1))
+    walls = []
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for _ in range(repeats):
+            session = chosen.open(scene, state, held, dt_s, drive)
+            session.step(max(steps // 10, 1))
+            walls.append(_wall(session, steps, every))
+    finally:
+        if collecting:
+            gc.enable()
+    return Timing(tuple(walls), steps, logged=every > 0)
+
+
+def _wall(session: Session, steps: int, every: int) -> float:
+    """Wall time of the steps [s]."""
+    if every:
+        return sum(session.record(n, every).wall_s for n in _chunks(steps, every))
+    began = time.perf_counter()
+    session.step(steps)
+    return time.perf_counter() - began
+
+
+def _chunks(steps: int, every: int) -> list[int]:
+    """Lengths of the stretches, each a multiple of ``every`` but the last."""
+    chunk = max(CHUNK_STEPS // every, 1) * every
+    return [min(chunk, steps - done) for done in range(0, steps, chunk)]
+
+
+def _check_steps(scene: Scene, dt_s: float, steps: int, every: int) -> None:
+    """Refuse steps that mean nothing."""
+    if not (np.isfinite(dt_s) and dt_s > 0.0):
+        raise EngineError(f"dt: found {dt_s:g} s; it takes a step above 0")
+    period = scene.driver.law.period_s
+    if period / dt_s < LEAST_STEPS_PER_PERIOD * (1 - 1e-12):
+        raise EngineError(
+            f"dt: {dt_s:g} s leaves {period / dt_s:.2g} steps in a period of {period:.4g} s of "
+            f"{scene.name}; at least {LEAST_STEPS_PER_PERIOD} are needed, so dt up to "
+            f"{period / LEAST_STEPS_PER_PERIOD:.3g} s"
+        )
+    if steps < 1 or every < 1:
+        raise EngineError(f"steps: found {steps}, logged every {every}; both are at least 1")
+
+
+def _recorded(
+    blank: Run, scene: Scene, session: Session, facts: Facts, steps: int, every: int
+) -> Run:
+    """The run, chunk by chunk, until its end or until it comes apart."""
+    logs: list[Poses] = []
+    warnings: list[str] = []
+    wall, done = 0.0, 0
+    status: Status = "ok"
+    reason = ""
+    for count in _chunks(steps, every):
+        try:
+            log = session.record(count, every)
+        except Exception as error:  # whatever an engine throws is a row of the result
+            status, reason = "crashed", f"{type(error).__name__}: {error}"
+            break
+        wall, done = wall + log.wall_s, done + count
+        warnings += [w for w in log.warnings if w not in warnings]
+        sound, fault = _sound(scene, log)
+        logs.append(_first(log.poses, sound, 1 if logs else 0))
+        if fault:
+            status, reason = "diverged", fault
+            break
+    poses = _joined(logs) if logs else facts.start
+    return replace(
+        blank,
+        status=status,
+        reason=reason,
+        motion=motion(scene, poses),
+        gaps=gaps(scene, poses),
+        velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
+        acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
+        stopped_at_s=float(poses.time_s[-1]),
+        warnings=tuple(warnings),
+        cost=Cost(wall, done, logged=True),
+    )
+
+
+def _sound(scene: Scene, log: Log) -> tuple[int, str]:
+    """How many samples of a log hold together, and what came apart after them.
+
+    A joint that is open by more than the longest link, or a link that spins a million times
+    faster than the driver, is not a mechanism any more.
+    """
+    poses = log.poses
+    open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in gaps(scene, poses).values()], axis=0)
+    spin = np.max([np.abs(pose.omega) for pose in poses.links.values()], axis=0)
+    bad = ~(open_by <= scene.longest_m)
+    bad |= ~(spin <= RUNAWAY * scene.driver.law.peak_speed_rad_s)
+    count = int(np.argmax(bad)) if bad.any() else len(bad)
+    if count == len(bad) and not log.diverged:
+        return count, ""
+    when = float(poses.time_s[min(count, len(bad) - 1)])
+    return max(count, 1), f"came apart at {when:.6g} s; take a smaller dt or another profile"
+
+
+def _first(poses: Poses, count: int, skip: int) -> Poses:
+    """The samples ``skip`` to ``count``."""
+
+    def cut(body: BodyPose) -> BodyPose:
+        return BodyPose(**{name: array[skip:count] for name, array in vars(body).items()})
+
+    return Poses(
+        poses.time_s[skip:count],
+        {name: cut(body) for name, body in poses.links.items()},
+        {name: cut(body) for name, body in poses.blocks.items()},
+    )
+
+
+def _joined(logs: Sequence[Poses]) -> Poses:
+    """Stretches of samples one after the other."""
+
+    def join(bodies: Sequence[BodyPose]) -> BodyPose:
+        return BodyPose(
+            **{name: np.concatenate([vars(b)[name] for b in bodies]) for name in vars(bodies[0])}
+        )
+
+    return Poses(
+        np.concatenate([log.time_s for log in logs]),
+        {name: join([log.links[name] for log in logs]) for name in logs[0].links},
+        {name: join([log.blocks[name] for log in logs]) for name in logs[0].blocks},
+    )

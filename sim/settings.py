@@ -1,0 +1,59 @@
+"""Settings of a run: those of a profile, overridden one by one."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+
+from models.errors import EngineError
+from sim.engine import Engine, Profile, SettingValue
+
+
+class SettingError(EngineError):
+    """A setting that an engine lacks, or a value that it does not take."""
+
+
+def profile_of(engine: Engine, name: str) -> Profile:
+    """The profile of that name. Raises EngineError that names the profiles there are."""
+    if name in engine.profiles:
+        return engine.profiles[name]
+    raise EngineError(
+        f"profile {name!r}: {engine.name} has none of that name; use {' or '.join(engine.profiles)}"
+    )
+
+
+def resolved(
+    profile: Profile, overrides: Mapping[str, SettingValue] | None
+) -> dict[str, SettingValue]:
+    """All settings of a profile, with some replaced.
+
+    Raises
+    ------
+    SettingError
+        A setting that the engine lacks, or a value of another kind than the profile's.
+    """
+    settings = {name: setting.value for name, setting in profile.settings.items()}
+    for name, value in (overrides or {}).items():
+        if name not in settings:
+            near = difflib.get_close_matches(name, settings, n=1, cutoff=0.6)
+            hint = f"did you mean {near[0]}? " if near else ""
+            raise SettingError(
+                f"setting {name!r}: {profile.engine} has none of that name; {hint}"
+                f"it has {', '.join(settings)}"
+            )
+        settings[name] = _like(name, value, settings[name])
+    return settings
+
+
+def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
+    """The value as the type of the profile's own."""
+    kind = type(model)
+    try:
+        converted = kind(value)
+        exact = isinstance(value, str) or float(converted) == float(value)
+    except ValueError:
+        exact = False
+    if exact and not (kind is not str and isinstance(value, str) and not value.strip()):
+        return converted
+    need = {int: "a whole number", float: "a number", str: "text"}[kind]
+    raise SettingError(f"setting {name}: found {value!r}; it takes {need}, such as {model!r}")
