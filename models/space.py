@@ -4,6 +4,11 @@ Bodies have their origin at the centre of gravity, as Chipmunk wants it; `Body.l
 the link's own frame lies. The crank is a kinematic body on its pivot. A massless slider block is a
 groove that the point of its link runs in. A body that slides on the ground cannot turn: it gets an
 infinite moment; on a moving guide a gear of ratio 1 holds its angle.
+
+Chipmunk's groove solves for both components of the impulse and then drops the one along the line.
+Unless the bodies answer to a push along the line with a motion along the line, the sliding speed
+leaks into the constraint: the point leaves its line, by an error of first order in the step, and a
+slider-crank with a massless piston comes apart. ``lines="exact"`` puts a `Rail` there instead.
 """
 
 from __future__ import annotations
@@ -11,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import pymunk
 
@@ -29,6 +35,43 @@ from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider
 
+Lines = Literal["groove", "exact"]
+
+
+@dataclass(frozen=True)
+class Rail:
+    """A point held on a line by a pin joint whose far end moves along with the point.
+
+    The far end stands across the line from the point, at a fixed distance, in the frame of the
+    guide; it is set between the position and the velocity half of each step. Unlike the groove this
+    is one scalar constraint, across the line.
+    """
+
+    rider: pymunk.Body
+    guide: pymunk.Body
+    anchor: Point
+    start: Point
+    along: Point
+    arm: float
+
+    def joint(self) -> pymunk.PinJoint:
+        """The pin joint, set for the present positions."""
+        joint = pymunk.PinJoint(self.guide, self.rider, (0.0, 0.0), self.anchor)
+        joint.distance = self.arm
+        self.follow(joint, None)
+        joint.pre_solve = self.follow
+        return joint
+
+    def follow(self, joint: pymunk.Constraint, _space: pymunk.Space | None) -> None:
+        """Bring the far end level with the point."""
+        place = self.guide.world_to_local(self.rider.local_to_world(self.anchor))
+        (ux, uy), (x, y) = self.along, self.start
+        s = (place[0] - x) * ux + (place[1] - y) * uy
+        joint.anchor_a = (  # type: ignore[attr-defined]  # pre_solve types it as any constraint
+            x + s * ux - self.arm * uy,
+            y + s * uy + self.arm * ux,
+        )
+
 
 @dataclass(frozen=True)
 class SpaceModel:
@@ -45,8 +88,13 @@ class SpaceModel:
     motor: pymunk.SimpleMotor | None
 
 
-def build(scene: Scene, state: State, *, servo: bool = False) -> SpaceModel:
+def build(
+    scene: Scene, state: State, *, servo: bool = False, lines: Lines = "exact"
+) -> SpaceModel:
     """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
+
+    ``lines`` says what holds points on lines: Chipmunk's ``groove`` everywhere, or, ``exact``, a
+    `Rail` where the groove is in error.
 
     Raises
     ------
@@ -76,7 +124,10 @@ def build(scene: Scene, state: State, *, servo: bool = False) -> SpaceModel:
     if servo:
         motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
         space.add(_plain(motor))
-    for constraint in _constraints(scene, state, held, made, centre, servo):
+    found = _pins(scene, held, made, centre, servo)
+    for slide in (*held.prisms, *held.slots):
+        found += _slide(scene, state, slide, made, centre, lines)
+    for constraint in found:
         space.add(_plain(constraint))
     del made[GROUND]
     return SpaceModel(space, made, centre, crank, motor)
@@ -101,41 +152,68 @@ def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
     return constraint
 
 
-def _constraints(
+def _pins(
     scene: Scene,
-    state: State,
     held: Joints,
     made: Mapping[str, pymunk.Body],
     centre: Mapping[str, Point],
     servo: bool,
 ) -> list[pymunk.Constraint]:
-    """All pins and slides; the kinematic crank needs no pin to the ground."""
-
-    def anchor(body: str, local: Point) -> Point:
-        return local[0] - centre[body][0], local[1] - centre[body][1]
-
-    def on_body(body: str, point: str) -> Point:
-        return anchor(body, local_point(scene, body, point))
-
-    def pin(point: str, a: str, b: str) -> pymunk.Constraint:
-        return pymunk.PivotJoint(made[a], made[b], on_body(a, point), on_body(b, point))
-
+    """All pins; a kinematic crank needs none to the ground."""
     found: list[pymunk.Constraint] = []
     for joint in held.pins:
         first, *others = _pinned_bodies(scene, joint.bodies)
         for other in others:
             driven = {first, other} == {GROUND, scene.driver.link} and not servo
             if not (driven and joint.point == scene.driver_pivot):
-                found.append(pin(joint.point, first, other))
-    for slide in (*held.prisms, *held.slots):
-        slider, rider = slide.slider, _rider(slide)
-        ends = [anchor(slider.on, end) for end in _groove(scene, state, slider, rider)]
-        point = on_body(rider, slider.point)
-        found.append(pymunk.GrooveJoint(made[slider.on], made[rider], ends[0], ends[1], point))
-        if isinstance(slide, Prism) and slider.on != GROUND:
-            angle = sliding_angle(slider)
-            found.append(pymunk.GearJoint(made[slider.on], made[rider], angle, 1.0))
+                a = _anchor(scene, centre, first, joint.point)
+                b = _anchor(scene, centre, other, joint.point)
+                found.append(pymunk.PivotJoint(made[first], made[other], a, b))
     return found
+
+
+def _slide(
+    scene: Scene,
+    state: State,
+    slide: Prism | Slot,
+    made: Mapping[str, pymunk.Body],
+    centre: Mapping[str, Point],
+    lines: Lines,
+) -> list[pymunk.Constraint]:
+    """A point on a line and, on a moving guide, the gear that keeps a sliding body's angle."""
+    slider, rider = slide.slider, _rider(slide)
+    guide, body = made[slider.on], made[rider]
+    anchor = _anchor(scene, centre, rider, slider.point)
+    along_line = turned((1.0, 0.0), slider.direction_rad)
+    start = _less(slider.through_m, centre[slider.on])
+    off = abs(along_line[0] * start[1] - along_line[1] * start[0])
+    small = 1e-12 * scene.longest_m
+    exact = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
+    found: list[pymunk.Constraint] = []
+    if exact or lines == "groove":
+        ends = [_less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
+        found.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
+    else:
+        rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
+        found.append(rail.joint())
+    if isinstance(slide, Prism) and slider.on != GROUND:
+        found.append(pymunk.GearJoint(guide, body, sliding_angle(slider), 1.0))
+    return found
+
+
+def _firm(body: pymunk.Body) -> bool:
+    """Whether no push turns the body."""
+    return body.body_type != pymunk.Body.DYNAMIC or math.isinf(body.moment)
+
+
+def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
+    """A point in the coordinates of the pymunk body."""
+    return _less(local_point(scene, body, point), centre[body])
+
+
+def _less(a: Point, b: Point) -> Point:
+    """Difference of two vectors."""
+    return a[0] - b[0], a[1] - b[1]
 
 
 def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:

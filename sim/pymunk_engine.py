@@ -19,6 +19,7 @@ from models.scene import Scene
 from models.space import SpaceModel, build
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, SettingValue
+from sim.settings import SettingError
 
 Array = NDArray[np.float64]
 FIELDS = (
@@ -42,6 +43,7 @@ AS_SHIPPED = Profile(
             (1.0 - 0.1) ** 60.0, "default: a joint error loses 10 % in 1/60 s, so errors fall as dt"
         ),
         "damping": Setting(1.0, "default: none"),
+        "lines": Setting("groove", "points on lines run in pymunk's groove joints"),
     },
 )
 TUNED = Profile(
@@ -52,6 +54,11 @@ TUNED = Profile(
         "iterations": Setting(100, "error_bias matters only as far as the iteration converges"),
         "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
         "damping": Setting(1.0, "none"),
+        "lines": Setting(
+            "exact",
+            "a groove lets the sliding speed leak across the line unless the pushed bodies cannot "
+            "turn; there a pin joint with a moving end holds the point (see models.space)",
+        ),
     },
 )
 
@@ -95,7 +102,12 @@ class PymunkSession:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
         start = launched(state, VELOCITY_SHIFT * dt_s)
-        self._model: SpaceModel = build(scene, start, servo=drive == "servo")
+        lines = settings["lines"]
+        if lines not in ("groove", "exact"):
+            raise SettingError(f"setting lines: found {lines!r}; use groove or exact")
+        self._model: SpaceModel = build(
+            scene, start, servo=drive == "servo", lines="groove" if lines == "groove" else "exact"
+        )
         self._space = self._model.space
         self._space.iterations = int(settings["iterations"])
         self._space.damping = float(settings["damping"])
