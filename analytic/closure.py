@@ -75,10 +75,7 @@ class Certificate:
         n1, n2 = self.jacobian.c1.norm(), self.jacobian.c2.norm()
         a1, a2 = np.abs(q1), np.abs(q2)
         residual = (
-            error_of_b
-            + a1 * self.d1
-            + a2 * self.d2
-            + ROUNDING * (size_of_b + n1 * a1 + n2 * a2)
+            error_of_b + a1 * self.d1 + a2 * self.d2 + ROUNDING * (size_of_b + n1 * a1 + n2 * a2)
         )
         lost = self.d1 * n2 + n1 * self.d2 + self.d1 * self.d2 + 4 * EPS * n1 * n2
         left = np.abs(self.jacobian.det) - lost

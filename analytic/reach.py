@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.dyads.parts import CLOSED
 from analytic.plane import Array
@@ -55,7 +56,7 @@ def ranges(scene: Scene, stretched: Stretched) -> list[Range]:
 
 
 def _bisect(
-    scene: Scene, stretched: Stretched, low: Array, high: Array, closes_low: Array
+    scene: Scene, stretched: Stretched, low: Array, high: Array, closes_low: NDArray[np.bool_]
 ) -> Array:
     """The angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
@@ -76,7 +77,5 @@ def describe_reach(scene: Scene, stretched: Stretched) -> str:
             f"It cannot be assembled at any angle of {scene.driver.link}: it comes nearest at "
             f"{math.degrees(grid[best]):.4g} deg, open by {short[best]:.3g} m; change a length."
         )
-    spans = " and ".join(
-        f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in found
-    )
+    spans = " and ".join(f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in found)
     return f"{scene.driver.link} can stand at {spans} (and whole turns from there)."

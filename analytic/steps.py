@@ -24,6 +24,7 @@ from analytic.plane import (
     Real,
     Vec,
     direction,
+    fixed_point,
 )
 from analytic.structure import Group, Structure, block_name
 from models.scene import GROUND, Point, Scene
@@ -45,7 +46,10 @@ class Chunk:
     def point(self, body: str, name: str) -> PointKinematics:
         """A named point by way of ``body``, worked out once."""
         if name not in self.points:
-            self.points[name] = self.bodies[body].point(local_point(self.scene, body, name))
+            local = local_point(self.scene, body, name)
+            self.points[name] = (
+                fixed_point(local) if body == GROUND else self.bodies[body].point(local)
+            )
         return self.points[name]
 
     def keep(self, key: str, dyad: Dyad) -> None:
@@ -106,8 +110,11 @@ def _turning_body(
     found: Turning, back: Vec, local: Point, anchor: PointKinematics
 ) -> BodyKinematics:
     """The body whose frame stands at the angle of ``found`` less that of ``back``."""
-    turn = found.turn if back.y == 0.0 and back.x == 1.0 else found.turn.turned(Vec(back.x, -back.y))
-    return BodyKinematics(local, anchor, turn, found.omega, found.alpha, found.error)
+    aligned = back.x == 1.0 and back.y == 0.0
+    turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
+    return BodyKinematics(
+        local, anchor, turn, found.omega, found.alpha, found.error, None, found.length
+    )
 
 
 def _following_body(
@@ -119,7 +126,7 @@ def _following_body(
     if error is not None and by != 0.0:
         error = replace(error, theta=error.theta + 4 * EPS * (1.0 + abs(by)))
     turn = known.turn.turned(direction(by))
-    return BodyKinematics(local, anchor, turn, known.omega, known.alpha, error, theta)
+    return BodyKinematics(local, anchor, turn, known.omega, known.alpha, error, theta, known.length)
 
 
 @dataclass(frozen=True)
@@ -160,7 +167,7 @@ class RidingLine:
     def line(self, chunk: Chunk) -> MovingLine:
         """The line in motion."""
         body = chunk.bodies[self.known]
-        along = body.turn.turned(direction(self.angle))
+        along = body.unit(self.angle)
         error = body.error
         if error is not None:
             error = replace(error, theta=error.theta + 4 * EPS)
@@ -362,9 +369,7 @@ class RPPStep:
         assert isinstance(dyad.second, Sliding)
         known = chunk.bodies[self.outer.known]
         rider = _riding_point(self.outer.line(chunk), dyad.first)
-        chunk.bodies[g.second] = _following_body(
-            known, self.outer.follow, self.outer.rider, rider
-        )
+        chunk.bodies[g.second] = _following_body(known, self.outer.follow, self.outer.rider, rider)
         chunk.bodies[g.first] = _following_body(known, self.follow, self.local, p1)
         chunk.sliders[g.outer2] = self.outer.displacement(dyad.first, 0.0)
         chunk.sliders[g.inner] = self.inner.displacement(dyad.second, 0.0)

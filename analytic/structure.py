@@ -90,7 +90,7 @@ def analyse(scene: Scene) -> Structure:
 
 def _what_to_do(mobility: int) -> str:
     if mobility > 1:
-        return "Pin a loose link, or remove one; points are pinned where two bodies name the same one."
+        return "Pin a loose link, or remove one; bodies are pinned where they name the same point."
     return "Remove a link or a pin that holds the mechanism rigid."
 
 
@@ -154,8 +154,9 @@ def _dyad(
     prismatics: Mapping[str, tuple[str, str]],
 ) -> Group | None:
     """The class II group that bodies a and b form, if they do."""
-    inner = [("R", p) for p, names in pins.items() if {a, b} <= set(names) and not known & set(names)]
-    inner += [("P", name) for name, ends in prismatics.items() if set(ends) == {a, b}]
+    both = {a, b}
+    inner = [("R", p) for p, n in pins.items() if both <= set(n) and not known & set(n)]
+    inner += [("P", name) for name, ends in prismatics.items() if set(ends) == both]
     if len(outer[a]) != 1 or len(outer[b]) != 1 or len(inner) != 1:
         return None
     (ka, na), (ki, ni), (kb, nb) = outer[a][0], inner[0], outer[b][0]
@@ -179,7 +180,7 @@ def _no_closed_form(
             names = ", ".join(name for _, name in outer[body])
             return (
                 f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
-                "before it, so it is rigid, and another link is loose; mobility 1 is only a count here"
+                "before it, so it is rigid and another link is loose: mobility 1 is only a count"
             )
     for size in range(4, len(left) + 1, 2):
         for group in itertools.combinations(left, size):

@@ -79,7 +79,9 @@ def _faults_of_names(
     bodies = [GROUND, *table.links]
     everywhere = set(table.ground.points).union(*points.values())
     if GROUND in table.links:
-        faults.append("links.ground: the ground has its own table [ground]; name the link otherwise")
+        faults.append(
+            "links.ground: the ground has its own table [ground]; name the link otherwise"
+        )
     for name, slider in table.sliders.items():
         key = f"sliders.{name}"
         point = slider.point or name
@@ -95,21 +97,25 @@ def _faults_of_names(
             faults.append(f"{key}.point: {slider.link} has no point {point}; it has {have}")
         pinned = [n for n, s in table.sliders.items() if (s.point or n) == point and not s.link]
         if not slider.link and point not in everywhere and len(pinned) < 2:
-            faults.append(f"{key}.point: no body has a point {point}; set point to one of "
-                          f"{', '.join(sorted(everywhere))}")
+            faults.append(
+                f"{key}.point: no body has a point {point}; set point to one of "
+                f"{', '.join(sorted(everywhere))}"
+            )
     link = getattr(driver, "link")
     if link not in table.links:
         faults.append(f"driver.link: found {link}; use one of {', '.join(table.links)}")
     elif not set(points[link]) & set(table.ground.points):
-        faults.append(f"driver.link: {link} has no ground pin to turn about; give it a ground point")
+        faults.append(
+            f"driver.link: {link} has no ground pin to turn about; give it a ground point"
+        )
     choices = everywhere | set(table.sliders)
-    faults += [f"branch.{n}: no pin or slider of that name" for n in table.branch if n not in choices]
+    faults += [
+        f"branch.{n}: no pin or slider of that name" for n in table.branch if n not in choices
+    ]
     return faults
 
 
-def _faults_of_lengths(
-    table: SceneTable, points: Mapping[str, Mapping[str, Point]]
-) -> list[str]:
+def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Point]]) -> list[str]:
     """Points that coincide, and links whose mass cannot be spread over a length."""
     faults = []
     for name, places in [(GROUND, table.ground.points), *points.items()]:
@@ -125,8 +131,10 @@ def _faults_of_lengths(
             faults.append(f"links.{name}.points: the ends of the bar stand there already")
         given = (link.mass_kg, link.centre_m, link.inertia_kg_m2)
         if len(points[name]) < 2 and None in given:
-            faults.append(f"links.{name}: one point has no length to derive a mass from; give "
-                          "mass_kg, centre_m and inertia_kg_m2, or a second point")
+            faults.append(
+                f"links.{name}: one point has no length to derive a mass from; give "
+                "mass_kg, centre_m and inertia_kg_m2, or a second point"
+            )
     return faults
 
 

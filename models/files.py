@@ -79,7 +79,7 @@ def parse_scene(text: str, place: str) -> Scene:
 def _read_text(path: Path) -> str:
     """The text of a scene file, or SceneError that says why it could not be read."""
     if path.is_dir():
-        raise SceneError(str(path), ["a directory; name a scene file in it, one that ends in .toml"])
+        raise SceneError(str(path), ["a directory; name a scene file in it (.toml)"])
     try:
         raw = path.read_bytes()
         if len(raw) > MOST_BYTES:
@@ -121,7 +121,8 @@ def _validated(
         for fault in error.errors():
             if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
                 continue  # `_driver` says it better
-            faults.append(_line(model, prefix, fault["loc"], fault["type"], fault["msg"], fault["input"]))
+            kind, message, found = fault["type"], fault["msg"], fault["input"]
+            faults.append(_line(model, prefix, fault["loc"], kind, message, found))
         return None
 
 
@@ -141,7 +142,8 @@ def _line(
     if kind == "extra_forbidden":
         known = _keys_at(model, loc)
         near = difflib.get_close_matches(parts[-1][:200], known, n=1)
-        return f"{key}: unknown key; " + (f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}")
+        cure = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+        return f"{key}: unknown key; {cure}"
     if kind == "string_pattern_mismatch":
         message = "a name is a letter, then up to 39 letters, digits, - or _"
     if kind == "value_error":

@@ -1,4 +1,4 @@
-"""How the driver moves: its angle, angular velocity and angular acceleration as functions of time."""
+"""How the driver moves: its angle, angular velocity and acceleration as functions of time."""
 
 from __future__ import annotations
 
@@ -78,8 +78,12 @@ class ConstantSpeed:
     def peak_speed_rad_s(self) -> float:
         return abs(self.speed_rad_s)
 
+    def angle(self, time_s: Array) -> Array:
+        """The angle alone [rad]."""
+        return self.start_rad + self.speed_rad_s * time_s
+
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        theta = self.start_rad + self.speed_rad_s * time_s
+        theta = self.angle(time_s)
         return theta, np.full_like(theta, self.speed_rad_s), np.zeros_like(theta)
 
     def turned(self, angle_rad: float) -> ConstantSpeed:
@@ -104,7 +108,9 @@ class Oscillating:
     def __post_init__(self) -> None:
         _finite(self)
         if self.amplitude_rad == 0.0 or self.frequency_rad_s == 0.0:
-            raise ValueError("an oscillating driver needs an amplitude and a frequency that are not 0")
+            raise ValueError(
+                "an oscillating driver needs an amplitude and a frequency other than 0"
+            )
 
     @property
     def offset_rad(self) -> float:
@@ -173,7 +179,8 @@ class FromRest:
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         tau = np.clip(time_s / self.rise_s, 0.0, 1.0)
         turn = math.tau * tau
-        ramp = self.speed_rad_s * self.rise_s * (tau**2 / 2 - np.sin(turn / 2) ** 2 / (2 * math.pi**2))
+        share = tau**2 / 2 - np.sin(turn / 2) ** 2 / (2 * math.pi**2)
+        ramp = self.speed_rad_s * self.rise_s * share
         after = self.speed_rad_s * np.maximum(time_s - self.rise_s, 0.0)
         omega = self.speed_rad_s * (tau - np.sin(turn) / math.tau)
         alpha = self.speed_rad_s / self.rise_s * 2.0 * np.sin(turn / 2) ** 2

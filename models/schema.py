@@ -39,7 +39,9 @@ class LinkTable(Table):
         if (self.bar is None) != (self.length_m is None):
             raise ValueError('bar and length_m go together: bar = ["A", "B"], length_m = 0.1')
         if self.bar is None and not self.points:
-            raise ValueError('a link needs points: bar = ["A", "B"] with length_m, or points = {...}')
+            raise ValueError(
+                'a link needs points: bar = ["A", "B"] with length_m, or points = {...}'
+            )
         if self.bar is not None and self.bar[0] == self.bar[1]:
             raise ValueError(f"the bar joins point {self.bar[0]} to itself; name two points")
         return self

@@ -16,19 +16,20 @@ from analytic.plane import (
     Vec,
 )
 
-
 CLOSED = 16 * EPS
 """A dyad open by no more than this, over the lengths in its closure, is closed but for rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Turning:
-    """An unknown rotation: unit vector, rate [rad/s], acceleration [rad/s^2], bounds if asked."""
+    """An unknown rotation: a vector of constant ``length`` at its angle, its rate [rad/s] and
+    acceleration [rad/s^2], bounds if asked for."""
 
     turn: Vec
     omega: Real
     alpha: Real
     error: AngleError | None
+    length: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,16 +63,16 @@ class MovingLine:
 
     def at(self, s: Real) -> Vec:
         """The place at displacement ``s`` from the point."""
-        return self.point.p + self.along * s
+        return self.along * s + self.point.p
 
     def velocity(self, s: Real) -> Vec:
         """The velocity of the body's own point there."""
-        return self.point.v + self.along.perp() * (self.omega * s)
+        return self.along.perp(self.omega * s) + self.point.v
 
     def acceleration(self, s: Real, speed: Real) -> Vec:
-        """The acceleration of what slides there at ``speed``, less the relative one (Coriolis in)."""
+        """The acceleration of what slides there at ``speed``, Coriolis in, without its own."""
         across = self.alpha * s + 2.0 * self.omega * speed
-        return self.point.a + self.along.perp() * across - self.along * (self.omega**2 * s)
+        return self.along.perp(across) - self.along * (self.omega**2 * s) + self.point.a
 
     def errors(self, s: Real, speed: Real, es: Real, ev: Real) -> tuple[Real, Real, Real]:
         """Bounds on the errors of `at`, `velocity`, `acceleration` where s, speed have es, ev."""

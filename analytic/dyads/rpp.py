@@ -57,7 +57,5 @@ def solve(
     assert isinstance(found.second, Sliding)
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
     second = found.second
-    block = replace(
-        second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration
-    )
+    block = replace(second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration)
     return Dyad(found.first, block, found.sine)

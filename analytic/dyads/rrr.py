@@ -13,6 +13,8 @@ where C lies on the line P1 P2 (toggle).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
@@ -63,38 +65,42 @@ def solve(
     d = p2.p - p1.p
     d2 = d.square()
     outer, inner = (l1 + l2) ** 2, (l1 - l2) ** 2
-    square = (outer - d2) * (d2 - inner)
+    square = outer - d2
+    square *= d2 - inner
 
     def shortage() -> tuple[Real, Real]:
         apart = np.sqrt(d2)
         return np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart), apart + l1 + l2
 
     root, short = closing_root(square, shortage, stretch)
-    twice_area = 0.5 * root
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = 1.0 / d2
-        height = (branch * inverse) * twice_area
-        half = 0.5 * (l1 * l1 - l2 * l2) * inverse
-        across = d.perp() * height
-        u1 = (d * (0.5 + half) + across) * (1.0 / l1)
-        u2 = (d * (half - 0.5) + across) * (1.0 / l2)
-        jacobian = Jacobian(u1.perp() * l1, u2.perp() * -l2, -branch * twice_area)
-        w1, w2 = jacobian.solve(p2.v - p1.v)
-        pull = jacobian.c1.perp() * (w1 * w1) + jacobian.c2.perp() * (w2 * w2)
-        g1, g2 = jacobian.solve(p2.a - p1.a - pull)
-    sine = twice_area * (1.0 / (l1 * l2))
-    first, second = Turning(u1, w1, g1, None), Turning(u2, w2, g2, None)
+        along = (0.5 * (l1 - l2) * (l1 + l2)) * inverse + 0.5
+        r1 = d.turned(Vec(along, (0.5 * branch * inverse) * root))
+        r2 = r1 - d
+        # Cramer's rule with the columns r1' and -r2' (turned by 90 deg): their cross product is
+        # minus twice the area, and a cross product with a turned vector is a dot product.
+        inverse = (-2.0 * branch) / root
+        relative = p1.v - p2.v
+        w1, w2 = relative.dot(r2), relative.dot(r1)
+        w1 *= inverse
+        w2 *= inverse
+        relative = (p1.a - p2.a).less(r1, w1 * w1) + r2 * (w2 * w2)
+        g1, g2 = relative.dot(r2), relative.dot(r1)
+        g1 *= inverse
+        g2 *= inverse
+    sine = root * (0.5 / (l1 * l2))
+    first, second = Turning(r1, w1, g1, None, l1), Turning(r2, w2, g2, None, l2)
     if not certified:
         return Dyad(first, second, sine, short)
-    e1, e2 = _errors(p1, p2, l1, l2, jacobian, first, second, np.sqrt(d2))
-    return Dyad(Turning(u1, w1, g1, e1), Turning(u2, w2, g2, e2), sine)
+    jacobian = Jacobian(r1.perp(), r2.perp(-1.0), (-0.5 * branch) * root)
+    e1, e2 = _errors(p1, p2, jacobian, first, second, np.sqrt(d2))
+    return Dyad(replace(first, error=e1), replace(second, error=e2), sine)
 
 
 def _errors(
     p1: PointKinematics,
     p2: PointKinematics,
-    l1: float,
-    l2: float,
     jacobian: Jacobian,
     first: Turning,
     second: Turning,
@@ -103,8 +109,10 @@ def _errors(
     """Bounds of the two angles, rates and accelerations."""
     assert p1.error is not None
     assert p2.error is not None
-    gap = (p1.p + first.turn * l1 - p2.p - second.turn * l2).norm()
-    # The unit vectors are off unit length by rounding, which the residual does not tell apart.
+    l1, l2 = first.length, second.length
+    gap = (p1.p + first.turn - p2.p - second.turn).norm()
+    # The computed vectors are not quite as long as the links; the residual has to see that too.
+    gap = gap + np.abs(first.turn.norm() - l1) + np.abs(second.turn.norm() - l2)
     size = p1.p.norm() + p2.p.norm() + 2.0 * (l1 + l2)
     residual = gap + p1.error.position + p2.error.position + ROUNDING * size
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,0 +1,172 @@
+"""The arrays of a motion: what was asked for, filled chunk by chunk."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.plane import EPS, Array, BodyKinematics, PointKinematics, Real
+from analytic.steps import Chunk, Step
+from models.errors import CrankcheckError
+from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import Scene
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The names that a caller asked for; a point goes with the body that carries it."""
+
+    links: tuple[str, ...]
+    points: Mapping[str, str]
+    sliders: tuple[str, ...]
+
+    @staticmethod
+    def of(
+        scene: Scene,
+        links: Iterable[str] | None,
+        points: Iterable[str] | None,
+        sliders: Iterable[str] | None,
+    ) -> Wanted:
+        """The chosen names, all of a kind for None. Raises CrankcheckError for an unknown one."""
+        carriers = {point: bodies[0] for point, bodies in scene.pins.items()}
+        for slider in scene.sliders.values():
+            carriers.setdefault(slider.point, f"block {slider.name}")
+        return Wanted(
+            _chosen("link", links, scene.links),
+            {p: carriers[p] for p in _chosen("point", points, carriers)},
+            _chosen("slider", sliders, scene.sliders),
+        )
+
+
+def _chosen(what: str, names: Iterable[str] | None, known: Mapping[str, object]) -> tuple[str, ...]:
+    chosen = tuple(known) if names is None else tuple(names)
+    for name in chosen:
+        if name not in known:
+            have = ", ".join(known) or "none"
+            raise CrankcheckError(f"{what} {name!r} is not in the scene; it has {have}")
+    return chosen
+
+
+@dataclass(frozen=True)
+class Track:
+    """A quantity with its first and second derivative, each (T,) or (T, 2)."""
+
+    value: Array
+    rate: Array
+    second: Array
+
+    def put(self, span: slice, value: Real, rate: Real, second: Real) -> None:
+        self.value[span], self.rate[span], self.second[span] = value, rate, second
+
+    @property
+    def arrays(self) -> tuple[Array, Array, Array]:
+        return self.value, self.rate, self.second
+
+
+class _Block:
+    """One allocation for all arrays: far fewer page faults than one each."""
+
+    def __init__(self, rows: int, samples: int) -> None:
+        self._rows = np.empty((rows, samples))
+        self._next = 0
+
+    def row(self) -> Array:
+        self._next += 1
+        row: Array = self._rows[self._next - 1]
+        return row
+
+    def pair(self) -> Array:
+        """Shape (T, 2), each component contiguous in time."""
+        self._next += 2
+        return self._rows[self._next - 2 : self._next].T
+
+    def track(self) -> Track:
+        return Track(self.row(), self.row(), self.row())
+
+    def track_of_pairs(self) -> Track:
+        return Track(self.pair(), self.pair(), self.pair())
+
+
+class Result:
+    """The arrays of a motion while they are filled."""
+
+    def __init__(
+        self, wanted: Wanted, time_s: Array, steps: Sequence[Step], *, bound: bool
+    ) -> None:
+        self.wanted, self.time_s, self.certified = wanted, time_s, bound
+        scalars, pairs = len(wanted.links) + len(wanted.sliders), len(wanted.points)
+        rows = 3 * (scalars + 2 * pairs) + 3 * bound * (scalars + pairs) + len(steps)
+        block = _Block(rows, len(time_s))
+        self.links = {k: block.track() for k in wanted.links}
+        self.points = {k: block.track_of_pairs() for k in wanted.points}
+        self.sliders = {k: block.track() for k in wanted.sliders}
+        self.sines = {step.key: block.row() for step in steps}
+        if bound:
+            self.link_bounds = {k: block.track() for k in wanted.links}
+            self.point_bounds = {k: block.track() for k in wanted.points}
+            self.slider_bounds = {k: block.track() for k in wanted.sliders}
+
+    def write(self, span: slice, chunk: Chunk) -> None:
+        """Store what was asked for of a solved chunk."""
+        for key, row in self.sines.items():
+            row[span] = chunk.sines[key]
+        for name in self.links:
+            self._write_link(span, name, chunk.bodies[name])
+        for name, body in self.wanted.points.items():
+            self._write_point(span, name, chunk.point(body, name))
+        for name, track in self.sliders.items():
+            found = chunk.sliders[name]
+            track.put(span, found.s, found.speed, found.acceleration)
+            if self.certified and found.error is not None:
+                e = found.error
+                self.slider_bounds[name].put(span, e.displacement, e.speed, e.acceleration)
+
+    def _write_link(self, span: slice, name: str, body: BodyKinematics) -> None:
+        track = self.links[name]
+        if body.theta is not None:
+            track.put(span, body.theta, body.omega, body.alpha)
+        else:
+            np.arctan2(body.turn.y, body.turn.x, out=track.value[span])
+            track.rate[span], track.second[span] = body.omega, body.alpha
+            _continue_angle(track.value, span)
+        if self.certified and body.error is not None:
+            e = body.error
+            rounding = 2 * EPS * (np.abs(track.value[span]) + math.pi)
+            self.link_bounds[name].put(span, e.theta + rounding, e.omega, e.alpha)
+
+    def _write_point(self, span: slice, name: str, at: PointKinematics) -> None:
+        track = self.points[name]
+        for array, vec in zip(track.arrays, (at.p, at.v, at.a), strict=True):
+            array[span, 0], array[span, 1] = vec.x, vec.y
+        if self.certified and at.error is not None:
+            e = at.error
+            self.point_bounds[name].put(span, e.position, e.velocity, e.acceleration)
+
+    def motion(self) -> Motion:
+        """The filled arrays as a motion."""
+        bound = None
+        if self.certified:
+            bound = Bound(
+                {k: LinkMotion(*track.arrays) for k, track in self.link_bounds.items()},
+                {k: PointMotion(*track.arrays) for k, track in self.point_bounds.items()},
+                {k: SliderMotion(*track.arrays) for k, track in self.slider_bounds.items()},
+            )
+        return Motion(
+            self.time_s,
+            {k: LinkMotion(*track.arrays) for k, track in self.links.items()},
+            {k: PointMotion(*track.arrays) for k, track in self.points.items()},
+            {k: SliderMotion(*track.arrays) for k, track in self.sliders.items()},
+            self.sines,
+            bound,
+        )
+
+
+def _continue_angle(theta: Array, span: slice) -> None:
+    """Take whole turns off the samples of ``span`` so that they follow on from those before."""
+    part = theta[max(span.start - 1, 0) : span.stop]
+    step = part[1:] - part[:-1]
+    if step.max(initial=0.0) > math.pi or step.min(initial=0.0) < -math.pi:
+        part[1:] -= math.tau * np.cumsum(np.round(step / math.tau))
