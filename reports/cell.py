@@ -1,0 +1,154 @@
+"""One cell of a verification: scene x engine x profile x step; run it, compare it, judge it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.motion import State
+from models.scene import Scene
+from reports.compare import compare, places
+from reports.convergence import Convergence, convergence
+from reports.errors import Error, Errors, Quantity, largest
+from reports.rules import judge
+from reports.rules.base import Evidence, Finding
+from reports.tolerance import Limit, limits
+from sim.engine import Drive, Run, SettingValue
+from sim.run import run
+
+PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
+HALVINGS = 2
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
+    shown and judged, and does not count for the exit code."""
+
+    scene: Scene
+    engine: str
+    profile: str
+    dt_s: float
+    steps: int
+    gated: bool = True
+    drive: Drive = "prescribed"
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    converge: bool = True
+
+    @property
+    def turns(self) -> float:
+        return self.steps * self.dt_s / self.scene.driver.law.period_s
+
+    @property
+    def steps_per_turn(self) -> float:
+        return self.scene.driver.law.period_s / self.dt_s
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name}, {self.engine}, {self.profile}"
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A cell with what came of it. The trajectories are left behind."""
+
+    cell: Cell
+    version: str
+    status: str
+    reason: str
+    stopped_at_s: float
+    settings: Mapping[str, SettingValue]
+    errors: Errors | None
+    limits: Mapping[str, Limit]
+    convergence: Convergence | None
+    findings: tuple[Finding, ...]
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def failures(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self.findings if finding.level == "fail")
+
+    @property
+    def advice(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self.findings if finding.level == "advice")
+
+    @property
+    def verdict(self) -> Literal["within", "out", "unsupported"]:
+        if self.status == "unsupported":
+            return "unsupported"
+        return "out" if self.failures else "within"
+
+
+def check(cell: Cell) -> Checked:
+    """Run a cell at its step (and at half and a quarter of it), compare and judge it."""
+    state = solve(cell.scene, np.zeros(1)).state()
+    try:
+        done = _run(cell, state, 1)
+    except EngineError as error:
+        return unfinished(cell, "unsupported", str(error))
+    errors = compare(cell.scene, done)
+    in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
+    seen = _convergence(cell, state, errors) if cell.converge and errors else None
+    evidence = Evidence(done.status, done.reason, done.stopped_at_s, errors, in_force, seen)
+    return Checked(
+        cell=cell,
+        version=done.version,
+        status=done.status,
+        reason=done.reason,
+        stopped_at_s=done.stopped_at_s,
+        settings=dict(done.settings),
+        errors=errors,
+        limits=in_force,
+        convergence=seen,
+        findings=judge(evidence),
+        warnings=done.warnings,
+    )
+
+
+def unfinished(cell: Cell, status: str, reason: str) -> Checked:
+    """A cell that has no run: a row with a reason."""
+    findings = judge(Evidence(status, reason, 0.0, None, {}))
+    return Checked(cell, "", status, reason, 0.0, {}, None, {}, None, findings)
+
+
+def _run(cell: Cell, state: State, finer: int) -> Run:
+    """The cell with its step cut into ``finer`` parts, logged at the same instants."""
+    return run(
+        cell.scene,
+        state,
+        cell.engine,
+        cell.profile,
+        dt_s=cell.dt_s / finer,
+        steps=cell.steps * finer,
+        every=finer,
+        drive=cell.drive,
+    )
+
+
+def _convergence(cell: Cell, state: State, errors: Errors) -> Convergence | None:
+    """The largest error of place at the step, its half and its quarter.
+
+    The quantity that is worst at the full step is followed, at the same instants throughout.
+    """
+    worst = _worst_place(errors)
+    if worst is None:
+        return None
+    sizes = [worst.pure]
+    for halving in range(1, HALVINGS + 1):
+        motion = _run(cell, state, 2**halving).motion
+        rows = places(cell.scene, motion) if motion is not None and motion.time_s.size else []
+        same = largest(row for row in rows if row.quantity == worst.quantity)
+        sizes.append(same.pure if same else math.nan)
+    unit = "rad" if worst.unit == "rad" else "of the longest link"
+    return convergence([cell.dt_s / 2**k for k in range(HALVINGS + 1)], sizes, unit)
+
+
+def _worst_place(errors: Errors) -> Error | None:
+    """The largest total error of angle, displacement or position, as pure numbers."""
+    return largest(row for row in errors.rows if row.quantity in PLACES and row.kind == "total")

@@ -1,0 +1,210 @@
+"""The command line. What a command needs is imported inside it: `--help` loads no engine."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from models.errors import CrankcheckError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+app = typer.Typer(
+    name="crankcheck",
+    help="Cross-validate physics engines on closed-loop planar mechanisms, against the closed form.",
+    epilog="Exit codes: 0 all within tolerance, 1 out of tolerance, 2 bad input or usage.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+TABLE_WIDTH = 100
+INTERRUPTED = 130
+
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
+
+
+def main() -> None:
+    """The entry of the command `crankcheck`."""
+    app()
+
+
+@contextmanager
+def guarded() -> Iterator[None]:
+    """A user's mistake ends with its message and exit code 2, Ctrl-C with one line and 130."""
+    try:
+        yield
+    except CrankcheckError as error:
+        typer.echo(f"crankcheck: {error}", err=True)
+        raise typer.Exit(2) from None
+    except KeyboardInterrupt:
+        typer.echo("crankcheck: interrupted, nothing written", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+
+
+def _console(stderr: bool = False) -> Console:
+    """The terminal as wide as it is; a file or a pipe as wide as the tables need."""
+    from rich.console import Console
+
+    stream = sys.stderr if stderr else sys.stdout
+    return Console(stderr=stderr, width=None if stream.isatty() else TABLE_WIDTH)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from reports.provenance import crankcheck_version
+
+        typer.echo(f"crankcheck {crankcheck_version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Options of the command itself."""
+
+
+@app.command()
+def verify(
+    scenes: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SCENE]...", help="Shipped names or scene files; all if none."),
+    ] = None,
+    engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
+    profile: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Profile, gated; may be repeated. Default: tuned gated, as-shipped shown."
+        ),
+    ] = None,
+    dt: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time step.")] = None,
+    steps_per_turn: Annotated[
+        float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
+    ] = None,
+    turns: Annotated[float, typer.Option(help="Turns (periods) of the driver.")] = 2.0,
+    tol: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=NUMBER", help="Tolerance as a pure number, such as angle=1e-4."),
+    ] = None,
+    drive: Annotated[str, typer.Option(help="prescribed or servo.")] = "prescribed",
+    convergence: Annotated[
+        bool, typer.Option(help="Run at half and quarter step too, and say what the error does.")
+    ] = True,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
+    junit: Annotated[Path | None, typer.Option(help="Write JUnit XML.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write the cells as CSV.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write cells and findings as JSON.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write all of them into a folder.")
+    ] = None,
+) -> None:
+    """Run scenes in engines and hold them to the closed form; exit 1 when out of tolerance."""
+    with guarded():
+        from reports.commands import verify as command
+
+        request = command.Request(
+            scenes=scenes or (),
+            engines=engine or (),
+            profiles=profile or (),
+            dt_s=dt,
+            steps_per_turn=steps_per_turn,
+            turns=turns,
+            tolerance=tol or (),
+            drive=drive,
+            converge=convergence,
+            jobs=jobs,
+            junit=junit,
+            csv=csv,
+            json=json,
+            folder=output,
+        )
+        code = command.verify(request, _console(), _console(stderr=True))
+    raise typer.Exit(code)
+
+
+@app.command()
+def solve(
+    scene: SceneName,
+    at_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="One position: the driver's angle.")
+    ] = None,
+    turns: Annotated[
+        float | None, typer.Option(help="A motion over so many turns (default 1).")
+    ] = None,
+    steps_per_turn: Annotated[
+        int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
+    ] = None,
+) -> None:
+    """Show the closed-form reference alone: angles, points and sliders with all their rates."""
+    with guarded():
+        from reports.commands import solve as command
+
+        request = command.Request(scene, at_deg, turns, steps_per_turn, output)
+        command.run_solve(request, _console())
+
+
+@app.command()
+def export(
+    scene: SceneName,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write an .xml file.")
+    ] = None,
+) -> None:
+    """Write the scene as MJCF, assembled, with its state as the keyframe."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.export(scene, output, _console())
+
+
+@app.command()
+def scenes() -> None:
+    """List the shipped scenes with their structure, driver and source."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.scenes(_console())
+
+
+@app.command()
+def engines(
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Show every setting with its reason.")
+    ] = False,
+) -> None:
+    """List the engines with their version, or the command that installs them, and profiles."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.engines(_console(), settings)
+
+
+@app.command()
+def view(
+    scene: SceneName,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Draw into a .gif or .png in place of the viewer."),
+    ] = None,
+) -> None:
+    """Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""
+    with guarded():
+        from reports.commands import view as command
+
+        command.run_view(scene, output, _console())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,270 @@
+"""`crankcheck solve`: the reference alone, at one driver angle or over time."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from rich.console import Console
+from rich.table import Table
+
+from analytic.kinematics import solve, solve_driven
+from analytic.structure import Structure, analyse
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.motion import Motion
+from models.scene import Scene
+from reports.motion_frame import cleaned, motion_frame
+from reports.provenance import crankcheck_version
+from reports.writing import check_file, write
+
+ENDINGS = (".csv", ".parquet", ".xlsx")
+ON_SCREEN = 12
+IN_A_FILE = 360
+MOST_SAMPLES = 1_000_000
+SHEET_ROWS = 1_048_575
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `solve` was asked for, as given."""
+
+    scene: str
+    at_deg: float | None
+    turns: float | None
+    steps_per_turn: int | None
+    output: Path | None
+
+
+def run_solve(request: Request, console: Console) -> None:
+    """Show or write the reference. Raises CrankcheckError for what can not be asked."""
+    if request.at_deg is not None and (request.turns or request.steps_per_turn):
+        raise CrankcheckError(
+            "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
+            "motion; give one of them"
+        )
+    if request.output is not None:
+        check_file(request.output, "-o", ENDINGS)
+    scene = load_scene(request.scene)
+    structure = analyse(scene)
+    if request.at_deg is not None:
+        motion = _at(scene, request.at_deg)
+    else:
+        motion = _over(scene, request)
+    if request.output is not None:
+        _write(request.output, scene, motion)
+        console.print(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
+        return
+    console.print(heading(scene, structure), highlight=False)
+    if request.at_deg is not None:
+        for table in position_tables(cleaned(motion)):
+            console.print(table, "")
+        console.print(certainty(motion), style="dim", highlight=False)
+    else:
+        for table in motion_tables(scene, cleaned(motion)):
+            console.print(table, "")
+        console.print(
+            "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
+        )
+
+
+def heading(scene: Scene, structure: Structure) -> str:
+    """What the mechanism is, in two lines."""
+    groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
+    return (
+        f"{scene.name}: {scene.source}\n"
+        f"mobility {structure.mobility}; driver {scene.driver.link}, {describe_law(scene)}; "
+        f"groups in solving order: {groups}"
+    )
+
+
+def describe_law(scene: Scene) -> str:
+    """The driver's law in a few words."""
+    law = scene.driver.law
+    if isinstance(law, ConstantSpeed):
+        return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
+    if isinstance(law, FromRest):
+        return f"from rest to {law.speed_rad_s:g} rad/s in {law.rise_s:g} s"
+    if isinstance(law, Oscillating):
+        centre, swing = math.degrees(law.centre_rad), math.degrees(law.amplitude_rad)
+        return f"swings {centre:g} +- {abs(swing):g} deg at {law.frequency_rad_s:g} rad/s"
+    return type(law).__name__
+
+
+def _at(scene: Scene, at_deg: float) -> Motion:
+    """The mechanism with its driver at an angle, moving as its law moves it there."""
+    if not math.isfinite(at_deg):
+        raise CrankcheckError(f"--at-deg {at_deg:g}: give an angle in degrees, such as 90")
+    theta = math.radians(at_deg)
+    omega, alpha = _rates(scene, theta, at_deg)
+    return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
+
+
+def _rates(scene: Scene, theta: float, at_deg: float) -> tuple[float, float]:
+    """Speed and acceleration of the driver when its law takes it through an angle.
+
+    An oscillating law is taken on its way of increasing angle; a start from rest after its rise.
+    """
+    law = scene.driver.law
+    if isinstance(law, Oscillating):
+        swing = theta - law.centre_rad
+        rest = law.amplitude_rad**2 - swing**2
+        # Rounding of the degrees must not put the end of the swing out of the law's range.
+        if rest < -1e-12 * law.amplitude_rad**2:
+            ends = sorted(math.degrees(law.centre_rad + s * law.amplitude_rad) for s in (-1.0, 1.0))
+            raise CrankcheckError(
+                f"--at-deg {at_deg:g}: the driver of {scene.name} swings from {ends[0]:.6g} to "
+                f"{ends[1]:.6g} deg; give an angle between"
+            )
+        frequency = abs(law.frequency_rad_s)
+        return frequency * math.sqrt(max(rest, 0.0)), -(frequency**2) * swing
+    if isinstance(law, ConstantSpeed | FromRest):
+        return law.speed_rad_s, 0.0
+    raise CrankcheckError(f"--at-deg: {scene.name} has a law without a speed at an angle")
+
+
+def _over(scene: Scene, request: Request) -> Motion:
+    """The motion over whole turns, the last sample included."""
+    turns = 1.0 if request.turns is None else request.turns
+    steps = request.steps_per_turn
+    if steps is None:
+        steps = ON_SCREEN if request.output is None else IN_A_FILE
+    if not (math.isfinite(turns) and turns > 0.0):
+        raise CrankcheckError(f"--turns {turns:g}: give a number above 0; 1 is one period")
+    if steps < 1:
+        raise CrankcheckError(f"--steps-per-turn {steps}: give at least 1")
+    samples = math.ceil(turns * steps * (1 - 1e-12)) + 1
+    most = MOST_SAMPLES
+    if request.output is not None and request.output.suffix.lower() == ".xlsx":
+        most = SHEET_ROWS
+    if samples > most:
+        raise CrankcheckError(
+            f"--turns {turns:g} --steps-per-turn {steps}: {samples} samples; at most {most}"
+        )
+    return solve(scene, scene.driver.law.period_s / steps * np.arange(samples))
+
+
+def digits(value: float) -> str:
+    """Eight significant digits, zeros at the end included."""
+    return f"{value + 0.0:#.8g}"
+
+
+def position_tables(motion: Motion) -> list[Table]:
+    """Links, points and sliders at one position."""
+    links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
+    for name, link in motion.links.items():
+        theta = float(link.theta[0])
+        numbers = (math.degrees(theta), theta, float(link.omega[0]), float(link.alpha[0]))
+        links.add_row(name, *map(digits, numbers))
+    places = _table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
+    rates = _table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
+    for name, point in motion.points.items():
+        v, a = point.velocity[0], point.acceleration[0]
+        row = [*point.position[0], *v, np.hypot(*v)]
+        places.add_row(name, *(digits(float(value)) for value in row))
+        rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
+    tables = [links, places, rates]
+    if motion.sliders:
+        sliders = _table("slider", ("displacement m", "speed m/s", "acceleration m/s^2"))
+        for name, slider in motion.sliders.items():
+            row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
+            sliders.add_row(name, *(digits(float(value)) for value in row))
+        tables.append(sliders)
+    return tables
+
+
+def certainty(motion: Motion) -> str:
+    """What the reference may be wrong by, in a line."""
+    if motion.bound is None:
+        return ""
+    links = motion.bound.links.values()
+    theta = max(float(np.max(link.theta)) for link in links)
+    omega = max(float(np.max(link.omega)) for link in links)
+    alpha = max(float(np.max(link.alpha)) for link in links)
+    return (
+        f"Certain to {theta:.1e} rad, {omega:.1e} rad/s, {alpha:.1e} rad/s^2 "
+        "(rounding, over the conditioning of the dyads)."
+    )
+
+
+def motion_tables(scene: Scene, motion: Motion) -> list[Table]:
+    """Links and sliders over time, three bodies to a table."""
+    bodies = [
+        (
+            name,
+            (
+                ("theta\nrad", link.theta),
+                ("omega\nrad/s", link.omega),
+                ("alpha\nrad/s^2", link.alpha),
+            ),
+        )
+        for name, link in motion.links.items()
+        if name != scene.driver.link
+    ]
+    bodies += [
+        (
+            f"slider {name}",
+            (
+                ("place\nm", s.displacement),
+                ("speed\nm/s", s.speed),
+                ("accel.\nm/s^2", s.acceleration),
+            ),
+        )
+        for name, s in motion.sliders.items()
+    ]
+    driver = np.degrees(motion.links[scene.driver.link].theta)
+    tables = []
+    for first in range(0, len(bodies), 2):
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        columns = [("\ntime\ns", motion.time_s), (f"{scene.driver.link}\ntheta\ndeg", driver)]
+        for name, series in bodies[first : first + 2]:
+            columns += [
+                (f"{name if k == 0 else ''}\n{head}", v) for k, (head, v) in enumerate(series)
+            ]
+        for head, _ in columns:
+            table.add_column(head, justify="right", no_wrap=True)
+        for index in range(motion.time_s.size):
+            table.add_row(*(f"{series[index]:.7g}" for _, series in columns))
+        tables.append(table)
+    return tables
+
+
+def _table(head: str, columns: Sequence[str]) -> Table:
+    table = Table(box=None, padding=(0, 1, 0, 0), title_justify="left")
+    table.add_column(head, no_wrap=True)
+    for column in columns:
+        table.add_column(column.replace(" ", "\n"), justify="right", no_wrap=True)
+    return table
+
+
+def _write(path: Path, scene: Scene, motion: Motion) -> None:
+    """The motion as a file of the kind that the ending says."""
+    frame = motion_frame(motion)
+    ending = path.suffix.lower()
+    if ending == ".csv":
+        write(path, frame.to_csv(index=False, lineterminator="\n"))
+        return
+    buffer = io.BytesIO()
+    if ending == ".parquet":
+        frame.to_parquet(buffer, index=False)
+    else:
+        _workbook(
+            buffer,
+            frame,
+            {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()},
+        )
+    write(path, buffer.getvalue())
+
+
+def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str]) -> None:
+    """A workbook: the motion, and where it comes from."""
+    with pd.ExcelWriter(buffer, engine="openpyxl") as book:
+        frame.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
+        origin = pd.DataFrame({"what": list(facts), "value": list(facts.values())})
+        origin.to_excel(book, sheet_name="source", index=False)

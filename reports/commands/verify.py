@@ -1,0 +1,210 @@
+"""`crankcheck verify`: run, compare, judge, show, write."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import pandas as pd
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.cell import Cell, Checked
+from reports.commands.names import chosen_engines, chosen_profiles, chosen_scenes
+from reports.frames import cell_frame, cell_row, error_frame
+from reports.junit import junit
+from reports.pool import check_all
+from reports.provenance import provenance
+from reports.tolerance import parse
+from reports.verdict_table import show
+from reports.writing import check_file, check_folder, write
+from sim.engine import Drive
+from sim.registry import engine
+
+LEAST_STEPS = 8
+MOST_STEPS = 5_000_000
+STEPS_PER_TURN = 720.0
+TURNS = 2.0
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `verify` was asked for, as given."""
+
+    scenes: Sequence[str]
+    engines: Sequence[str]
+    profiles: Sequence[str]
+    dt_s: float | None
+    steps_per_turn: float | None
+    turns: float
+    tolerance: Sequence[str]
+    drive: str
+    converge: bool
+    jobs: int
+    junit: Path | None
+    csv: Path | None
+    json: Path | None
+    folder: Path | None
+
+
+def verify(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 within, 1 out of tolerance, 2 not to be run.
+
+    Raises
+    ------
+    CrankcheckError
+        Anything about the request that can be told before running.
+    """
+    cells = plan(request)
+    _check_outputs(request)
+    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("verifying", total=len(cells))
+        checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
+    facts = provenance({name: engine(name).version() for name in _engines(cells)})
+    _write(request, checked, facts)
+    show(console, checked, facts)
+    gated = [one for one in checked if one.cell.gated]
+    if any(one.verdict == "unsupported" for one in gated):
+        return 2
+    return int(any(one.verdict == "out" for one in gated))
+
+
+def plan(request: Request) -> list[Cell]:
+    """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
+    tolerance = parse(request.tolerance)
+    if request.dt_s is not None and request.steps_per_turn is not None:
+        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
+    _positive("--turns", request.turns, "turns; 1 is one period of the driver")
+    if request.drive not in ("prescribed", "servo"):
+        raise CrankcheckError(f"--drive {request.drive!r}: unknown; use prescribed or servo")
+    scenes = chosen_scenes(request.scenes)
+    engines = chosen_engines(request.engines)
+    profiles = chosen_profiles(request.profiles, engines)
+    return [
+        Cell(
+            scene=scene,
+            engine=name,
+            profile=profile,
+            dt_s=dt_s,
+            steps=steps,
+            gated=gated,
+            drive=cast(Drive, request.drive),
+            tolerance=tolerance,
+            converge=request.converge,
+        )
+        for scene in scenes
+        for dt_s, steps in [_step(request, scene)]
+        for profile, gated in profiles
+        for name in engines
+    ]
+
+
+def _step(request: Request, scene: Scene) -> tuple[float, int]:
+    """Step [s] and number of steps for a scene."""
+    period = scene.driver.law.period_s
+    if request.dt_s is not None:
+        _positive("--dt", request.dt_s, "seconds, such as 1e-3")
+        option, dt_s = f"--dt {request.dt_s:g}", request.dt_s
+    else:
+        per_turn = STEPS_PER_TURN if request.steps_per_turn is None else request.steps_per_turn
+        _positive("--steps-per-turn", per_turn, "steps, such as 720")
+        option, dt_s = f"--steps-per-turn {per_turn:g}", period / per_turn
+    if period / dt_s < LEAST_STEPS * (1 - 1e-12):
+        raise CrankcheckError(
+            f"{option}: {period / dt_s:.3g} steps in a turn of {scene.name} ({period:.4g} s); a turn "
+            f"needs at least {LEAST_STEPS}, so dt at most {period / LEAST_STEPS:.4g} s"
+        )
+    steps = math.ceil(request.turns * period / dt_s * (1 - 1e-12))
+    if steps > MOST_STEPS:
+        raise CrankcheckError(
+            f"{option} --turns {request.turns:g}: {steps} steps of {scene.name}; at most "
+            f"{MOST_STEPS} are logged; take a longer step or fewer turns"
+        )
+    return dt_s, max(steps, 1)
+
+
+def _positive(option: str, value: float, unit: str) -> None:
+    if not (math.isfinite(value) and value > 0.0):
+        raise CrankcheckError(f"{option} {value:g}: give a number above 0, in {unit}")
+
+
+def _check_outputs(request: Request) -> None:
+    """Refuse outputs that can not be written, before the run."""
+    for option, path in (
+        ("--junit", request.junit),
+        ("--csv", request.csv),
+        ("--json", request.json),
+    ):
+        if path is not None:
+            check_file(path, option)
+    if request.folder is not None:
+        check_folder(request.folder, "-o")
+
+
+def _engines(cells: Sequence[Cell]) -> list[str]:
+    return list(dict.fromkeys(cell.engine for cell in cells))
+
+
+def _write(request: Request, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    folder = request.folder
+    wanted = {
+        "verify.csv": request.csv,
+        "verify.json": request.json,
+        "verify.junit.xml": request.junit,
+    }
+    for name, path in wanted.items():
+        targets = [path] if path else []
+        targets += [folder / name] if folder else []
+        for target in targets:
+            write(target, _content(name, checked, facts))
+    if folder:
+        write(folder / "errors.parquet", _parquet(error_frame(checked)))
+
+
+def _content(name: str, checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """The text of one output."""
+    if name.endswith(".csv"):
+        return cell_frame(checked).to_csv(index=False, lineterminator="\n")
+    if name.endswith(".xml"):
+        return junit(checked, facts)
+    return _json(checked, facts)
+
+
+def _json(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """Facts and cells with their findings; what is not finite is null."""
+    cells = [
+        cell_row(one)
+        | {
+            "settings": dict(one.settings),
+            "not_reported": list(one.errors.not_reported) if one.errors else [],
+            "notes": list(one.errors.notes) if one.errors else [],
+            "findings": [vars(finding) for finding in one.findings],
+        }
+        for one in checked
+    ]
+    return json.dumps(_finite({"provenance": dict(facts), "cells": cells}), indent=1) + "\n"
+
+
+def _finite(value: object) -> object:
+    """The value with numbers that JSON has no name for as None."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
+
+
+def _parquet(frame: pd.DataFrame) -> bytes:
+    buffer = io.BytesIO()
+    frame.to_parquet(buffer, index=False)
+    return buffer.getvalue()

@@ -1,0 +1,193 @@
+"""Compare a run with the reference: total, geometric, drive and closure errors, rates and all.
+
+Total error: the reference at the commanded time. Geometric error: the reference at the crank angle
+that the engine logged, so that a crank which lags shows in the drive and not in the geometry.
+Velocities and accelerations come twice: as the engine reports them, against the reference at the
+instants they belong to; and by differencing the logged positions, against the reference
+differenced in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from analytic.kinematics import solve, solve_driven
+from models.errors import ReachError
+from models.motion import Motion
+from models.scene import Scene
+from reports.errors import Error, Errors, Kind, Source
+from reports.series import Array, angle_error, length, rate, second_rate, size
+from reports.tracks import QUANTITIES, Track, tracks
+from sim.engine import Run
+
+EPSILON = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class _Instants:
+    """The samples of a series: time [s] and commanded driver angle [rad], each (T,)."""
+
+    time_s: Array
+    driver_rad: Array
+
+
+def compare(scene: Scene, run: Run) -> Errors | None:
+    """The errors of a run, or None where it logged nothing.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that was run.
+    run : Run
+        Samples that are not finite give errors that are not finite.
+
+    Returns
+    -------
+    Errors or None
+        One row per quantity, body, source and kind.
+    """
+    motion = run.motion
+    if motion is None or motion.time_s.size == 0:
+        return None
+    at = _instants(scene, motion.time_s)
+    reference = solve(scene, motion.time_s)
+    placed = list(tracks(scene, motion, reference, 0))
+    geometric, notes = _geometric(scene, motion, at)
+    reported, not_reported = _reported(scene, run, motion, reference)
+    return Errors(
+        rows=(
+            _drive(scene, motion, at),
+            *(_row(track, at) for track in placed),
+            *geometric,
+            *_gaps(scene, run, at),
+            *reported,
+            *_differenced(scene, placed, at),
+        ),
+        not_reported=not_reported,
+        notes=notes,
+        curvature=_curvature(scene, reference),
+        conditioning=min((float(np.min(s)) for s in reference.conditioning.values()), default=1.0),
+        step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+    )
+
+
+def places(scene: Scene, motion: Motion) -> list[Error]:
+    """Total errors of angle, displacement and position alone, without the reference's bound."""
+    at = _instants(scene, motion.time_s)
+    reference = solve(scene, motion.time_s, bound=False)
+    return [_row(track, at) for track in tracks(scene, motion, reference, 0)]
+
+
+def _instants(scene: Scene, time_s: Array) -> _Instants:
+    return _Instants(time_s, scene.driver.law.at(time_s)[0])
+
+
+def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = "total") -> Error:
+    """A track as numbers."""
+    measured = size(length(track.error))
+    return Error(
+        quantity=track.quantity,
+        body_kind=track.body_kind,
+        body=track.body,
+        source=source,
+        kind=kind,
+        unit=track.unit,
+        scale=track.scale,
+        maximum=measured.maximum,
+        rms=measured.rms,
+        final=measured.final,
+        time_of_maximum_s=float(at.time_s[measured.index]),
+        driver_at_maximum_rad=float(at.driver_rad[measured.index]),
+        bound=float(np.max(track.bound, initial=0.0)),
+        samples=int(track.error.shape[0]),
+    )
+
+
+def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
+    """How far the driver is from where it was told to be."""
+    name = scene.driver.link
+    magnitude = float(np.max(np.abs(at.driver_rad)))
+    error = angle_error(motion.links[name].theta, at.driver_rad)
+    bound = 2 * EPSILON * np.abs(at.driver_rad)
+    return _row(Track("drive", "driver", name, error, bound, magnitude, 1.0, "rad"), at)
+
+
+def _geometric(scene: Scene, motion: Motion, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
+    """Errors against the reference at the logged crank angle, or a note that says why not."""
+    theta = motion.links[scene.driver.link].theta
+    if not np.all(np.isfinite(theta)):
+        return [], ("no geometric error: the logged crank angle is not finite",)
+    still = np.zeros_like(theta)
+    try:
+        reference = solve_driven(scene, theta, still, still, motion.time_s, bound=False)
+    except ReachError as error:
+        return [], (f"no geometric error: the logged crank left its range ({error})",)
+    found = tracks(scene, motion, reference, 0)
+    return [_row(track, at, kind="geometric") for track in found], ()
+
+
+def _gaps(scene: Scene, run: Run, at: _Instants) -> Iterable[Error]:
+    """How far the bodies that share a pin or slider have come apart."""
+    for name, gap in run.gaps.items():
+        kind: Literal["slider", "point"] = "slider" if name in scene.sliders else "point"
+        none = np.zeros_like(gap)
+        yield _row(Track("gap", kind, name, gap, none, 0.0, scene.longest_m, "m"), at)
+
+
+def _reported(
+    scene: Scene, run: Run, motion: Motion, reference: Motion
+) -> tuple[list[Error], tuple[str, ...]]:
+    """Velocities and accelerations as the engine gives them, and the bodies without."""
+    rows: list[Error] = []
+    missing: list[str] = []
+    for order, instants in ((1, run.velocity_time_s), (2, run.acceleration_time_s)):
+        time_s = motion.time_s if instants is None else instants
+        known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
+        at = _instants(scene, time_s)
+        for track in tracks(scene, motion, known, 1 if order == 1 else 2):
+            # An engine without accelerations gives NaN throughout; one NaN among numbers is a fault.
+            if order == 2 and bool(np.all(np.isnan(track.error))):
+                missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
+            else:
+                rows.append(_row(track, at))
+    return rows, tuple(missing)
+
+
+def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[Error]:
+    """Velocities and accelerations from the logged positions, by central differences."""
+    if at.time_s.size < 3:
+        return
+    step_s = float(at.time_s[1] - at.time_s[0])
+    speed = scene.driver.law.peak_speed_rad_s
+    inner = _Instants(at.time_s[1:-1], at.driver_rad[1:-1])
+    for track in placed:
+        # The logged numbers are rounded too: that is part of what a difference is uncertain by.
+        unsure = track.bound + EPSILON * track.magnitude
+        for order, series, bound in (
+            (1, rate(track.error, step_s), unsure / step_s),
+            (2, second_rate(track.error, step_s), 4 * unsure / step_s**2),
+        ):
+            differenced = replace(
+                track,
+                quantity=QUANTITIES[track.body_kind][order],
+                error=series,
+                bound=bound,
+                scale=track.scale * speed**order,
+                unit=track.unit + ("", "/s", "/s^2")[order],
+            )
+            yield _row(differenced, inner, source="differenced")
+
+
+def _curvature(scene: Scene, reference: Motion) -> float:
+    """The largest pure acceleration of the reference, at least 1."""
+    speed = scene.driver.law.peak_speed_rad_s
+    turning = [float(np.max(np.abs(link.alpha))) for link in reference.links.values()]
+    moving = [
+        float(np.max(length(point.acceleration))) / scene.longest_m
+        for point in reference.points.values()
+    ]
+    return max([1.0, *(size / speed**2 for size in turning + moving)])

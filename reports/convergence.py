@@ -1,0 +1,83 @@
+"""What an error does when the step is halved, in words and numbers.
+
+Three steps are the least that can tell a floor from a slope: from errors e1, e2, e3 at dt, dt/2,
+dt/4 the model floor + C dt^p gives 2^p = (e1 - e2) / (e2 - e3) and the floor e3 - (e2 - e3) /
+(2^p - 1).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+Trend = Literal["shrinks", "levels off", "does not shrink", "grows", "at rounding", "diverges"]
+
+AT_ROUNDING = 1e-11
+"""A pure error that rounding over a run of thousands of steps explains by itself."""
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """The largest position-like error [``unit``] at each step, and what follows from it.
+
+    ``order`` is the mean slope over the steps, NaN where there is none; ``floor`` the error that
+    remains for dt to 0, NaN where none is seen.
+    """
+
+    dt_s: tuple[float, ...]
+    error: tuple[float, ...]
+    unit: str
+    trend: Trend
+    order: float
+    floor: float
+
+    @property
+    def words(self) -> str:
+        """A few words for a table."""
+        if self.trend == "shrinks":
+            return f"shrinks, order {self.order:.1f}"
+        if self.trend in ("does not shrink", "levels off"):
+            return f"{self.trend}: floor {self.floor:.1e}"
+        return self.trend
+
+
+def convergence(dt_s: Sequence[float], error: Sequence[float], unit: str) -> Convergence:
+    """Read three errors at dt, dt/2, dt/4 (see the module).
+
+    Raises
+    ------
+    ValueError
+        Not exactly three steps.
+    """
+    if len(dt_s) != 3 or len(error) != 3:
+        raise ValueError(f"{len(error)} steps: a floor needs three")
+    trend, order, floor = _read(*error)
+    return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor)
+
+
+def _read(e1: float, e2: float, e3: float) -> tuple[Trend, float, float]:
+    """Trend, order and floor of three errors, each step half the one before."""
+    if not all(math.isfinite(e) for e in (e1, e2, e3)):
+        return "diverges", math.nan, math.nan
+    if max(e2, e3) <= AT_ROUNDING:
+        return "at rounding", math.nan, math.nan
+    order = math.log2(e1 / e3) / 2 if e3 > 0.0 and e1 > 0.0 else math.nan
+    if e3 > 1.1 * e1:
+        return "grows", order, math.nan
+    if e3 > 0.6 * e1:
+        return "does not shrink", order, _floor(e1, e2, e3)
+    floor = _floor(e1, e2, e3)
+    if floor > 0.5 * e3:
+        return "levels off", order, floor
+    return "shrinks", order, math.nan
+
+
+def _floor(e1: float, e2: float, e3: float) -> float:
+    """The limit for dt to 0 of floor + C dt^p through three errors; the last one where the errors
+    do not fall like that."""
+    first, second = e1 - e2, e2 - e3
+    if second <= 0.0 or first <= second:
+        return e3
+    return max(e3 - second / (first / second - 1.0), 0.0)

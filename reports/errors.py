@@ -1,0 +1,89 @@
+"""What a comparison found: one `Error` per quantity and body, and the reference's own facts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
+Source = Literal["reported", "differenced"]
+Kind = Literal["total", "geometric"]
+BodyKind = Literal["driver", "link", "slider", "point"]
+
+
+@dataclass(frozen=True)
+class Error:
+    """One error series in numbers, in ``unit``.
+
+    ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
+    driver's speed (times that length) for velocities, its square for accelerations. ``bound`` is
+    the largest error of the reference itself [unit].
+    """
+
+    quantity: Quantity
+    body_kind: BodyKind
+    body: str
+    source: Source
+    kind: Kind
+    unit: str
+    scale: float
+    maximum: float
+    rms: float
+    final: float
+    time_of_maximum_s: float
+    driver_at_maximum_rad: float
+    bound: float
+    samples: int
+
+    @property
+    def pure(self) -> float:
+        """The maximum as a pure number."""
+        return self.maximum / self.scale
+
+    @property
+    def pure_bound(self) -> float:
+        """The reference's own error as a pure number."""
+        return self.bound / self.scale
+
+    @property
+    def tolerance(self) -> str:
+        """The name of the tolerance that a total error is held to."""
+        return self.quantity + ("-differenced" if self.source == "differenced" else "")
+
+    @property
+    def finite(self) -> bool:
+        return math.isfinite(self.maximum)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """All errors of one run.
+
+    ``curvature`` is the largest pure acceleration of the reference (at least 1) and
+    ``conditioning`` its smallest sine of a transmission angle: both say how hard the scene is.
+    ``step_rad`` is the driver's peak speed times the time between two steps.
+    """
+
+    rows: tuple[Error, ...]
+    not_reported: tuple[str, ...]
+    notes: tuple[str, ...]
+    curvature: float
+    conditioning: float
+    step_rad: float
+
+    def worst(
+        self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"
+    ) -> Error | None:
+        """The largest error of a quantity as a pure number (not finite counts as largest)."""
+        return largest(
+            row
+            for row in self.rows
+            if (row.quantity, row.source, row.kind) == (quantity, source, kind)
+        )
+
+
+def largest(rows: Iterable[Error]) -> Error | None:
+    """The row with the largest pure error; one that is not finite is larger than any."""
+    return max(rows, key=lambda row: row.pure if row.finite else math.inf, default=None)

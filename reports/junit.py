@@ -1,0 +1,75 @@
+"""A verification as JUnit XML, which continuous integration reads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from xml.etree import ElementTree as Xml
+
+from reports.cell import Checked
+from reports.rules import RULES
+from reports.rules.base import Finding
+
+NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML 1.0 can not hold, escaped or not."""
+
+
+def junit(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """One test case per cell; a cell that is shown without being gated is skipped, with its
+    findings in the message."""
+    suite = Xml.Element(
+        "testsuite",
+        name="crankcheck verify",
+        tests=str(len(checked)),
+        failures=str(sum(_fails(one) and one.verdict == "out" for one in checked)),
+        errors=str(sum(_fails(one) and one.verdict == "unsupported" for one in checked)),
+        skipped=str(sum(not one.cell.gated for one in checked)),
+        timestamp=facts["made"].removesuffix("+00:00"),
+    )
+    properties = Xml.SubElement(suite, "properties")
+    for name, value in facts.items():
+        Xml.SubElement(properties, "property", name=_clean(name), value=_clean(value))
+    for one in checked:
+        _case(suite, one)
+    root = Xml.Element("testsuites")
+    root.append(suite)
+    Xml.indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(root, "unicode") + "\n"
+
+
+def _fails(one: Checked) -> bool:
+    return one.cell.gated and one.verdict != "within"
+
+
+def _case(suite: Xml.Element, one: Checked) -> None:
+    """One cell."""
+    cell = one.cell
+    case = Xml.SubElement(
+        suite,
+        "testcase",
+        classname=_clean(f"crankcheck.{cell.engine}.{cell.profile}"),
+        name=_clean(cell.scene.name),
+    )
+    text = "\n".join(_line(finding) for finding in one.failures)
+    head = one.failures[0].text if one.failures else "within tolerance"
+    if not cell.gated:
+        Xml.SubElement(case, "skipped", message=_clean(f"shown, not gated: {head}"))
+    elif one.verdict == "unsupported":
+        Xml.SubElement(case, "error", message=_clean(head), type="unsupported").text = _clean(text)
+    elif one.failures:
+        rule = one.failures[0].rule
+        Xml.SubElement(case, "failure", message=_clean(head), type=rule).text = _clean(text)
+    notes = [_line(finding) for finding in one.advice]
+    if notes:
+        Xml.SubElement(case, "system-out").text = _clean("\n".join(notes))
+
+
+def _line(finding: Finding) -> str:
+    """A finding with its rule and cure."""
+    rule = RULES[finding.rule]
+    return f"{rule.id} {rule.title}: {finding.text}\n  cure: {rule.cure}"
+
+
+def _clean(text: str) -> str:
+    """The text with what XML can not hold replaced."""
+    return NOT_XML.sub("\ufffd", text)

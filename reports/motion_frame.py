@@ -1,0 +1,59 @@
+"""A motion as a pandas frame with units in the column names."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+import pandas as pd
+
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+
+Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
+
+
+def motion_frame(motion: Motion) -> pd.DataFrame:
+    """One row per sample: each link, point and slider with its rates, vectors also by length."""
+    columns: dict[str, object] = {"time_s": motion.time_s}
+    for name, link in motion.links.items():
+        columns[f"{name}_theta_rad"] = link.theta
+        columns[f"{name}_omega_rad_s"] = link.omega
+        columns[f"{name}_alpha_rad_s2"] = link.alpha
+    for name, point in motion.points.items():
+        for symbol, vectors, unit in (
+            ("", point.position, "m"),
+            ("v", point.velocity, "m_s"),
+            ("a", point.acceleration, "m_s2"),
+        ):
+            columns[f"{name}_{symbol}x_{unit}"] = vectors[:, 0]
+            columns[f"{name}_{symbol}y_{unit}"] = vectors[:, 1]
+            if symbol:
+                columns[f"{name}_{symbol}_{unit}"] = np.hypot(vectors[:, 0], vectors[:, 1])
+    for name, slider in motion.sliders.items():
+        columns[f"{name}_slider_displacement_m"] = slider.displacement
+        columns[f"{name}_slider_speed_m_s"] = slider.speed
+        columns[f"{name}_slider_acceleration_m_s2"] = slider.acceleration
+    return pd.DataFrame(columns)
+
+
+def cleaned(motion: Motion) -> Motion:
+    """The motion with numbers that are 0 within their own bound as 0, to be read by people."""
+    if motion.bound is None:
+        return motion
+    links, points, sliders = motion.bound.links, motion.bound.points, motion.bound.sliders
+    return replace(
+        motion,
+        links={n: _cleaned(m, links[n]) for n, m in motion.links.items()},
+        points={n: _cleaned(m, points[n]) for n, m in motion.points.items()},
+        sliders={n: _cleaned(m, sliders[n]) for n, m in motion.sliders.items()},
+    )
+
+
+def _cleaned(body: Body, bound: Body) -> Body:
+    """One body's arrays; a bound is per sample, also for vectors."""
+    fields = {}
+    for name, values in vars(body).items():
+        limit = vars(bound)[name]
+        fields[name] = np.where(np.abs(values.T) <= limit, 0.0, values.T).T
+    return type(body)(**fields)

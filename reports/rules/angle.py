@@ -1,0 +1,21 @@
+"""CC103: the links point where they should."""
+
+from __future__ import annotations
+
+from reports.rules.base import Evidence, Finding, within
+
+
+class AngleWithin:
+    id = "CC103"
+    title = "angle"
+    explanation = (
+        "The angle of every link but the driver against the closed form at the commanded time."
+    )
+    cure = (
+        "Shorten the step (--steps-per-turn); compare the geometric error: where that is "
+        "small, mend the drive; where it does not shrink with the step, use profile "
+        "tuned."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        return within(self.id, evidence, "angle", "angle")

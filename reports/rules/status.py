@@ -1,0 +1,19 @@
+"""CC101: the run came to its end."""
+
+from __future__ import annotations
+
+from reports.rules.base import Evidence, Finding
+
+
+class StatusOk:
+    id = "CC101"
+    title = "status"
+    explanation = "A run that stopped early, or never started, says nothing about the rest."
+    cure = "Shorten the step (--steps-per-turn), or use profile tuned; the reason says what broke."
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.status == "ok":
+            return Finding(self.id, "pass", "the run came to its end")
+        reason = f": {evidence.reason}" if evidence.reason else ""
+        at = f" at t = {evidence.stopped_at_s:.4g} s" if evidence.stopped_at_s > 0.0 else ""
+        return Finding(self.id, "fail", f"{evidence.status}{at}{reason}")

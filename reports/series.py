@@ -1,0 +1,68 @@
+"""Error series: unwrap an angle, difference over time, and say how large and where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large an error series is, in the unit of the series.
+
+    ``maximum`` is NaN as soon as one sample is not finite: a number that is missing is a failure,
+    not a sample to leave out. ``index`` is where the maximum stands, or the first such sample.
+    """
+
+    maximum: float
+    rms: float
+    final: float
+    index: int
+
+
+def size(series: Array) -> Size:
+    """Maximum, root mean square and last value of the magnitude of ``series`` (T,)."""
+    broken = np.flatnonzero(~np.isfinite(series))
+    if broken.size:
+        return Size(math.nan, math.nan, float(series[-1]), int(broken[0]))
+    magnitude = np.abs(series)
+    index = int(np.argmax(magnitude))
+    largest = float(magnitude[index])
+    # Squares of the pure ratio: no overflow for an engine that has run away.
+    rms = largest * float(np.sqrt(np.mean((magnitude / largest) ** 2))) if largest > 0.0 else 0.0
+    return Size(largest, rms, float(magnitude[-1]), index)
+
+
+def angle_error(engine: Array, reference: Array) -> Array:
+    """Continuous difference of two angles [rad], less the whole turns that it starts with.
+
+    The engine may count turns from elsewhere; after the first sample a whole turn is an error.
+    """
+    if not np.all(np.isfinite(engine)):
+        return engine - reference  # unwrapping would smear one NaN over all later samples
+    error = np.unwrap(engine - reference)
+    return error - math.tau * np.round(error[0] / math.tau)
+
+
+def length(vectors: Array) -> Array:
+    """Euclidean length of each row of (T, 2); of a (T,) series its magnitude."""
+    return np.hypot(vectors[:, 0], vectors[:, 1]) if vectors.ndim == 2 else np.abs(vectors)
+
+
+def rate(error: Array, step_s: float) -> Array:
+    """First derivative by central differences; the two ends are dropped.
+
+    The derivative of the *error* is the difference of the two differenced motions: the truncation
+    of the formula, the same for engine and reference, cancels, and what is left is the engine's.
+    """
+    return np.asarray((error[2:] - error[:-2]) / (2.0 * step_s))
+
+
+def second_rate(error: Array, step_s: float) -> Array:
+    """Second derivative by central differences; the two ends are dropped."""
+    return np.asarray((error[2:] - 2.0 * error[1:-1] + error[:-2]) / step_s**2)

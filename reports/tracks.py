@@ -1,0 +1,94 @@
+"""Pair what an engine logged with the reference: one track per body and quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import Scene
+from reports.errors import BodyKind, Quantity
+from reports.series import Array, angle_error
+
+Order = Literal[0, 1, 2]
+QUANTITIES: dict[BodyKind, tuple[Quantity, Quantity, Quantity]] = {
+    "link": ("angle", "velocity", "acceleration"),
+    "slider": ("displacement", "velocity", "acceleration"),
+    "point": ("position", "velocity", "acceleration"),
+}
+
+
+@dataclass(frozen=True)
+class Track:
+    """One quantity of one body over time.
+
+    ``error`` is engine less reference [unit], (T,) or (T, 2); ``bound`` (T,) what the reference
+    may be wrong by; ``magnitude`` the largest number in the log, which rounding is relative to;
+    ``scale`` makes a pure number of the error.
+    """
+
+    quantity: Quantity
+    body_kind: BodyKind
+    body: str
+    error: Array
+    bound: Array
+    magnitude: float
+    scale: float
+    unit: str
+
+
+def tracks(scene: Scene, motion: Motion, reference: Motion, order: Order) -> Iterator[Track]:
+    """Tracks of every link, slider and moving point: the place itself (0), or a rate of it.
+
+    Points of the ground can not move and are left out, as is the driver's angle: it is the drive. Where the engine gives no numbers at
+    all for a rate the error is NaN throughout.
+    """
+    speed = scene.driver.law.peak_speed_rad_s**order
+    suffix = ("", "/s", "/s^2")[order]
+    for kind, body, engine, right, bound in _pairs(motion, reference, order):
+        if kind == "link" and order == 0 and body == scene.driver.link:
+            continue
+        if kind == "point" and body in scene.ground:
+            continue
+        turns = kind == "link"
+        yield Track(
+            quantity=QUANTITIES[kind][order],
+            body_kind=kind,
+            body=body,
+            error=angle_error(engine, right) if turns and order == 0 else engine - right,
+            bound=np.zeros_like(motion.time_s) if bound is None else bound,
+            magnitude=float(np.max(np.abs(right), initial=0.0)),
+            scale=speed if turns else scene.longest_m * speed,
+            unit=("rad" if turns else "m") + suffix,
+        )
+
+
+def _pairs(
+    motion: Motion, reference: Motion, order: Order
+) -> Iterator[tuple[BodyKind, str, Array, Array, Array | None]]:
+    """Body kind, body, the engine's series, the reference's, and the reference's bound."""
+    known = reference.bound
+    for name, link in motion.links.items():
+        sure = None if known is None else _link(known.links[name], order)
+        yield "link", name, _link(link, order), _link(reference.links[name], order), sure
+    for name, slider in motion.sliders.items():
+        sure = None if known is None else _slider(known.sliders[name], order)
+        yield "slider", name, _slider(slider, order), _slider(reference.sliders[name], order), sure
+    for name, point in motion.points.items():
+        sure = None if known is None else _point(known.points[name], order)
+        yield "point", name, _point(point, order), _point(reference.points[name], order), sure
+
+
+def _link(motion: LinkMotion, order: Order) -> Array:
+    return (motion.theta, motion.omega, motion.alpha)[order]
+
+
+def _slider(motion: SliderMotion, order: Order) -> Array:
+    return (motion.displacement, motion.speed, motion.acceleration)[order]
+
+
+def _point(motion: PointMotion, order: Order) -> Array:
+    return (motion.position, motion.velocity, motion.acceleration)[order]

@@ -1,0 +1,180 @@
+"""A verification on the terminal: failures first with their cure, then the tables, then where the
+numbers come from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from reports.cell import Checked
+from reports.errors import Error, largest
+from reports.rules import RULES
+from reports.rules.base import Finding
+
+MARKS = {
+    "within": Text("ok", "green"),
+    "out": Text("OUT", "bold red"),
+    "unsupported": Text("NONE", "bold red"),
+}
+
+
+def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
+    """Print the whole verification."""
+    failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
+    for one in failed:
+        _failure(console, one)
+    for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
+        chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
+        console.print(_table(profile, gated, chosen))
+    _advice(console, checked)
+    console.print(_summary(checked, failed))
+    console.print(_footer(checked, facts), style="dim", highlight=False)
+
+
+def _failure(console: Console, one: Checked) -> None:
+    """One gated cell out of tolerance: what is wrong, and what would mend it."""
+    console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
+    for finding in one.failures:
+        rule = RULES[finding.rule]
+        _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
+        _hanging(console, "        cure: ", rule.cure, style="cyan")
+    console.print()
+
+
+def _hanging(console: Console, head: str, text: str, style: str = "") -> None:
+    """A paragraph whose later lines stand below its text."""
+    grid = Table.grid(padding=0)
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    grid.add_row(Text(head, style), Text(text, style))
+    console.print(grid)
+
+
+def _mark(one: Checked) -> Text:
+    return MARKS[one.verdict]
+
+
+def _table(profile: str, gated: bool, chosen: Sequence[Checked]) -> Table:
+    """The cells of one profile, those out of tolerance first."""
+    role = "gated" if gated else "shown, not gated"
+    table = Table(
+        title=f"profile {profile} ({role})",
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        padding=(0, 1, 0, 0),
+        collapse_padding=True,
+    )
+    table.add_column("")
+    table.add_column("scene", overflow="fold", min_width=12)
+    table.add_column("engine", no_wrap=True)
+    for head in ("angle\nrad", "place\n/ L", "gap\n/ L", "veloc.\n/ w", "accel.\n/ w^2"):
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_column("of its limit", no_wrap=True)
+    table.add_column("as dt is halved", overflow="fold")
+    for one in sorted(chosen, key=lambda one: one.verdict == "within"):
+        table.add_row(*_cells(one))
+    return table
+
+
+def _cells(one: Checked) -> list[Text | str]:
+    """One row."""
+    errors = one.errors
+    head: list[Text | str] = [_mark(one), one.cell.scene.name, one.cell.engine]
+    if errors is None:
+        return [*head, *["-"] * 5, "", Text(f"{one.status}: {one.reason}", "red")]
+    place = largest(
+        row
+        for row in errors.rows
+        if row.quantity in ("displacement", "position") and row.kind == "total"
+    )
+    numbers = [
+        errors.worst("angle"),
+        place,
+        errors.worst("gap"),
+        errors.worst("velocity"),
+        errors.worst("acceleration"),
+    ]
+    seen = one.convergence.words if one.convergence else ""
+    if one.status != "ok":
+        seen = f"{one.status} at t = {one.stopped_at_s:.3g} s"
+    return [*head, *(_number(error) for error in numbers), _share(one.findings), seen]
+
+
+def _number(error: Error | None) -> str:
+    """A pure number, or a dash where nothing of the kind was reported."""
+    return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
+
+
+def _share(findings: Sequence[Finding]) -> Text:
+    """The largest share of a limit that an error takes, and whose it is."""
+    shares = [
+        (finding.number / finding.limit, RULES[finding.rule].title)
+        for finding in findings
+        if finding.number is not None and finding.limit and finding.rule != "CC112"
+    ]
+    if not shares:
+        return Text("")
+    share, title = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
+    if math.isnan(share):
+        return Text("not finite", "red")
+    text = f"{share:.0%}" if share < 10 else f"x {share:.0f}" if share < 1e4 else f"x {share:.0e}"
+    style = "red" if share > 1 else "yellow" if share > 0.5 else ""
+    return Text(f"{text} {title.replace(', reported', '').replace('differenced', 'diff.')}", style)
+
+
+def _advice(console: Console, checked: Sequence[Checked]) -> None:
+    """What is not a failure and still worth knowing: one line per rule, profile and engine."""
+    groups: dict[tuple[str, str, str], list[tuple[Checked, Finding]]] = {}
+    for one in checked:
+        for finding in one.advice:
+            key = (finding.rule, one.cell.engine, one.cell.profile)
+            groups.setdefault(key, []).append((one, finding))
+    for (rule, engine, profile), members in groups.items():
+        one, finding = members[0]
+        others = f" (and {len(members) - 1} more scenes)" if len(members) > 1 else ""
+        head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
+        console.print(Text(f"{head}{finding.text}"))
+        console.print(Text(f"  {RULES[rule].cure}", "cyan"))
+    if groups:
+        console.print()
+
+
+def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
+    """The verdict in one line."""
+    gated = [one for one in checked if one.cell.gated]
+    scenes = len({one.cell.scene.name for one in gated})
+    engines = len({one.cell.engine for one in gated})
+    what = f"{len(gated)} cells ({scenes} scenes x {engines} engines)"
+    if failed:
+        return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
+    return Text(f"WITHIN TOLERANCE: all {what}", "bold green")
+
+
+def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """Units, steps and versions."""
+    steps = sorted({round(one.cell.steps_per_turn, 3) for one in checked})
+    turns = sorted({round(one.cell.turns, 3) for one in checked})
+    dts = sorted({one.cell.dt_s for one in checked})
+    drives = [e for one in checked if one.errors and (e := one.errors.worst("drive"))]
+    drive = largest(drives)
+    lines = [
+        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
+        "peak speed.",
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {_span(turns)} turns; "
+        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
+        + "- not reported.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    return escape("\n".join(lines))
+
+
+def _span(values: Sequence[float]) -> str:
+    """One value, or the smallest and the largest."""
+    low, high = f"{values[0]:.4g}", f"{values[-1]:.4g}"
+    return low if low == high else f"{low} to {high}"

@@ -1,0 +1,72 @@
+"""The one place that writes files: checked before the work, whole or not at all after it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from pathlib import Path
+
+from models.errors import CrankcheckError
+
+
+def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
+    """Refuse a file that could not be written, before anything is run.
+
+    Raises
+    ------
+    CrankcheckError
+        An ending that is not one of ``endings``, a folder in its place, no folder to hold it, or
+        no right to write there.
+    """
+    if endings and path.suffix.lower() not in endings:
+        ending = repr(path.suffix) if path.suffix else "no ending"
+        raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
+    if path.is_dir():
+        raise CrankcheckError(f"{option} {path}: a folder; name a file in it")
+    if path.exists():
+        if not os.access(path, os.W_OK):
+            raise CrankcheckError(f"{option} {path}: no right to write it; choose another file")
+        return
+    folder = path.parent
+    if not folder.is_dir():
+        raise CrankcheckError(f"{option} {path}: there is no folder {folder}; create it first")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise CrankcheckError(f"{option} {path}: no right to write in {folder}; choose another")
+
+
+def check_folder(path: Path, option: str) -> None:
+    """Refuse a folder that could be neither written nor created. Raises CrankcheckError."""
+    nearest = path
+    while not nearest.exists() and nearest != nearest.parent:
+        nearest = nearest.parent
+    if not nearest.is_dir():
+        raise CrankcheckError(f"{option} {path}: {nearest} is a file; name a folder")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise CrankcheckError(f"{option} {path}: no right to write in {nearest}; choose another")
+
+
+def write(path: Path, content: bytes | str) -> None:
+    """Write a file whole: aside first, then renamed over the old one.
+
+    Raises
+    ------
+    CrankcheckError
+        The system refused (disk full, rights taken away since the check).
+    """
+    raw = content.encode() if isinstance(content, str) else content
+    try:
+        if path.exists() and not path.is_file():  # a device or a pipe can not be renamed over
+            path.write_bytes(raw)
+            return
+        path = path.resolve()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")
+        try:
+            aside.write_bytes(raw)
+            aside.replace(path)
+        finally:
+            with contextlib.suppress(OSError):
+                aside.unlink(missing_ok=True)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise CrankcheckError(f"{path}: can not be written: {why}") from None
