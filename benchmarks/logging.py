@@ -73,7 +73,8 @@ def main() -> int:
             f"{middle:11.3f}{least:11.3f}{limit:>7}{'  MISSED' if over else ''}"
         )
     versions = ", ".join(f"{name} {engine(name).version()}" for name in ("mujoco", "pymunk"))
-    print(f"\n{versions}, numpy {np.__version__}, Python {platform.python_version()}, {processor()}")
+    versions += f", numpy {np.__version__}, Python {platform.python_version()}"
+    print(f"\n{versions}, {processor()}")
     return 1 if missed else 0
 
 

@@ -48,6 +48,11 @@ class Joints:
     prisms: tuple[Prism, ...]
     slots: tuple[Slot, ...]
 
+    @property
+    def slides(self) -> tuple[Prism | Slot, ...]:
+        """Everything that runs on a line."""
+        return (*self.prisms, *self.slots)
+
 
 def block_name(slider: Slider) -> str:
     """The name of the body of a slider block; no link can have it, as link names hold no space."""
@@ -75,7 +80,7 @@ def carriers(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def joints(scene: Scene) -> Joints:
-    """The joints of the scene; a massless block at a point that no body carries has none to hold."""
+    """The joints of the scene; a slot has no bodies where none but its guide carries the point."""
     points = carriers(scene)
     pins = tuple(Pin(point, names) for point, names in points.items() if len(names) > 1)
     prisms, slots = [], []

@@ -30,7 +30,9 @@ FLYWHEEL_RATIO = 1e12
 """Armature of the driven hinge over the inertia scale of the scene."""
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
-Attributes = Mapping[str, str | float | int | Sequence[float]]
+Value = str | float | int | Sequence[float]
+Attributes = Mapping[str, Value]
+Row = dict[str, Value]
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def build(scene: Scene, state: State, writing: Writing = DEFAULT) -> str:
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
         f"  <!-- {_comment(scene.source)} -->",
-        "  <!-- Planar: the mechanism lies in the x-y plane, hinges turn about z. SI units, rad. -->",
+        "  <!-- Planar: in the x-y plane, hinges turn about z. SI units, angles in rad. -->",
         '  <compiler angle="radian" inertiafromgeom="false"/>',
         *_options(scene, writing),
         *_defaults(scene, writing),
@@ -114,13 +116,13 @@ def _options(scene: Scene, writing: Writing) -> list[str]:
 
 
 def _defaults(scene: Scene, writing: Writing) -> list[str]:
-    """What all elements share: hinges about z, and capsules that touch nothing and weigh nothing."""
+    """What all elements share: hinges about z; capsules that touch nothing and weigh nothing."""
     thin = 0.012 * scene.longest_m
-    seen = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
+    seen: Attributes = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
     lines = [
         "  <default>",
-        f"    <geom{_attributes(seen)} rgba=\"0.35 0.5 0.65 1\"/>",
-        f"    <site{_attributes({'size': 1.5 * thin})} rgba=\"0.8 0.3 0.2 1\"/>",
+        f'    <geom{_attributes(seen)} rgba="0.35 0.5 0.65 1"/>',
+        f'    <site{_attributes({"size": 1.5 * thin})} rgba="0.8 0.3 0.2 1"/>',
         '    <joint axis="0 0 1"/>',
     ]
     if writing.connect:
@@ -139,8 +141,9 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
     """The bodies that hang on ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
-        turn = {"euler": (0.0, 0.0, limb.angle_rad)} if limb.angle_rad else {}
-        place = {"name": limb.body, "pos": (*limb.offset, 0.0)} | turn
+        place: Row = {"name": limb.body, "pos": (*limb.offset, 0.0)}
+        if limb.angle_rad:
+            place["euler"] = (0.0, 0.0, limb.angle_rad)
         lines.append(f"{pad}<body{_attributes(place)}>")
         lines += _freedoms(scene, limb, writing, pad + "  ")
         lines += _matter(scene, limb.body, pad + "  ")
@@ -154,7 +157,7 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
     """The joints of a body; the driver's hinge carries the flywheel."""
     lines = []
     for freedom in limb.freedoms:
-        row: dict[str, str | float | int | Sequence[float]] = {"name": freedom.name}
+        row: Row = {"name": freedom.name}
         if freedom.kind == "slide":
             row |= {"type": "slide", "axis": (*freedom.axis, 0.0)}
         else:
@@ -173,24 +176,25 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
     refuses the flat bodies that would be exact.
     """
     mass, inertia = mass_of(scene, body)
-    row = {"pos": (*centre_of(scene, body), 0.0), "mass": mass, "diaginertia": (inertia,) * 3}
+    row: Row = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
+    row["diaginertia"] = (inertia, inertia, inertia)
     lines = [f"{pad}<inertial{_attributes(row)}/>"]
     if body not in scene.links:
         side = 0.04 * scene.longest_m
         return [*lines, f"{pad}<geom{_attributes({'type': 'box', 'size': (side, side, side)})}/>"]
     points = list(scene.links[body].points.values())
-    for end in points[1:]:
-        lines.append(f"{pad}<geom{_attributes({'fromto': (*points[0], 0.0, *end, 0.0)})}/>")
-    return lines
+    bars: list[Row] = [{"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]]
+    return lines + [f"{pad}<geom{_attributes(bar)}/>" for bar in bars]
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
     """The sites of a body where loops close, each at the body's own coordinates of the point."""
     points = dict.fromkeys(c.point for c in tree.closures if body in c.bodies)
-    return [
-        f"{pad}<site{_attributes({'name': f'{body}.{p}', 'pos': (*local_point(scene, body, p), 0.0)})}/>"
-        for p in points
+    rows: list[Row] = [
+        {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
+        for point in points
     ]
+    return [f"{pad}<site{_attributes(row)}/>" for row in rows]
 
 
 def _equality(tree: Tree) -> list[str]:
@@ -225,7 +229,7 @@ def _actuator(scene: Scene, writing: Writing) -> list[str]:
 def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
     """The assembled state; joints count from the ground outwards, depth first, as MuJoCo does."""
     freedoms = [f for limb in depth_first(tree) for f in limb.freedoms]
-    row: dict[str, str | float | int | Sequence[float]] = {
+    row: Row = {
         "name": "assembled",
         "qpos": tuple(f.ref for f in freedoms),
         "qvel": tuple(f.rate for f in freedoms),
@@ -251,7 +255,7 @@ def _attributes(row: Attributes) -> str:
     return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
 
 
-def _text(value: str | float | int | Sequence[float]) -> str:
+def _text(value: Value) -> str:
     """A value as MJCF text."""
     if isinstance(value, str):
         return value

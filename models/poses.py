@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from models.joints import blocks, local_point, sliding_angle, turned
+from models.joints import blocks, sliding_angle, turned
 from models.motion import State
 from models.scene import GROUND, Point, Scene, Slider
 
@@ -79,8 +79,8 @@ def launched(state: State, delay_s: float) -> State:
         state,
         omega={n: w + delay_s * state.alpha[n] for n, w in state.omega.items()},
         velocity={
-            n: (v[0] + delay_s * state.acceleration[n][0], v[1] + delay_s * state.acceleration[n][1])
-            for n, v in state.velocity.items()
+            n: (vx + delay_s * state.acceleration[n][0], vy + delay_s * state.acceleration[n][1])
+            for n, (vx, vy) in state.velocity.items()
         },
     )
 
@@ -107,8 +107,3 @@ def mass_of(scene: Scene, body: str) -> tuple[float, float]:
         link = scene.links[body]
         return link.mass_kg, link.inertia_kg_m2
     return holder[body].mass_kg, holder[body].inertia_kg_m2
-
-
-def place_of(scene: Scene, state: State, body: str, point: str) -> Point:
-    """Where ``body`` puts ``point`` at ``state`` [m]."""
-    return frames(scene, state)[body].at(local_point(scene, body, point))

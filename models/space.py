@@ -5,10 +5,7 @@ the link's own frame lies. The crank is a kinematic body on its pivot. A massles
 groove that the point of its link runs in. A body that slides on the ground cannot turn: it gets an
 infinite moment; on a moving guide a gear of ratio 1 holds its angle.
 
-Chipmunk's groove solves for both components of the impulse and then drops the one along the line.
-Unless the bodies answer to a push along the line with a motion along the line, the sliding speed
-leaks into the constraint: the point leaves its line, by an error of first order in the step, and a
-slider-crank with a massless piston comes apart. ``lines="exact"`` puts a `Rail` there instead.
+A groove is in error where pushed bodies turn; ``models.rail`` says why, and holds the cure.
 """
 
 from __future__ import annotations
@@ -33,44 +30,10 @@ from models.joints import (
 )
 from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
+from models.rail import Rail
 from models.scene import GROUND, Point, Scene, Slider
 
 Lines = Literal["groove", "exact"]
-
-
-@dataclass(frozen=True)
-class Rail:
-    """A point held on a line by a pin joint whose far end moves along with the point.
-
-    The far end stands across the line from the point, at a fixed distance, in the frame of the
-    guide; it is set between the position and the velocity half of each step. Unlike the groove this
-    is one scalar constraint, across the line.
-    """
-
-    rider: pymunk.Body
-    guide: pymunk.Body
-    anchor: Point
-    start: Point
-    along: Point
-    arm: float
-
-    def joint(self) -> pymunk.PinJoint:
-        """The pin joint, set for the present positions."""
-        joint = pymunk.PinJoint(self.guide, self.rider, (0.0, 0.0), self.anchor)
-        joint.distance = self.arm
-        self.follow(joint, None)
-        joint.pre_solve = self.follow
-        return joint
-
-    def follow(self, joint: pymunk.Constraint, _space: pymunk.Space | None) -> None:
-        """Bring the far end level with the point."""
-        place = self.guide.world_to_local(self.rider.local_to_world(self.anchor))
-        (ux, uy), (x, y) = self.along, self.start
-        s = (place[0] - x) * ux + (place[1] - y) * uy
-        joint.anchor_a = (  # type: ignore[attr-defined]  # pre_solve types it as any constraint
-            x + s * ux - self.arm * uy,
-            y + s * uy + self.arm * ux,
-        )
 
 
 @dataclass(frozen=True)
@@ -88,9 +51,7 @@ class SpaceModel:
     motor: pymunk.SimpleMotor | None
 
 
-def build(
-    scene: Scene, state: State, *, servo: bool = False, lines: Lines = "exact"
-) -> SpaceModel:
+def build(scene: Scene, state: State, *, servo: bool = False, lines: Lines = "exact") -> SpaceModel:
     """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
 
     ``lines`` says what holds points on lines: Chipmunk's ``groove`` everywhere, or, ``exact``, a
@@ -125,7 +86,7 @@ def build(
         motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
         space.add(_plain(motor))
     found = _pins(scene, held, made, centre, servo)
-    for slide in (*held.prisms, *held.slots):
+    for slide in held.slides:
         found += _slide(scene, state, slide, made, centre, lines)
     for constraint in found:
         space.add(_plain(constraint))

@@ -134,7 +134,7 @@ def plan(scene: Scene, state: State, close: Sequence[str] = ()) -> Tree:
         if point not in {c.point for c in closures}:
             able = ", ".join(dict.fromkeys(c.point for c in plan(scene, state).closures))
             raise EngineError(
-                f"close = {point}: no loop of {scene.name} can be closed there; the default is {able}"
+                f"close = {point}: no loop of {scene.name} closes there; the default is {able}"
             )
     return Tree(_limbs(scene, state, edges), closures)
 
@@ -144,7 +144,7 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
     pivot = scene.driver_pivot
     yield [_Edge(GROUND, scene.driver.link, pivot)]
     found = joints(scene)
-    for held in (*found.prisms, *found.slots):
+    for held in found.slides:
         yield _slides(held)
     pairs = [
         (pin.point, _Edge(a, b, pin.point))
@@ -189,12 +189,14 @@ def _check_close(scene: Scene, close: Sequence[str]) -> None:
 
 def _closures(scene: Scene, at_point: _Groups) -> tuple[Closure, ...]:
     """The pins that the tree leaves open: one closure between each two groups at a point."""
-    found = []
+    found: list[Closure] = []
     for pin in joints(scene).pins:
         first = pin.bodies[0]
-        for body in pin.bodies[1:]:
-            if at_point.join((pin.point, first), (pin.point, body)):
-                found.append(Closure(pin.point, (first, body)))
+        found += [
+            Closure(pin.point, (first, body))
+            for body in pin.bodies[1:]
+            if at_point.join((pin.point, first), (pin.point, body))
+        ]
     return tuple(found)
 
 
@@ -218,7 +220,8 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     """One body against its parent, its joint written as one or two coordinates."""
     base, body = where[parent], where[child]
     angle = body.theta - base.theta
-    hinge = Freedom(f"{child}.{edge.point}", "hinge", (0.0, 0.0), 0.0, angle, body.omega - base.omega)
+    rate = body.omega - base.omega
+    hinge = Freedom(f"{child}.{edge.point}", "hinge", (0.0, 0.0), 0.0, angle, rate)
     if edge.slider is None:
         anchor = local_point(scene, child, edge.point)
         arm = turned(anchor, angle)
@@ -228,10 +231,10 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     slider, guide = edge.slider, where[edge.slider.on]
     rider = edge.b
     place = where[rider].at(local_point(scene, rider, edge.point))
-    ref, rate = along(slider, guide, place, where[rider].velocity_at(place))
+    ref, speed = along(slider, guide, place, where[rider].velocity_at(place))
     rides = child == rider  # else the child is the guide, and moves backwards under the rider
     axis = slider.direction_rad + (-angle if rides else math.pi)
-    slide = Freedom(f"{child}.{slider.name}.slide", "slide", (0.0, 0.0), axis, ref, rate)
+    slide = Freedom(f"{child}.{slider.name}.slide", "slide", (0.0, 0.0), axis, ref, speed)
     offset = base.into(body.origin)
     if not edge.turns:
         return Limb(child, parent, offset, angle, (slide,))

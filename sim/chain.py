@@ -13,20 +13,21 @@ from models.tree import Freedom, Limb
 from sim.engine import BodyPose
 
 Array = NDArray[np.float64]
+Plane = NDArray[np.complex128]
 
 
 @dataclass
 class _Moving:
     """A frame over time while the joints of its body are applied; complex numbers for the plane."""
 
-    place: Array
+    place: Plane
     theta: Array
-    speed: Array
+    speed: Plane
     omega: Array
-    push: Array
+    push: Plane
     alpha: Array
 
-    def shifted(self, arm: Array) -> _Moving:
+    def shifted(self, arm: Plane) -> _Moving:
         """The same body seen from a point ``arm`` away, an arm that turns with the body."""
         turn = 1j * self.omega
         return _Moving(
@@ -82,7 +83,7 @@ def _moved(body: _Moving, freedom: Freedom, shift: Array, rate: Array, push: Arr
     return slid
 
 
-def _arm(theta: Array, local: Point) -> Array:
+def _arm(theta: Array, local: Point) -> Plane:
     """A vector of a body's frame in the plane."""
     return np.asarray(np.exp(1j * theta) * complex(*local))
 
@@ -90,7 +91,7 @@ def _arm(theta: Array, local: Point) -> Array:
 def _pose(body: _Moving) -> BodyPose:
     """The frame as real arrays."""
 
-    def pair(number: Array) -> Array:
+    def pair(number: Plane) -> Array:
         return np.stack([number.real, number.imag], axis=-1)
 
     return BodyPose(

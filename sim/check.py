@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.errors import EngineError
-from models.joints import bodies
+from models.joints import block_name, bodies
 from models.motion import State
 from models.poses import Frame, frames, launched, mass_of
 from models.scene import Scene
@@ -22,16 +22,18 @@ SHUT = 1e-12
 """Loop gap at the start, over the longest link, that counts as assembled."""
 
 
-def refuse_other_model(
-    scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive
-) -> None:
+def refuse_other_model(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> None:
     """Raise EngineError, naming everything that differs, unless the engine holds the scene.
 
     Compared are mass, inertia, gravity, position and angle of every body, loop gaps, and the
     velocities at the instant that the engine's own belong to. A prescribed crank need not have a
     mass, nor a body that cannot turn an inertia.
     """
-    faults = [*_matter(scene, facts, drive), *_state(scene, state, facts, dt_s), *_gaps(scene, facts)]
+    faults = [
+        *_matter(scene, facts, drive),
+        *_state(scene, state, facts, dt_s),
+        *_gaps(scene, facts),
+    ]
     if faults:
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
 
@@ -67,9 +69,8 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[st
     peak = max(law.peak_speed_rad_s, *(abs(w) for w in state.omega.values()))
     length = _size(scene, state)
     push = max(math.hypot(*a) for a in state.acceleration.values())
-    poses = facts.start.links | {
-        f"block {name}": pose for name, pose in facts.start.blocks.items()
-    }
+    held = {block_name(scene.sliders[name]): pose for name, pose in facts.start.blocks.items()}
+    poses = {**facts.start.links, **held}
     for body in bodies(scene):
         frame, pose = wanted[body], poses[body]
         turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, math.tau))
@@ -91,8 +92,9 @@ def _place(body: str, pose: BodyPose, frame: Frame, length: float) -> Iterator[s
 
 def _gaps(scene: Scene, facts: Facts) -> Iterator[str]:
     """Joints that are open at the start."""
-    limit = SHUT * max(scene.longest_m, float(max(np.abs(p.origin).max() for p in
-                                                  facts.start.links.values())))
+    limit = SHUT * max(
+        scene.longest_m, float(max(np.abs(p.origin).max() for p in facts.start.links.values()))
+    )
     for name, gap in gaps(scene, facts.start).items():
         if not gap[0] <= limit:
             yield f"{name} is open by {gap[0]:.2e} m"

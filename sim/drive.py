@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 
 def angles(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
     """Crank angle [rad] at the steps ``first`` to ``last``, both included."""
-    return law.at(start_s + dt_s * np.arange(first, last + 1))[0]
+    return law.at(start_s + dt_s * np.arange(first, last + 1, dtype=np.float64))[0]
 
 
 def chords(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:
-    """Mean angular velocity [rad/s] from each step to the next, for the steps ``first``..``last``."""
+    """Mean angular velocity [rad/s] from each step to the next, for steps ``first`` to ``last``."""
     if isinstance(law, ConstantSpeed):
         return np.full(last - first + 1, law.speed_rad_s)
     return np.diff(angles(law, start_s, dt_s, first, last + 1)) / dt_s

@@ -17,9 +17,7 @@ from models.motion import Motion, State
 from models.scene import Point, Scene
 
 Array = NDArray[np.float64]
-Status = Literal[
-    "ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"
-]
+Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
 Drive = Literal["prescribed", "servo"]
 SettingValue = float | int | str
 
@@ -149,7 +147,7 @@ class Engine(Protocol):
 
 @dataclass(frozen=True)
 class Cost:
-    """Wall time of the stepping [s] and the steps it took; logging is part of it when ``logged``."""
+    """Wall time of stepping [s] and the steps it took; logging is part of it when ``logged``."""
 
     wall_s: float
     steps: int

@@ -1,4 +1,4 @@
-"""From the poses of an engine's bodies to the motion of the mechanism, and the gaps in its joints."""
+"""From the poses of an engine's bodies to the motion of the mechanism, and its joint gaps."""
 
 from __future__ import annotations
 
@@ -60,14 +60,13 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     found = {}
     for point, copies in tracks.items():
         places = [t.position for t in copies.values()]
-        apart = [
-            np.hypot(*(a - b).T) for i, a in enumerate(places) for b in places[i + 1 :]
-        ]
+        apart = [np.hypot(*(a - b).T) for i, a in enumerate(places) for b in places[i + 1 :]]
         if apart:
             found[point] = np.max(apart, axis=0)
     for name, slider in scene.sliders.items():
         guide = _guide(slider, poses)
-        off = np.abs(_seen(slider, guide, tracks[slider.point][_rider(scene, slider)]).position[:, 1])
+        seen = _seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
+        off = np.abs(seen.position[:, 1])
         body = _sliding_body(slider, poses)
         if body is not None:
             turn = body.theta - guide.theta - sliding_angle(slider)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-import mujoco
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 from mujoco import rollout
 from numpy.typing import NDArray
@@ -27,73 +27,16 @@ from sim.engine import (
     Log,
     Poses,
     Profile,
-    Setting,
     SettingValue,
 )
-from sim.settings import SettingError
+from sim.mujoco_settings import AS_SHIPPED, INTEGRATORS, TUNED, integrator, writing
 
 Array = NDArray[np.float64]
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
-INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
-)
-
-AS_SHIPPED = Profile(
-    "as-shipped",
-    "mujoco",
-    "MuJoCo's own defaults",
-    {
-        "integrator": Setting("Euler", "default: semi-implicit Euler"),
-        "solver": Setting("Newton", "default"),
-        "iterations": Setting(100, "default"),
-        "tolerance": Setting(
-            1e-8, "default; over flywheel_ratio, so that it means what it does without a flywheel"
-        ),
-        "solref_timeconst_s": Setting(0.02, "default: loops close with a time constant of 0.02 s"),
-        "solref_timeconst_steps": Setting(0.0, "not used: the time constant is given in seconds"),
-        "solref_dampratio": Setting(1.0, "default: critical damping"),
-        "solimp_dmin": Setting(0.9, "default: constraints give way by 10 % at no gap"),
-        "solimp_dmax": Setting(0.95, "default: and by 5 % at gaps over the width"),
-        "solimp_width": Setting(0.001, "default [m]"),
-        "islands": Setting("enable", "default"),
-        "contact": Setting("enable", "default"),
-        "close": Setting("", "the pins that `models.tree` chooses; names with commas between"),
-        "flywheel_ratio": Setting(mjcf.FLYWHEEL_RATIO, "the drive, not an engine default"),
-        "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
-        "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
-    },
-)
-TUNED = Profile(
-    "tuned",
-    "mujoco",
-    "Fourth-order steps and loops as stiff as the step allows",
-    dict(AS_SHIPPED.settings)
-    | {
-        "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
-        "tolerance": Setting(
-            1e-22,
-            "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
-            "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
-        ),
-        "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
-        "solref_timeconst_steps": Setting(
-            4.0,
-            "4 dt: at 2 dt (the least MuJoCo allows) RK4 resolves the closing spring badly, above "
-            "5 dt the soft constraint gives way more; measured on the four-bar at 1e-3 s",
-        ),
-        "solimp_dmin": Setting(0.9999, "the most MuJoCo allows: give way by 0.01 % only"),
-        "solimp_dmax": Setting(0.9999, "as dmin: no dependence on the gap"),
-        "servo_integrator": Setting(
-            "discrete",
-            "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "
-            "for the acceleration before the servo acts; takes the place of integrator under servo",
-        ),
-        "islands": Setting("disable", "one system of loops: 7 % faster, same numbers"),
-        "contact": Setting("disable", "nothing touches: 15 % faster, same numbers"),
-    },
 )
 
 
@@ -122,58 +65,6 @@ class MujocoEngine:
 ENGINE = MujocoEngine()
 
 
-def writing(
-    scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
-) -> mjcf.Writing:
-    """The choices of the MJCF text that the settings amount to."""
-    integrator = _integrator(settings, drive)
-    if integrator not in INTEGRATORS:
-        raise SettingError(
-            f"setting integrator: found {integrator!r}; use one of {', '.join(INTEGRATORS)}"
-        )
-    ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
-    servo = None
-    if drive == "servo":
-        scale = mjcf.inertia_scale(scene) * scene.driver.law.peak_speed_rad_s
-        servo = float(settings["servo_gain"]) * scale
-    steps = float(settings["solref_timeconst_steps"])
-    timeconst = steps * dt_s if steps else float(settings["solref_timeconst_s"])
-    dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
-    return mjcf.Writing(
-        close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
-        option={
-            "timestep": dt_s,
-            "integrator": integrator,
-            "solver": str(settings["solver"]),
-            "iterations": int(settings["iterations"]),
-            "tolerance": tolerance / ratio if servo is None else tolerance,
-        },
-        flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
-        connect={
-            "solref": (timeconst, float(settings["solref_dampratio"])),
-            "solimp": (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0),
-        },
-        flywheel_ratio=ratio,
-        servo_gain=servo,
-    )
-
-
-def _integrator(settings: Mapping[str, SettingValue], drive: Drive) -> str:
-    """The integrator of a drive."""
-    return str(settings["servo_integrator" if drive == "servo" else "integrator"])
-
-
-def text(
-    scene: Scene,
-    state: State,
-    settings: Mapping[str, SettingValue],
-    dt_s: float,
-    drive: Drive = "prescribed",
-) -> str:
-    """The MJCF text that a run with these settings loads."""
-    return mjcf.build(scene, state, writing(scene, settings, dt_s, drive))
-
-
 class MujocoSession:
     """One model in MuJoCo. Velocities of all integrators but RK4 lag by half a step."""
 
@@ -187,7 +78,7 @@ class MujocoSession:
     ) -> None:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        self._shift = 0.0 if _integrator(settings, drive) == "RK4" else -0.5
+        self._shift = 0.0 if integrator(settings, drive) == "RK4" else -0.5
         chosen = writing(scene, settings, dt_s, drive)
         start = launched(state, self._shift * dt_s)
         self._limbs = mjcf.depth_first(plan(scene, start, chosen.close))
@@ -249,7 +140,7 @@ class MujocoSession:
             states = self._roll(steps)
         wall = time.perf_counter() - began
         kept = np.concatenate([first, states[every - 1 :: every]])
-        at = self._done + every * np.arange(len(kept))
+        at = self._done + every * np.arange(len(kept), dtype=np.float64)
         good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
         good &= np.isfinite(kept).all(axis=1)
         diverged = any(self._data.warning[kind].number for kind in DIVERGED)
@@ -262,7 +153,7 @@ class MujocoSession:
     def read(self) -> Poses:
         """The current state."""
         with self._quiet():
-            return self._poses(self._full_state()[None], np.array([self._done]))
+            return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
     def taken(self) -> tuple[str, ...]:
         """The warnings so far, each once."""
@@ -301,7 +192,7 @@ class MujocoSession:
         mujoco.mj_getState(self._model, self._data, state, FULL)
         return state
 
-    def _poses(self, states: Array, at: NDArray[np.int64]) -> Poses:
+    def _poses(self, states: Array, at: Array) -> Poses:
         """Poses of logged states; accelerations are those of `mj_forward` at each state."""
         nq, nv = self._model.nq, self._model.nv
         q, rate = states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
@@ -313,7 +204,7 @@ class MujocoSession:
             blocks={slider.name: found[body] for body, slider in held.items()},
         )
 
-    def _accelerations(self, states: Array, at: NDArray[np.int64]) -> Array:
+    def _accelerations(self, states: Array, at: Array) -> Array:
         """Joint accelerations of the states (T, nv), computed on a copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
         found = np.empty((len(states), model.nv))
@@ -327,7 +218,7 @@ class MujocoSession:
             data.qacc_warmstart[:] = data.qacc
         return found
 
-    def _control_at(self, at: NDArray[np.int64]) -> Array | None:
+    def _control_at(self, at: Array) -> Array | None:
         """The law's own speed or acceleration at the steps, for the actuator."""
         if not self._controlled:
             return None
@@ -351,8 +242,3 @@ def _compiled(xml: str) -> Any:
         return mujoco.MjModel.from_xml_string(xml)
     except ValueError as error:
         raise EngineError(f"MuJoCo refuses the model: {error}") from error
-
-
-def closed_at(scene: Scene, state: State, close: Sequence[str] = ()) -> tuple[str, ...]:
-    """The pins that close the loops."""
-    return tuple(closure.point for closure in plan(scene, state, close).closures)

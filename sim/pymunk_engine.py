@@ -153,7 +153,7 @@ class PymunkSession:
     def record(self, steps: int, every: int) -> Log:
         """Advance; one batch call per logged step appends all bodies to one buffer."""
         self._buffer.clear()
-        at = self._done + every * np.arange(steps // every + 1)
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         began = time.perf_counter()
         self._log()
         self._advance(steps, every)
@@ -170,7 +170,7 @@ class PymunkSession:
         self._buffer.clear()
         self._log()
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
-        return self._poses(rows.reshape(1, -1, WIDTH), np.array([self._done]))
+        return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
 
     def _log(self) -> None:
         """Append the current state of all bodies to the buffer."""
@@ -209,7 +209,7 @@ class PymunkSession:
                 log(space, FIELDS, buffer)
         self._done += steps
 
-    def _poses(self, rows: Array, at: NDArray[np.int64]) -> Poses:
+    def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
         found = {
             name: _pose(rows[:, row], self._model.centre[name]) for name, row in self._rows.items()
