@@ -82,6 +82,11 @@ def _faults_of_names(
         faults.append(
             "links.ground: the ground has its own table [ground]; name the link otherwise"
         )
+    faults += [
+        f"sliders.{name}: a link has that name too; name the slider after its point"
+        for name in table.sliders
+        if name in table.links
+    ]
     for name, slider in table.sliders.items():
         key = f"sliders.{name}"
         point = slider.point or name

@@ -63,7 +63,8 @@ class MovingLine:
 
     def at(self, s: Real) -> Vec:
         """The place at displacement ``s`` from the point."""
-        return self.along * s + self.point.p
+        ahead: Vec = self.along * s
+        return self.point.p + ahead
 
     def velocity(self, s: Real) -> Vec:
         """The velocity of the body's own point there."""
@@ -72,7 +73,7 @@ class MovingLine:
     def acceleration(self, s: Real, speed: Real) -> Vec:
         """The acceleration of what slides there at ``speed``, Coriolis in, without its own."""
         across = self.alpha * s + 2.0 * self.omega * speed
-        return self.along.perp(across) - self.along * (self.omega**2 * s) + self.point.a
+        return (self.point.a + self.along.perp(across)).less(self.along, self.omega**2 * s)
 
     def errors(self, s: Real, speed: Real, es: Real, ev: Real) -> tuple[Real, Real, Real]:
         """Bounds on the errors of `at`, `velocity`, `acceleration` where s, speed have es, ev."""

@@ -1,0 +1,106 @@
+"""How far an output travels: swing of a link, stroke of a slider, time ratio, limit positions.
+
+For any mechanism whose driver turns fully: the output's rate per driver rate is looked at over a
+turn, and its changes of sign, the limit positions, are refined by bisection. Where a closed form
+exists (`analytic.fourbar`, slider-crank, slotted lever) the tests hold this to it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve_driven
+from analytic.plane import Array
+from models.errors import CrankcheckError
+from models.scene import Scene
+
+SCAN = 720
+
+
+@dataclass(frozen=True)
+class Travel:
+    """The travel of an output over a turn of the driver.
+
+    ``low`` and ``high`` are its extremes ([rad] for a link, [m] for a slider), ``low_at_rad`` and
+    ``high_at_rad`` the driver angles (0 to 2 pi) where it has them; ``time_ratio`` is the driver
+    angle of the longer stroke over that of the shorter.
+    """
+
+    low: float
+    high: float
+    low_at_rad: float
+    high_at_rad: float
+
+    @property
+    def stroke(self) -> float:
+        """Swing [rad] or stroke [m]."""
+        return self.high - self.low
+
+    @property
+    def time_ratio(self) -> float:
+        forth = (self.high_at_rad - self.low_at_rad) % math.tau
+        return max(forth, math.tau - forth) / min(forth, math.tau - forth)
+
+
+def travel(scene: Scene, output: str) -> Travel:
+    """The travel of link or slider ``output`` over a turn of the driver.
+
+    Raises
+    ------
+    ReachError
+        The driver does not turn fully.
+    CrankcheckError
+        No such output; an output that turns fully; or one with more than two limit positions.
+    """
+    if output not in scene.links and output not in scene.sliders:
+        have = ", ".join([*scene.links, *scene.sliders])
+        raise CrankcheckError(f"{scene.name}: no link or slider {output!r}; it has {have}")
+    grid = np.arange(SCAN) * (math.tau / SCAN) + 0.5 * math.tau / SCAN
+    rate = _rate(scene, output, grid)
+    turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
+    if len(turns) == 0:
+        raise CrankcheckError(f"{scene.name}: {output} never turns back: it has no limit positions")
+    if len(turns) != 2:
+        raise CrankcheckError(
+            f"{scene.name}: {output} turns back {len(turns)} times in a turn of the driver; "
+            "travel is between two limit positions"
+        )
+    low: Array = grid[turns]
+    high: Array = low + math.tau / SCAN
+    sign = np.sign(rate[turns])
+    for _ in range(60):
+        middle: Array = 0.5 * (low + high)
+        same = np.sign(_rate(scene, output, middle)) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    places = _place(scene, output, np.concatenate([grid, low]))[-2:]
+    first = 0 if places[0] < places[1] else 1
+    at = low % math.tau
+    return Travel(
+        float(places[first]), float(places[1 - first]), float(at[first]), float(at[1 - first])
+    )
+
+
+def _rate(scene: Scene, output: str, theta: Array) -> Array:
+    """The rate of the output per rate of the driver."""
+    one, zero = np.ones_like(theta), np.zeros_like(theta)
+    if output in scene.links:
+        motion = solve_driven(
+            scene, theta, one, zero, links=(output,), points=(), sliders=(), bound=False
+        )
+        return motion.links[output].omega
+    motion = solve_driven(
+        scene, theta, one, zero, links=(), points=(), sliders=(output,), bound=False
+    )
+    return motion.sliders[output].speed
+
+
+def _place(scene: Scene, output: str, theta: Array) -> Array:
+    """The angle or displacement of the output."""
+    one, zero = np.ones_like(theta), np.zeros_like(theta)
+    motion = solve_driven(scene, theta, one, zero, points=(), bound=False)
+    if output in scene.links:
+        return motion.links[output].theta
+    return motion.sliders[output].displacement
