@@ -58,7 +58,7 @@ def travel(scene: Scene, output: str) -> Travel:
     if output not in scene.links and output not in scene.sliders:
         have = ", ".join([*scene.links, *scene.sliders])
         raise CrankcheckError(f"{scene.name}: no link or slider {output!r}; it has {have}")
-    grid = np.arange(SCAN) * (math.tau / SCAN) + 0.5 * math.tau / SCAN
+    grid: Array = (np.arange(SCAN, dtype=np.float64) + 0.5) * (math.tau / SCAN)
     rate = _rate(scene, output, grid)
     turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
     if len(turns) == 0:
@@ -74,7 +74,8 @@ def travel(scene: Scene, output: str) -> Travel:
     for _ in range(60):
         middle: Array = 0.5 * (low + high)
         same = np.sign(_rate(scene, output, middle)) == sign
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+        low = np.where(same, middle, low)
+        high = np.where(same, high, middle)
     places = _place(scene, output, np.concatenate([grid, low]))[-2:]
     first = 0 if places[0] < places[1] else 1
     at = low % math.tau
