@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="crankcheck",
-    help="Cross-validate physics engines on closed-loop planar mechanisms, against the closed form.",
+    help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
     epilog="Exit codes: 0 all within tolerance, 1 out of tolerance, 2 bad input or usage.",
     no_args_is_help=True,
     add_completion=False,
@@ -82,9 +82,7 @@ def verify(
     engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
     profile: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Profile, gated; may be repeated. Default: tuned gated, as-shipped shown."
-        ),
+        typer.Option(help="Profile, gated; default: tuned gated, as-shipped shown."),
     ] = None,
     dt: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time step.")] = None,
     steps_per_turn: Annotated[

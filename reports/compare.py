@@ -24,6 +24,9 @@ from reports.series import Array, angle_error, length, rate, second_rate, size
 from reports.tracks import QUANTITIES, Track, tracks
 from sim.engine import Run
 
+SETTLING = 40
+"""Samples in which an engine that starts with closed pins comes to its steady error: rates of these
+are rows of their own, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
 EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -107,6 +110,20 @@ def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = 
     )
 
 
+def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
+    """A rate as two rows: the first samples, and the rest."""
+    settled = min(SETTLING, at.time_s.size // 4)
+    parts: tuple[tuple[Kind, slice], ...] = (
+        ("start", slice(0, settled)),
+        ("total", slice(settled, None)),
+    )
+    for kind, part in parts:
+        error, bound = track.error[part], track.bound[part]
+        if error.shape[0]:
+            instants = _Instants(at.time_s[part], at.driver_rad[part])
+            yield _row(replace(track, error=error, bound=bound), instants, source, kind)
+
+
 def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
     """How far the driver is from where it was told to be."""
     name = scene.driver.link
@@ -149,11 +166,11 @@ def _reported(
         known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
         at = _instants(scene, time_s)
         for track in tracks(scene, motion, known, 1 if order == 1 else 2):
-            # An engine without accelerations gives NaN throughout; one NaN among numbers is a fault.
+            # An engine without accelerations gives NaN throughout; one among numbers is a fault.
             if order == 2 and bool(np.all(np.isnan(track.error))):
                 missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
             else:
-                rows.append(_row(track, at))
+                rows += _rate_rows(track, at, "reported")
     return rows, tuple(missing)
 
 
@@ -166,7 +183,7 @@ def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[E
     inner = _Instants(at.time_s[1:-1], at.driver_rad[1:-1])
     for track in placed:
         # The logged numbers are rounded too: that is part of what a difference is uncertain by.
-        unsure = track.bound + EPSILON * track.magnitude
+        unsure = (track.bound + EPSILON * track.magnitude)[1:-1]
         for order, series, bound in (
             (1, rate(track.error, step_s), unsure / step_s),
             (2, second_rate(track.error, step_s), 4 * unsure / step_s**2),
@@ -179,7 +196,7 @@ def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[E
                 scale=track.scale * speed**order,
                 unit=track.unit + ("", "/s", "/s^2")[order],
             )
-            yield _row(differenced, inner, source="differenced")
+            yield from _rate_rows(differenced, inner, "differenced")
 
 
 def _curvature(scene: Scene, reference: Motion) -> float:

@@ -37,7 +37,7 @@ class Convergence:
     def words(self) -> str:
         """A few words for a table."""
         if self.trend == "shrinks":
-            return f"shrinks, order {self.order:.1f}"
+            return f"order {self.order:.1f}"
         if self.trend in ("does not shrink", "levels off"):
             return f"{self.trend}: floor {self.floor:.1e}"
         return self.trend

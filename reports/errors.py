@@ -9,7 +9,7 @@ from typing import Literal
 
 Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
 Source = Literal["reported", "differenced"]
-Kind = Literal["total", "geometric"]
+Kind = Literal["total", "geometric", "start"]
 BodyKind = Literal["driver", "link", "slider", "point"]
 
 
@@ -18,7 +18,8 @@ class Error:
     """One error series in numbers, in ``unit``.
 
     ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
-    driver's speed (times that length) for velocities, its square for accelerations. ``bound`` is
+    driver's speed (times that length) for velocities, its square for accelerations. Rates of the
+    first steps, in which an engine takes up its pins, are of kind ``start``. ``bound`` is
     the largest error of the reference itself [unit].
     """
 

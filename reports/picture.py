@@ -41,8 +41,9 @@ def animation(scene: Scene) -> bytes:
     for index in range(FRAMES):
         axes.clear()
         _draw(axes, scene, motion, index, path)
-        canvas.draw()
-        picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here
+        pixels = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]  # as above
+        picture = Image.fromarray(pixels).convert("RGB")
         frames.append(picture.quantize(64, dither=Image.Dither.NONE))
     buffer = io.BytesIO()
     frames[0].save(
@@ -61,7 +62,7 @@ def strip(scene: Scene) -> bytes:
         _draw(figure.add_subplot(rows, columns, index + 1), scene, motion, index, path)
     _legend(figure, scene)
     buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer)
+    FigureCanvasAgg(figure).print_png(buffer)  # type: ignore[no-untyped-call]  # as above
     return buffer.getvalue()
 
 
@@ -159,7 +160,9 @@ def _pin(axes: Axes, name: str, place: Array, grounded: bool, size: float) -> No
         axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
     axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     offset = 0.025 * size
-    axes.annotate(name, place + offset, fontsize=8, color=INK, zorder=6)
+    axes.annotate(
+        name, (float(place[0]) + offset, float(place[1]) + offset), fontsize=8, color=INK, zorder=6
+    )
 
 
 def _slider(

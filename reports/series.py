@@ -46,7 +46,7 @@ def angle_error(engine: Array, reference: Array) -> Array:
     if not np.all(np.isfinite(engine)):
         return engine - reference  # unwrapping would smear one NaN over all later samples
     error = np.unwrap(engine - reference)
-    return error - math.tau * np.round(error[0] / math.tau)
+    return np.asarray(error - math.tau * np.round(error[0] / math.tau))
 
 
 def length(vectors: Array) -> Array:

@@ -43,8 +43,8 @@ class Track:
 def tracks(scene: Scene, motion: Motion, reference: Motion, order: Order) -> Iterator[Track]:
     """Tracks of every link, slider and moving point: the place itself (0), or a rate of it.
 
-    Points of the ground can not move and are left out, as is the driver's angle: it is the drive. Where the engine gives no numbers at
-    all for a rate the error is NaN throughout.
+    Points of the ground can not move and are left out, as is the driver's angle: it is the drive.
+    Where the engine gives no numbers at all for a rate the error is NaN throughout.
     """
     speed = scene.driver.law.peak_speed_rad_s**order
     suffix = ("", "/s", "/s^2")[order]

@@ -30,7 +30,7 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
         _failure(console, one)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
-        console.print(_table(profile, gated, chosen))
+        console.print(_table(profile, gated, chosen), "")
     _advice(console, checked)
     console.print(_summary(checked, failed))
     console.print(_footer(checked, facts), style="dim", highlight=False)
@@ -56,7 +56,9 @@ def _hanging(console: Console, head: str, text: str, style: str = "") -> None:
 
 
 def _mark(one: Checked) -> Text:
-    return MARKS[one.verdict]
+    """The verdict; red only where it counts."""
+    mark = MARKS[one.verdict]
+    return mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
 
 
 def _table(profile: str, gated: bool, chosen: Sequence[Checked]) -> Table:
@@ -71,12 +73,12 @@ def _table(profile: str, gated: bool, chosen: Sequence[Checked]) -> Table:
         collapse_padding=True,
     )
     table.add_column("")
-    table.add_column("scene", overflow="fold", min_width=12)
+    table.add_column("scene", overflow="fold", min_width=22)
     table.add_column("engine", no_wrap=True)
     for head in ("angle\nrad", "place\n/ L", "gap\n/ L", "veloc.\n/ w", "accel.\n/ w^2"):
         table.add_column(head, justify="right", no_wrap=True)
-    table.add_column("of its limit", no_wrap=True)
-    table.add_column("as dt is halved", overflow="fold")
+    table.add_column("most of\na limit", no_wrap=True)
+    table.add_column("when dt\nis halved", overflow="fold")
     for one in sorted(chosen, key=lambda one: one.verdict == "within"):
         table.add_row(*_cells(one))
     return table
@@ -111,21 +113,35 @@ def _number(error: Error | None) -> str:
     return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
 
 
+SHORT = {
+    "CC102": "drive",
+    "CC103": "ang",
+    "CC104": "disp",
+    "CC105": "gap",
+    "CC106": "vel",
+    "CC107": "vel'",
+    "CC108": "acc",
+    "CC113": "pos",
+    "CC114": "acc'",
+}
+"""The rules that hold an error to a limit, short; a dash marks differenced rates."""
+
+
 def _share(findings: Sequence[Finding]) -> Text:
     """The largest share of a limit that an error takes, and whose it is."""
     shares = [
-        (finding.number / finding.limit, RULES[finding.rule].title)
+        (finding.number / finding.limit, SHORT[finding.rule])
         for finding in findings
-        if finding.number is not None and finding.limit and finding.rule != "CC112"
+        if finding.rule in SHORT and finding.number is not None and finding.limit
     ]
     if not shares:
         return Text("")
-    share, title = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
+    share, name = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
     if math.isnan(share):
-        return Text("not finite", "red")
-    text = f"{share:.0%}" if share < 10 else f"x {share:.0f}" if share < 1e4 else f"x {share:.0e}"
+        return Text("nan", "red")
+    size = f"{share:.0%}" if share < 10 else f"x{share:.0f}" if share < 1e4 else f"x{share:.0e}"
     style = "red" if share > 1 else "yellow" if share > 0.5 else ""
-    return Text(f"{text} {title.replace(', reported', '').replace('differenced', 'diff.')}", style)
+    return Text(f"{size} {name}", style)
 
 
 def _advice(console: Console, checked: Sequence[Checked]) -> None:

@@ -31,7 +31,7 @@ def scenes(console: Console) -> None:
 
 
 def engines(console: Console, settings: bool) -> None:
-    """The engines: version, or the command that installs them; profiles, with settings on demand."""
+    """The engines: version, or the command that installs them; profiles, also with settings."""
     for one in available():
         state = one.version or f"not installed: {one.install}"
         console.print(Text(f"{one.name}  {state}", "bold" if one.version else "yellow"))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from rich.console import Console
-from rich.table import Table
 
 from analytic.kinematics import solve, solve_driven
 from analytic.structure import Structure, analyse
@@ -21,6 +20,7 @@ from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
 from models.scene import Scene
 from reports.motion_frame import cleaned, motion_frame
+from reports.motion_tables import certainty, motion_tables, position_tables
 from reports.provenance import crankcheck_version
 from reports.writing import check_file, write
 
@@ -53,10 +53,7 @@ def run_solve(request: Request, console: Console) -> None:
         check_file(request.output, "-o", ENDINGS)
     scene = load_scene(request.scene)
     structure = analyse(scene)
-    if request.at_deg is not None:
-        motion = _at(scene, request.at_deg)
-    else:
-        motion = _over(scene, request)
+    motion = _over(scene, request) if request.at_deg is None else _at(scene, request.at_deg)
     if request.output is not None:
         _write(request.output, scene, motion)
         console.print(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
@@ -147,100 +144,8 @@ def _over(scene: Scene, request: Request) -> Motion:
         raise CrankcheckError(
             f"--turns {turns:g} --steps-per-turn {steps}: {samples} samples; at most {most}"
         )
-    return solve(scene, scene.driver.law.period_s / steps * np.arange(samples))
-
-
-def digits(value: float) -> str:
-    """Eight significant digits, zeros at the end included."""
-    return f"{value + 0.0:#.8g}"
-
-
-def position_tables(motion: Motion) -> list[Table]:
-    """Links, points and sliders at one position."""
-    links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
-    for name, link in motion.links.items():
-        theta = float(link.theta[0])
-        numbers = (math.degrees(theta), theta, float(link.omega[0]), float(link.alpha[0]))
-        links.add_row(name, *map(digits, numbers))
-    places = _table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
-    rates = _table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
-    for name, point in motion.points.items():
-        v, a = point.velocity[0], point.acceleration[0]
-        row = [*point.position[0], *v, np.hypot(*v)]
-        places.add_row(name, *(digits(float(value)) for value in row))
-        rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
-    tables = [links, places, rates]
-    if motion.sliders:
-        sliders = _table("slider", ("displacement m", "speed m/s", "acceleration m/s^2"))
-        for name, slider in motion.sliders.items():
-            row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
-            sliders.add_row(name, *(digits(float(value)) for value in row))
-        tables.append(sliders)
-    return tables
-
-
-def certainty(motion: Motion) -> str:
-    """What the reference may be wrong by, in a line."""
-    if motion.bound is None:
-        return ""
-    links = motion.bound.links.values()
-    theta = max(float(np.max(link.theta)) for link in links)
-    omega = max(float(np.max(link.omega)) for link in links)
-    alpha = max(float(np.max(link.alpha)) for link in links)
-    return (
-        f"Certain to {theta:.1e} rad, {omega:.1e} rad/s, {alpha:.1e} rad/s^2 "
-        "(rounding, over the conditioning of the dyads)."
-    )
-
-
-def motion_tables(scene: Scene, motion: Motion) -> list[Table]:
-    """Links and sliders over time, three bodies to a table."""
-    bodies = [
-        (
-            name,
-            (
-                ("theta\nrad", link.theta),
-                ("omega\nrad/s", link.omega),
-                ("alpha\nrad/s^2", link.alpha),
-            ),
-        )
-        for name, link in motion.links.items()
-        if name != scene.driver.link
-    ]
-    bodies += [
-        (
-            f"slider {name}",
-            (
-                ("place\nm", s.displacement),
-                ("speed\nm/s", s.speed),
-                ("accel.\nm/s^2", s.acceleration),
-            ),
-        )
-        for name, s in motion.sliders.items()
-    ]
-    driver = np.degrees(motion.links[scene.driver.link].theta)
-    tables = []
-    for first in range(0, len(bodies), 2):
-        table = Table(box=None, padding=(0, 2, 0, 0))
-        columns = [("\ntime\ns", motion.time_s), (f"{scene.driver.link}\ntheta\ndeg", driver)]
-        for name, series in bodies[first : first + 2]:
-            columns += [
-                (f"{name if k == 0 else ''}\n{head}", v) for k, (head, v) in enumerate(series)
-            ]
-        for head, _ in columns:
-            table.add_column(head, justify="right", no_wrap=True)
-        for index in range(motion.time_s.size):
-            table.add_row(*(f"{series[index]:.7g}" for _, series in columns))
-        tables.append(table)
-    return tables
-
-
-def _table(head: str, columns: Sequence[str]) -> Table:
-    table = Table(box=None, padding=(0, 1, 0, 0), title_justify="left")
-    table.add_column(head, no_wrap=True)
-    for column in columns:
-        table.add_column(column.replace(" ", "\n"), justify="right", no_wrap=True)
-    return table
+    step_s = scene.driver.law.period_s / steps
+    return solve(scene, step_s * np.arange(samples, dtype=np.float64))
 
 
 def _write(path: Path, scene: Scene, motion: Motion) -> None:

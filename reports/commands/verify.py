@@ -118,8 +118,8 @@ def _step(request: Request, scene: Scene) -> tuple[float, int]:
         option, dt_s = f"--steps-per-turn {per_turn:g}", period / per_turn
     if period / dt_s < LEAST_STEPS * (1 - 1e-12):
         raise CrankcheckError(
-            f"{option}: {period / dt_s:.3g} steps in a turn of {scene.name} ({period:.4g} s); a turn "
-            f"needs at least {LEAST_STEPS}, so dt at most {period / LEAST_STEPS:.4g} s"
+            f"{option}: {period / dt_s:.3g} steps in a turn of {scene.name} ({period:.4g} s); a "
+            f"turn needs at least {LEAST_STEPS}, so dt at most {period / LEAST_STEPS:.4g} s"
         )
     steps = math.ceil(request.turns * period / dt_s * (1 - 1e-12))
     if steps > MOST_STEPS:

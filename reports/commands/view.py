@@ -46,8 +46,8 @@ def has_screen() -> bool:
 
 def _open_viewer(scene: Scene) -> None:
     """MuJoCo's own viewer at the assembled state; returns when its window is closed."""
-    import mujoco
-    import mujoco.viewer
+    import mujoco  # type: ignore[import-untyped]  # MuJoCo ships no types
+    import mujoco.viewer  # type: ignore[import-untyped]  # as above
 
     model = mujoco.MjModel.from_xml_string(build(scene, solve(scene, np.zeros(1)).state()))
     state = mujoco.MjData(model)

@@ -22,7 +22,7 @@ class ReferenceCertain:
             return None
         worst, name, limit = 0.0, "", 0.0
         for row in evidence.errors.rows:
-            if row.kind == "geometric":
+            if row.kind != "total":
                 continue  # shown, held to no limit
             key = row.tolerance
             share = row.pure_bound / evidence.limits[key].number

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.rules.base import Evidence, Finding
+from reports.rules.base import Evidence, Finding, Level
 
 FINE = ("shrinks", "at rounding")
 
@@ -27,6 +27,6 @@ class ErrorShrinks:
             f"{error:.2g} {seen.unit} at dt {dt:.3g} s"
             for dt, error in zip(seen.dt_s, seen.error, strict=True)
         )
-        level = "pass" if seen.trend in FINE else "advice"
+        level: Level = "pass" if seen.trend in FINE else "advice"
         words = seen.words + (f" {seen.unit}" if "floor" in seen.words else "")
         return Finding(self.id, level, f"{words} ({steps})", seen.error[-1])
