@@ -57,16 +57,18 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
 def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[str]:
     """Differences of position and velocity.
 
-    Angular velocities are compared at the engine's own instant. Velocities of origins there follow
-    from a chord in one engine and a tangent in another, so they may differ by half a step's
-    acceleration. The crank of a law other than constant speed starts with a chord of the law.
+    Angular velocities are compared at the engine's own instant, to the second order of the delay
+    where there is one. Velocities of origins there follow from a chord in one engine and a tangent
+    in another, so they may differ by half a step's acceleration. The crank of a law other than
+    constant speed starts with a chord of the law.
     """
     delay = facts.velocity_shift * dt_s
     wanted = frames(scene, launched(state, delay))
     law = scene.driver.law
     crank = start_speed(law, state.time_s, dt_s, facts.velocity_shift)
-    slack = abs(crank - wanted[scene.driver.link].omega)
     peak = max(law.peak_speed_rad_s, *(abs(w) for w in state.omega.values()))
+    rate = max(peak, math.sqrt(max(abs(a) for a in state.alpha.values())))
+    slack = abs(crank - wanted[scene.driver.link].omega) + (delay * rate) ** 2 * peak
     length = _size(scene, state)
     push = max(math.hypot(*a) for a in state.acceleration.values())
     held = {block_name(scene.sliders[name]): pose for name, pose in facts.start.blocks.items()}
