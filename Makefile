@@ -1,0 +1,59 @@
+# crankcheck: everything sets itself up in .venv with Python 3.11 or later, git and make.
+#
+#   make verify       compare the engines with the reference on all shipped scenes
+#   make test         lint, types and tests
+#   make slow         the long checks that `make test` leaves out
+#   make benchmarks   speed of the reference and of logging, as ratios
+#   make models       write the canonical MJCF files in models/mjcf/ anew
+#   make format       format the code
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+
+.PHONY: verify test slow benchmarks models format clean
+
+verify: $(VENV)/crankcheck
+	$(BIN)/crankcheck verify
+
+test: $(VENV)/test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -q -n 2 -m "not slow" $(PYTEST)
+
+slow: $(VENV)/test
+	$(BIN)/python -m pytest -q -n 2 -m slow $(PYTEST)
+
+benchmarks: $(VENV)/benchmark
+	$(BIN)/python benchmarks/reference.py
+	$(BIN)/python benchmarks/logging.py
+
+models: $(VENV)/crankcheck
+	$(BIN)/python -m models.canonical
+
+format: $(VENV)/test
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean:
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+$(BIN)/python:
+	$(PYTHON) -c 'import sys; v = sys.version_info; sys.exit(v < (3, 11) and f"crankcheck needs Python 3.11 or later; {sys.executable} is {v[0]}.{v[1]}. Try: make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+
+# pip itself is pinned, as dependency groups need a recent one.
+$(VENV)/crankcheck: pyproject.toml constraints.txt | $(BIN)/python
+	$(PIP) install --constraint constraints.txt pip
+	$(PIP) install --constraint constraints.txt --build-constraint constraints.txt --editable .
+	touch $@
+
+$(VENV)/test: $(VENV)/crankcheck
+	$(PIP) install --constraint constraints.txt --group test
+	touch $@
+
+$(VENV)/benchmark: $(VENV)/crankcheck
+	$(PIP) install --constraint constraints.txt --group benchmark
+	touch $@

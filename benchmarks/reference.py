@@ -1,0 +1,124 @@
+"""How fast the reference is: the four-bar against pylinkage's compiled kinematics.
+
+Angle, rate and acceleration of coupler and rocker at 1e5 crank positions, in this process, both
+warmed up, alternating. Prints nanoseconds a position, the ratio, an A/A pair that shows the noise,
+and the memory peak over the arrays returned. Exits with 1 where a ratio asked for is missed.
+"""
+
+from __future__ import annotations
+
+import gc
+import math
+import platform
+import sys
+import time
+import tracemalloc
+import warnings
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.files import load_scene
+
+POSITIONS = 100_000
+REPEATS = 25
+WANTED_RATIO = 8.0
+MOST_MEMORY = 2.0
+
+
+def competitor() -> Callable[[], object]:
+    """pylinkage's `step_fast_with_kinematics` on the same four-bar."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # its import warns of its own moved modules
+        from pylinkage.actuators import Crank
+        from pylinkage.components import Ground
+        from pylinkage.dyads import RRRDyad
+        from pylinkage.simulation import Linkage
+    a, d = Ground(0.0, 0.0, name="A"), Ground(0.3, 0.0, name="D")
+    step = 100.0 / POSITIONS
+    b = Crank(anchor=a, radius=0.1, angular_velocity=step, initial_angle=math.pi / 2, name="B")
+    c = RRRDyad(anchor1=b.output, anchor2=d, distance1=0.25, distance2=0.2, name="C")
+    linkage = Linkage([a, d, b, c], name="four-bar")
+    linkage.set_input_velocity(b, omega=10.0, alpha=0.0)
+    return lambda: linkage.step_fast_with_kinematics(iterations=POSITIONS, dt=1.0)
+
+
+def reference(*, bound: bool) -> Callable[[], object]:
+    """The reference on fourbar-lecture-1, the same angles."""
+    scene = load_scene("fourbar-lecture-1")
+    time_s = np.linspace(0.0, 10.0, POSITIONS)
+    return lambda: solve(
+        scene, time_s, links=("coupler", "rocker"), points=(), sliders=(), bound=bound
+    )
+
+
+def nanoseconds(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
+    """Time per position of each call, the calls taking turns."""
+    for call in calls.values():
+        call()
+        call()
+    found: dict[str, list[float]] = {name: [] for name in calls}
+    gc.disable()
+    for _ in range(REPEATS):
+        for name, call in calls.items():
+            start = time.perf_counter()
+            call()
+            found[name].append(1e9 * (time.perf_counter() - start) / POSITIONS)
+    gc.enable()
+    return found
+
+
+def memory_over_result() -> float:
+    """Peak of the memory taken while solving, over that of the six arrays returned."""
+    call = reference(bound=False)
+    call()
+    tracemalloc.start()
+    call()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return peak / (6 * 8 * POSITIONS)
+
+
+def processor() -> str:
+    """The processor's name where the system tells it."""
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        lines = info.read_text(encoding="utf-8").splitlines()
+        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+        if names:
+            return names[0]
+    return platform.processor() or platform.machine()
+
+
+def main() -> int:
+    """Print the table; 1 where a ratio is missed."""
+    times = nanoseconds(
+        {
+            "crankcheck": reference(bound=False),
+            "crankcheck again (A/A)": reference(bound=False),
+            "crankcheck with error bounds": reference(bound=True),
+            "pylinkage step_fast_with_kinematics": competitor(),
+        }
+    )
+    ours = times["crankcheck"]
+    print(f"{POSITIONS} crank positions of a four-bar: angle, rate, acceleration of two links\n")
+    print(f"{'':38}{'min':>8}{'median':>8}   ratio of medians")
+    for name, found in times.items():
+        ratio = np.median(found) / np.median(ours)
+        print(f"{name:38}{min(found):8.1f}{np.median(found):8.1f}   {ratio:.2f}")
+    theirs = times["pylinkage step_fast_with_kinematics"]
+    ratio, memory = float(np.median(theirs) / np.median(ours)), memory_over_result()
+    print("(ns a position)\n")
+    print(f"times as fast as pylinkage: {ratio:.1f} (asked: {WANTED_RATIO:g})")
+    print(f"memory peak over the arrays returned: {memory:.2f} (asked: under {MOST_MEMORY:g})")
+    names = ("numpy", "numba", "pylinkage")
+    versions = ", ".join(f"{name} {version(name)}" for name in names)
+    print(f"\nPython {platform.python_version()}, {versions}; {processor()}")
+    return 0 if ratio >= WANTED_RATIO and memory < MOST_MEMORY else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,179 @@
+"""Scene files: what ships loads, and every fault is named with its key, what was found and a cure."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import pytest
+
+from models.errors import CrankcheckError, SceneError
+from models.files import MOST_BYTES, load_scene, parse_scene, read_scene, shipped
+
+GOOD = """
+name = "good"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0], D = [0.3, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+coupler = { bar = ["B", "C"], length_m = 0.25 }
+rocker = { bar = ["D", "C"], length_m = 0.2 }
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+start_deg = 90.0
+"""
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_shipped_scene_loads_under_its_file_name_and_says_its_source(name: str) -> None:
+    scene = load_scene(name)
+    assert scene.name == name
+    assert len(scene.source) > 20
+
+
+def test_enough_scenes_ship() -> None:
+    asked = {
+        "fourbar-lecture-1", "fourbar-lecture-2", "fourbar-crossed", "fourbar-double-crank",
+        "fourbar-double-rocker", "slider-crank-central", "slider-crank-offset",
+        "slider-crank-excel-350", "slider-crank-excel-250", "slider-crank-excel-220",
+        "slider-crank-excel-210", "slotted-lever", "shaper", "whitworth", "scotch-yoke",
+        "tangent", "sixbar-watt", "sixbar-stephenson",
+    }  # fmt: skip
+    assert asked <= set(shipped())
+
+
+def test_bar_is_short_for_two_points_on_the_x_axis() -> None:
+    link = parse_scene(GOOD, "good").links["coupler"]
+    assert link.points == {"B": (0.0, 0.0), "C": (0.25, 0.0)}
+
+
+def test_masses_default_to_slender_rods_of_one_kilogram_per_metre() -> None:
+    link = parse_scene(GOOD, "good").links["coupler"]
+    assert link.mass_kg == 0.25
+    assert link.centre_m == (0.125, 0.0)
+    assert link.inertia_kg_m2 == pytest.approx(0.25 * 0.25**2 / 12, rel=1e-15)
+
+
+def test_angles_of_the_file_are_degrees_and_of_the_scene_radians() -> None:
+    theta, omega, _ = parse_scene(GOOD, "good").driver.law.at(0.0)  # type: ignore[arg-type]  # a scalar time does
+    assert theta == math.pi / 2
+    assert omega == 10.0
+
+
+FAULTS = {
+    "unknown key": ("[driver]", "[driver]\nspeed = 3.0", "driver.speed: unknown key"),
+    "unknown table": ("[driver]", "[drivers]\nx = 1\n[driver]", "drivers: unknown key; did you mean driver"),
+    "misspelt key": ("length_m = 0.25", "lenght_m = 0.25", "links.coupler.lenght_m: unknown key; did you mean length_m"),
+    "missing link of the driver": ('link = "crank"', 'link = "krank"', "driver.link: found krank; use one of crank"),
+    "zero length": ("length_m = 0.25", "length_m = 0.0", "links.coupler.length_m: found 0.0"),
+    "negative length": ("length_m = 0.25", "length_m = -1.0", "links.coupler.length_m: found -1.0"),
+    "coincident points": (
+        'rocker = { bar = ["D", "C"], length_m = 0.2 }',
+        "rocker = { points = { D = [0.1, 0.0], C = [0.1, 0.0] } }",
+        "links.rocker: length DC is 0",
+    ),
+    "NaN": ("length_m = 0.25", "length_m = nan", "links.coupler.length_m: found nan"),
+    "infinity": ("D = [0.3, 0.0]", "D = [inf, 0.0]", "ground.points.D.0: found inf"),
+    "text for a number": ("length_m = 0.25", 'length_m = "long"', "links.coupler.length_m: found 'long'"),
+    "two drivers as tables": ("[driver]", '[[driver]]\nlink = "rocker"\nspeed_rad_s = 1.0\n[[driver]]', "driver: found 2 drivers"),
+    "two drivers as a list": ('link = "crank"', 'link = ["crank", "rocker"]', "a scene has one driver, one link"),
+    "driver at rest": ("speed_rad_s = 10.0", "speed_rad_s = 0.0", "driver: speed_rad_s is 0"),
+    "unknown law": ("[driver]", '[driver]\nlaw = "jerky"', "driver.law: found 'jerky'; use one of constant"),
+    "driver without a ground pin": ('link = "crank"', 'link = "coupler"', "driver.link: coupler has no ground pin"),
+    "branch of nothing": ("[driver]", "[branch]\nZ = 1\n[driver]", "branch.Z: no pin or slider of that name"),
+    "branch other than 1": ("[driver]", "[branch]\nC = 2\n[driver]", "branch.C: found 2"),
+    "slider on nothing": ("[driver]", '[sliders.C]\non = "table"\n[driver]', "sliders.C.on: found table"),
+    "slider without its point": ("[driver]", '[sliders.Q]\non = "ground"\n[driver]', "sliders.Q.point: no body has a point Q"),
+    "slider on itself": ("[driver]", '[sliders.C]\nlink = "coupler"\non = "coupler"\n[driver]', "slides on itself"),
+    "slider named like a link": ("[driver]", '[sliders.crank]\npoint = "C"\non = "ground"\n[driver]', "a link has that name too"),
+    "negative mass": ("length_m = 0.25", "length_m = 0.25, mass_kg = -1.0", "links.coupler.mass_kg: found -1.0"),
+    "inertia without mass": ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0, inertia_kg_m2 = 1.0", "links.coupler: inertia_kg_m2 is 1.0 with mass_kg 0"),
+    "one point and no mass": ('rocker = { bar = ["D", "C"], length_m = 0.2 }', "rocker = { points = { D = [0.0, 0.0] } }", "links.rocker: one point has no length"),
+    "bar without length": (', length_m = 0.25', "", "bar and length_m go together"),
+    "bar to itself": ('bar = ["B", "C"]', 'bar = ["B", "B"]', "joins point B to itself"),
+    "name with a path": ("crank =", '"../crank" =', "a name is a letter"),
+    "name with markup": ('name = "good"', 'name = "<b>"', "a name is a letter"),
+    "no source": ('source = "a test"', "", "source: missing"),
+    "broken TOML": ("[ground]", "[ground", "not valid TOML"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_fault_is_named_with_its_place(fault: str) -> None:
+    old, new, message = FAULTS[fault]
+    assert old in GOOD
+    with pytest.raises(SceneError) as error:
+        parse_scene(GOOD.replace(old, new, 1), "file.toml")
+    assert message in str(error.value)
+    assert str(error.value).startswith("file.toml: ")
+
+
+def test_all_faults_of_a_file_are_reported_at_once() -> None:
+    text = GOOD.replace("length_m = 0.25", "length_m = -1").replace("start_deg", "start")
+    with pytest.raises(SceneError) as error:
+        parse_scene(text, "file.toml")
+    assert len(error.value.faults) == 2
+    assert "links.coupler.length_m" in str(error.value)
+    assert "driver.start: unknown key; did you mean start_deg" in str(error.value)
+
+
+def test_typing_error_in_a_name_suggests_the_near_ones() -> None:
+    with pytest.raises(CrankcheckError, match="Did you mean fourbar-lecture-"):
+        load_scene("fourbar-lectur-1")
+
+
+def test_name_unlike_any_points_to_the_list() -> None:
+    with pytest.raises(CrankcheckError, match="crankcheck scenes"):
+        load_scene("qqqqqqqq")
+
+
+@pytest.mark.parametrize("name", ["x" * 10_000, "a\0b", "", "\u202egnp.exe"])
+def test_absurd_name_is_an_error_with_a_short_message(name: str) -> None:
+    with pytest.raises(CrankcheckError) as error:
+        load_scene(name)
+    assert len(str(error.value)) < 300
+
+
+def test_directory_instead_of_a_file(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="a directory; name a scene file"):
+        load_scene(str(tmp_path))
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root reads every file")
+def test_file_without_read_permission(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD)
+    path.chmod(0)
+    with pytest.raises(SceneError, match="cannot be read: Permission denied"):
+        read_scene(path)
+
+
+def test_refused_read_is_reported_with_its_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD)
+
+    def refuse(_: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    with pytest.raises(SceneError, match="cannot be read: Permission denied"):
+        read_scene(path)
+
+
+def test_file_that_is_not_text(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SceneError, match="not UTF-8"):
+        read_scene(path)
+
+
+def test_file_that_is_too_large(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"#" * (MOST_BYTES + 1))
+    with pytest.raises(SceneError, match="has at most"):
+        read_scene(path)

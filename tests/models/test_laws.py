@@ -1,0 +1,65 @@
+"""Laws of the driver: rate and acceleration are the derivatives of the angle."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+
+LAWS: list[Law] = [
+    ConstantSpeed(0.3, -7.0),
+    Oscillating(0.5, 0.4, 9.0, 0.2),
+    FromRest(0.1, 12.0, 0.4),
+]
+STEP = 1e-5
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+def test_rates_are_derivatives(law: Law) -> None:
+    t = np.linspace(0.01, 0.7, 101)
+    theta, omega, alpha = law.at(t)
+    ahead, behind = law.at(t + STEP), law.at(t - STEP)
+    # Central differences: STEP^2 / 6 times a third derivative of at most 400, and rounding / STEP.
+    assert np.allclose((ahead[0] - behind[0]) / (2 * STEP), omega, rtol=0, atol=5e-8)
+    assert np.allclose((ahead[1] - behind[1]) / (2 * STEP), alpha, rtol=0, atol=5e-6)
+    assert theta.shape == omega.shape == alpha.shape == t.shape
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+def test_transformed_laws_follow_the_transformation(law: Law) -> None:
+    t = np.linspace(0.0, 0.7, 11)
+    theta, omega, alpha = law.at(t)
+    assert np.allclose(law.turned(0.7).at(t)[0], theta + 0.7)
+    assert np.allclose(law.mirrored().at(t), [-theta, -omega, -alpha])
+    fast = law.sped_up(3.0)
+    assert np.allclose(fast.at(t / 3.0), [theta, 3.0 * omega, 9.0 * alpha])
+    assert fast.period_s == pytest.approx(law.period_s / 3.0)
+    assert fast.peak_speed_rad_s == pytest.approx(law.peak_speed_rad_s * 3.0)
+
+
+def test_start_from_rest_joins_constant_speed_smoothly() -> None:
+    law = FromRest(0.1, 12.0, 0.4)
+    theta, omega, alpha = law.at(np.array([0.0, 0.4, 1.0]))
+    assert (theta[0], omega[0], alpha[0]) == (0.1, 0.0, 0.0)
+    assert theta[1] == pytest.approx(0.1 + 12.0 * 0.2, rel=1e-14)
+    assert omega[1:] == pytest.approx([12.0, 12.0], rel=1e-14)
+    assert alpha[1:] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert theta[2] - theta[1] == pytest.approx(12.0 * 0.6, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: ConstantSpeed(0.0, 0.0), "drives nothing"),
+        (lambda: ConstantSpeed(math.nan, 1.0), "start_rad is nan"),
+        (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
+        (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
+        (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
+    ],
+)
+def test_law_that_drives_nothing_is_refused(make: object, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()  # type: ignore[operator]  # a lambda per case
