@@ -132,10 +132,7 @@ def plan(scene: Scene, state: State, close: Sequence[str] = ()) -> Tree:
     closures = _closures(scene, at_point)
     for point in close:
         if point not in {c.point for c in closures}:
-            able = ", ".join(dict.fromkeys(c.point for c in plan(scene, state).closures))
-            raise EngineError(
-                f"close = {point}: no loop of {scene.name} closes there; the default is {able}"
-            )
+            raise EngineError(f"close = {point}: no loop of {scene.name} closes there")
     return Tree(_limbs(scene, state, edges), closures)
 
 

@@ -18,7 +18,7 @@ from models.joints import blocks
 from models.motion import State
 from models.poses import launched
 from models.scene import Scene
-from models.tree import plan
+from models.tree import Tree, plan
 from sim import drive as drives
 from sim.chain import body_poses
 from sim.engine import (
@@ -30,6 +30,7 @@ from sim.engine import (
     SettingValue,
 )
 from sim.mujoco_settings import AS_SHIPPED, INTEGRATORS, TUNED, integrator, writing
+from sim.settings import SettingError
 
 Array = NDArray[np.float64]
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
@@ -81,7 +82,7 @@ class MujocoSession:
         self._shift = 0.0 if integrator(settings, drive) == "RK4" else -0.5
         chosen = writing(scene, settings, dt_s, drive)
         start = launched(state, self._shift * dt_s)
-        self._limbs = mjcf.depth_first(plan(scene, start, chosen.close))
+        self._limbs = mjcf.depth_first(_tree(scene, start, chosen.close))
         self._warnings: list[str] = []
         with self._quiet():
             self._model = _compiled(mjcf.build(scene, start, chosen))
@@ -234,6 +235,16 @@ class MujocoSession:
             yield
         finally:
             mujoco.set_mju_user_warning(before)
+
+
+def _tree(scene: Scene, state: State, close: tuple[str, ...]) -> Tree:
+    """The tree; a fault that only the setting ``close`` causes is a fault of the setting."""
+    default = plan(scene, state)
+    try:
+        return plan(scene, state, close)
+    except EngineError as error:
+        able = ", ".join(closure.point for closure in default.closures)
+        raise SettingError(f"setting {error}; by default {able}") from None
 
 
 def _compiled(xml: str) -> Any:

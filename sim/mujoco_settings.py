@@ -9,10 +9,17 @@ from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
 from sim.engine import Drive, Profile, Setting, SettingValue
-from sim.settings import SettingError
+from sim.settings import check_choices
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 """In MuJoCo's own order."""
+CHOICES = {
+    "integrator": INTEGRATORS,
+    "servo_integrator": INTEGRATORS,
+    "solver": ("PGS", "CG", "Newton"),
+    "islands": ("enable", "disable"),
+    "contact": ("enable", "disable"),
+}
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -74,11 +81,7 @@ def writing(
     scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
 ) -> mjcf.Writing:
     """The choices of the MJCF text that the settings amount to."""
-    scheme = integrator(settings, drive)
-    if scheme not in INTEGRATORS:
-        raise SettingError(
-            f"setting integrator: found {scheme!r}; use one of {', '.join(INTEGRATORS)}"
-        )
+    check_choices(settings, CHOICES)
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     servo = None
     if drive == "servo":
@@ -91,7 +94,7 @@ def writing(
         close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
         option={
             "timestep": dt_s,
-            "integrator": scheme,
+            "integrator": integrator(settings, drive),
             "solver": str(settings["solver"]),
             "iterations": int(settings["iterations"]),
             "tolerance": tolerance / ratio if servo is None else tolerance,

@@ -16,10 +16,10 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.poses import launched
 from models.scene import Scene
-from models.space import SpaceModel, build
+from models.space import Lines, SpaceModel, build
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, SettingValue
-from sim.settings import SettingError
+from sim.settings import check_choices
 
 Array = NDArray[np.float64]
 FIELDS = (
@@ -102,12 +102,10 @@ class PymunkSession:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
         start = launched(state, VELOCITY_SHIFT * dt_s)
-        lines = settings["lines"]
-        if lines not in ("groove", "exact"):
-            raise SettingError(f"setting lines: found {lines!r}; use groove or exact")
-        self._model: SpaceModel = build(
-            scene, start, servo=drive == "servo", lines="groove" if lines == "groove" else "exact"
-        )
+        check_choices(settings, {"lines": ("groove", "exact")})
+        lines: Lines = "groove" if settings["lines"] == "groove" else "exact"
+        servo = drive == "servo"
+        self._model: SpaceModel = build(scene, start, servo=servo, lines=lines)
         self._space = self._model.space
         self._space.iterations = int(settings["iterations"])
         self._space.damping = float(settings["damping"])

@@ -45,6 +45,17 @@ def resolved(
     return settings
 
 
+def check_choices(
+    settings: Mapping[str, SettingValue], choices: Mapping[str, tuple[str, ...]]
+) -> None:
+    """Refuse a setting that is none of its choices. Raises SettingError that lists them."""
+    for name, allowed in choices.items():
+        if settings[name] not in allowed:
+            raise SettingError(
+                f"setting {name}: found {settings[name]!r}; use {' or '.join(allowed)}"
+            )
+
+
 def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
     """The value as the type of the profile's own."""
     kind = type(model)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import EngineError
-from models.joints import bodies, blocks, sliding_angle
+from models.joints import blocks, bodies, sliding_angle
 from models.motion import Motion, State
 from models.poses import mass_of
 from models.scene import GROUND, Scene

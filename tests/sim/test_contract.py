@@ -67,7 +67,9 @@ def test_stepping_and_recording_come_to_the_same_state(
     stepped.step(60)
     log = recorded.record(60, 1)
     scale = np.abs(numbers(log.poses)).max()
-    np.testing.assert_allclose(numbers(stepped.read()), numbers(recorded.read()), atol=1e-10 * scale)
+    np.testing.assert_allclose(
+        numbers(stepped.read()), numbers(recorded.read()), atol=1e-10 * scale
+    )
     np.testing.assert_array_equal(numbers(log.poses)[-1:], numbers(recorded.read()))
 
 

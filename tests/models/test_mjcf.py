@@ -1,0 +1,225 @@
+"""The MJCF text: what it holds, that it loads in a bare MuJoCo, and what it refuses."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.files import load_scene, shipped
+from models.mjcf import Writing, build
+from models.motion import State
+from models.scene import Scene
+from models.tree import plan
+
+
+def start_of(scene: Scene, time_s: float = 0.0) -> State:
+    return solve(scene, np.array([time_s])).state(0)
+
+
+def assembled(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """The model at its keyframe."""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+@pytest.mark.parametrize("time_s", [0.0, 0.123])
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_every_scene_loads_with_closed_loops_and_the_velocities_of_the_state(
+    name: str, time_s: float, tmp_path: Path
+) -> None:
+    scene = load_scene(name)
+    state = start_of(scene, time_s)
+    path = tmp_path / "scene.xml"
+    path.write_text(build(scene, state), encoding="utf-8")
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert model.key(0).name == "assembled"
+    assert model.neq >= 1
+    for equality in range(model.neq):
+        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
+        assert np.abs(a - b).max() < 1e-12
+    jacobian = data.efc_J.reshape(-1, model.nv)
+    peak = max(abs(w) for w in state.omega.values()) * scene.longest_m
+    assert np.abs(jacobian @ data.qvel).max() < 1e-12 * max(peak, 1.0)
+    np.testing.assert_array_equal(data.qpos, model.qpos0)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_masses_centres_and_inertias_are_those_of_the_scene(name: str) -> None:
+    scene = load_scene(name)
+    model, _ = assembled(build(scene, start_of(scene)))
+    assert model.nbody == 1 + len(scene.links) + sum(s.mass_kg > 0 for s in scene.sliders.values())
+    for link in scene.links.values():
+        body = model.body(link.name)
+        assert body.mass[0] == link.mass_kg
+        np.testing.assert_array_equal(body.inertia, [link.inertia_kg_m2] * 3)
+        np.testing.assert_array_equal(body.ipos, [*link.centre_m, 0.0])
+    np.testing.assert_array_equal(model.opt.gravity, [*scene.gravity_m_s2, 0.0])
+    assert not model.geom_contype.any()
+    assert not model.geom_conaffinity.any()
+
+
+def test_coordinates_read_as_angles_against_the_parent_and_as_displacements() -> None:
+    scene = load_scene("shaper")
+    state = start_of(scene, 0.2)
+    model, data = assembled(build(scene, state))
+    crank = data.qpos[model.joint("crank.A").qposadr[0]]
+    assert crank == state.theta["crank"]
+    lever = data.qpos[model.joint("lever.C").qposadr[0]]
+    assert lever == state.theta["lever"]
+    ram = data.qpos[model.joint("block F.F.slide").qposadr[0]]
+    assert ram == pytest.approx(state.displacement["F"], abs=1e-15)
+    block = model.joint("block B.B.slide")
+    assert data.qpos[block.qposadr[0]] == pytest.approx(state.displacement["B"], abs=1e-15)
+    assert data.qvel[block.dofadr[0]] == pytest.approx(state.speed["B"], rel=1e-12)
+
+
+def test_a_massless_block_is_a_slide_and_a_hinge_of_the_link_it_holds() -> None:
+    scene = load_scene("slotted-lever")
+    state = start_of(scene)
+    model, data = assembled(build(scene, state))
+    assert [model.joint(i).name for i in range(model.njnt)] == [
+        "crank.A",
+        "lever.B",
+        "lever.B.slide",
+    ]
+    assert data.qpos[2] == pytest.approx(state.displacement["B"], abs=1e-15)
+    assert data.qvel[2] == pytest.approx(state.speed["B"], rel=1e-12)
+    scene = load_scene("slider-crank-excel-350")
+    model, data = assembled(build(scene, start_of(scene)))
+    assert [model.joint(i).name for i in range(model.njnt)] == ["crank.A", "rod.C.slide", "rod.C"]
+    assert plan(scene, start_of(scene)).closures[0].point == "B"
+
+
+@pytest.mark.parametrize(
+    ("name", "closed"),
+    [
+        ("fourbar-lecture-1", ["C"]),
+        ("slider-crank-offset", ["C"]),
+        ("slotted-lever", ["C"]),
+        ("scotch-yoke", ["B"]),
+        ("tangent", ["P"]),
+        ("sixbar-watt", ["C", "F"]),
+        ("sixbar-stephenson", ["C", "F"]),
+    ],
+)
+def test_loops_close_where_the_documented_rule_says(name: str, closed: list[str]) -> None:
+    scene = load_scene(name)
+    assert [c.point for c in plan(scene, start_of(scene)).closures] == closed
+
+
+@pytest.mark.parametrize("close", ["B", "C", "D"])
+def test_the_loop_of_a_fourbar_closes_at_any_pin_but_the_drivers(close: str) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    text = build(scene, start_of(scene), Writing(close=(close,)))
+    model, data = assembled(text)
+    assert f'<connect name="{close}: ' in text
+    assert model.neq == 1
+    assert np.abs(data.site_xpos[0] - data.site_xpos[1]).max() < 1e-12
+
+
+def test_three_links_at_one_pin_are_tied_twice() -> None:
+    scene = load_scene("sixbar-watt")
+    rocker, rod = scene.links["rocker"], scene.links["rod"]
+    at_c = {("C" if p == "E" else p): xy for p, xy in rod.points.items()}
+    plain = {p: xy for p, xy in rocker.points.items() if p != "E"}
+    links = {
+        **scene.links,
+        "rocker": replace(rocker, points=plain),
+        "rod": replace(rod, points=at_c),
+    }
+    pivot = {"G": (0.5, 0.2)}
+    scene = replace(scene, links=links, ground={**scene.ground, **pivot})
+    tree = plan(scene, start_of(scene))
+    ties = [c for c in tree.closures if c.point == "C"]
+    in_tree = [f for limb in tree.limbs for f in limb.freedoms if f.name.endswith(".C")]
+    assert len(ties) + len(in_tree) == 2
+    assert len(tree.closures) == 2
+    model, data = assembled(build(scene, start_of(scene)))
+    for equality in range(model.neq):
+        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
+        assert np.abs(a - b).max() < 1e-12
+
+
+def test_the_same_scene_gives_the_same_text() -> None:
+    scene = load_scene("shaper")
+    text = build(scene, start_of(scene))
+    assert text == build(load_scene("shaper"), start_of(scene))
+    assert text.isascii()
+
+
+def test_numbers_read_back_as_the_same_doubles() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = start_of(scene, 0.1)
+    text = build(scene, state)
+    found = re.search(r'name="rocker.D"[^>]* ref="([^"]+)"', text)
+    assert found is not None
+    assert float(found.group(1)) == state.theta["rocker"]
+
+
+def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_actuator() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    assert "<actuator>" not in build(scene, start_of(scene))
+    servo = build(scene, start_of(scene), Writing(servo_gain=5.0))
+    assert '<velocity name="drive" joint="crank.A" kv="5.0"/>' in servo
+    assert "armature" not in servo
+    rocking = load_scene("fourbar-double-rocker")
+    text = build(rocking, start_of(rocking))
+    assert "<motor" in text
+    model, data = assembled(text)
+    law_alpha = rocking.driver.law.at(np.array([0.0]))[2][0]
+    assert data.ctrl[0] == pytest.approx(law_alpha, abs=1e-12)
+    crank = model.joint(f"{rocking.driver.link}.{rocking.driver_pivot}").dofadr[0]
+    assert data.qacc[crank] == pytest.approx(law_alpha, abs=1e-6)
+
+
+def test_a_comment_in_the_source_cannot_break_the_file() -> None:
+    scene = replace(load_scene("fourbar-lecture-1"), source='a -- b --> <c> & "d"')
+    assembled(build(scene, start_of(scene)))
+
+
+def test_a_flywheel_weighs_the_same_against_a_scene_of_any_size() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    model, _ = assembled(build(scene, start_of(scene)))
+    armature = model.dof_armature[model.joint("crank.A").dofadr[0]]
+    scale = sum(k.mass_kg * 0.25**2 + k.inertia_kg_m2 for k in scene.links.values())
+    assert armature == pytest.approx(1e12 * scale, rel=1e-12)
+
+
+@pytest.mark.parametrize(("mass", "inertia"), [(0.0, 0.0), (1.0, 0.0), (1e-16, 1.0)])
+def test_a_link_too_light_for_mujoco_is_named(mass: float, inertia: float) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    light = replace(scene.links["coupler"], mass_kg=mass, inertia_kg_m2=inertia)
+    scene = replace(scene, links={**scene.links, "coupler": light})
+    with pytest.raises(EngineError, match=r"coupler: mass_kg .* give both"):
+        build(scene, start_of(scene))
+
+
+def test_a_link_that_hangs_on_nothing_is_named() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = start_of(scene)
+    loose = replace(scene.links["rocker"], name="loose", points={"X": (0.0, 0.0), "Y": (1.0, 0.0)})
+    scene = replace(scene, links={**scene.links, "loose": loose})
+    place = {**state.position, "X": (0.0, 0.0), "Y": (1.0, 0.0)}
+    speed = {**state.velocity, "X": (0.0, 0.0), "Y": (0.0, 0.0)}
+    state = replace(
+        state,
+        theta={**state.theta, "loose": 0.0},
+        omega={**state.omega, "loose": 0.0},
+        position=place,
+        velocity=speed,
+    )
+    with pytest.raises(EngineError, match="loose hangs on nothing"):
+        build(scene, state)

@@ -1,0 +1,55 @@
+"""Body poses from joint coordinates agree with MuJoCo's own kinematics at arbitrary coordinates."""
+
+from __future__ import annotations
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene, shipped
+from models.mjcf import build, depth_first
+from models.tree import plan
+from sim.chain import body_poses
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_positions_and_velocities_are_those_of_mujoco(name: str) -> None:
+    scene = load_scene(name)
+    start = solve(scene, np.array([0.0])).state(0)
+    model = mujoco.MjModel.from_xml_string(build(scene, start))
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(5)
+    q, rate, push = random.normal(size=(3, 6, model.nv))
+    found = body_poses(depth_first(plan(scene, start)), q, rate, push)
+    for row in range(len(q)):
+        data.qpos[:], data.qvel[:] = q[row], rate[row]
+        mujoco.mj_forward(model, data)
+        for body, pose in found.items():
+            number = model.body(body).id
+            np.testing.assert_allclose(pose.origin[row], data.xpos[number][:2], atol=1e-13)
+            turn = data.xmat[number].reshape(3, 3)
+            np.testing.assert_allclose(np.cos(pose.theta[row]), turn[0, 0], atol=1e-13)
+            np.testing.assert_allclose(np.sin(pose.theta[row]), turn[1, 0], atol=1e-13)
+            speed = np.empty(6)
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, number, speed, 0)
+            np.testing.assert_allclose(pose.omega[row], speed[2], atol=1e-12)
+            np.testing.assert_allclose(pose.velocity[row], speed[3:5], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slotted-lever", "shaper", "scotch-yoke"])
+def test_accelerations_are_the_rates_of_the_velocities(name: str) -> None:
+    scene = load_scene(name)
+    start = solve(scene, np.array([0.0])).state(0)
+    limbs = depth_first(plan(scene, start))
+    count = sum(len(limb.freedoms) for limb in limbs)
+    random = np.random.default_rng(6)
+    q0, v0, a0 = random.normal(size=(3, count))
+    time_s = np.array([-1e-4, 0.0, 1e-4])[:, None]
+    found = body_poses(
+        limbs, q0 + v0 * time_s + a0 * time_s**2 / 2, v0 + a0 * time_s, a0 + 0 * time_s
+    )
+    for pose in found.values():
+        by_hand = (pose.velocity[2] - pose.velocity[0]) / 2e-4
+        np.testing.assert_allclose(pose.origin_acceleration[1], by_hand, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(pose.alpha[1], (pose.omega[2] - pose.omega[0]) / 2e-4, rtol=1e-8)

@@ -1,0 +1,100 @@
+"""From poses to the motion of the mechanism: exact poses give the exact motion, faults show."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene, shipped
+from models.scene import Scene
+from sim.engine import Poses
+from sim.measure import gaps, motion
+
+
+def exact(scene: Scene, fake_engine: ModuleType) -> Poses:
+    """True poses over 1.2 periods."""
+    time_s = np.linspace(0.0, 1.2 * scene.driver.law.period_s, 97)
+    poses: Poses = fake_engine.exact_poses(scene, fake_engine.FakeEngine(solve), time_s, 1e-3)
+    return poses
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_exact_poses_give_the_exact_motion(name: str, fake_engine: ModuleType) -> None:
+    scene = load_scene(name)
+    poses = exact(scene, fake_engine)
+    found, wanted = motion(scene, poses), solve(scene, poses.time_s)
+    assert set(found.points) == set(wanted.points)
+    for kind in ("links", "points", "sliders"):
+        for key, track in getattr(wanted, kind).items():
+            for quantity, array in vars(track).items():
+                got = getattr(getattr(found, kind)[key], quantity)
+                scale = max(np.abs(array).max(), scene.longest_m)
+                np.testing.assert_allclose(
+                    got, array, atol=1e-11 * scale, err_msg=f"{key} {quantity}"
+                )
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_exact_poses_have_no_gaps_at_any_joint(name: str, fake_engine: ModuleType) -> None:
+    scene = load_scene(name)
+    found = gaps(scene, exact(scene, fake_engine))
+    assert set(scene.sliders) <= set(found)
+    assert max(gap.max() for gap in found.values()) < 1e-13
+
+
+def test_a_pin_gap_is_the_largest_distance_of_two_copies(fake_engine: ModuleType) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    poses = exact(scene, fake_engine)
+    body = poses.links["rocker"]
+    moved = replace(body, origin=body.origin + np.array([3e-4, 4e-4]))
+    found = gaps(scene, replace(poses, links={**poses.links, "rocker": moved}))
+    np.testing.assert_allclose(found["C"], 5e-4, rtol=1e-9)
+    np.testing.assert_allclose(found["D"], 5e-4, rtol=1e-9)
+    assert found["B"].max() < 1e-15
+
+
+def test_a_slider_gap_is_the_distance_from_the_line_and_not_along_it(
+    fake_engine: ModuleType,
+) -> None:
+    scene = load_scene("slider-crank-excel-350")
+    poses = exact(scene, fake_engine)
+    body = poses.links["rod"]
+    moved = replace(body, origin=body.origin + np.array([3e-4, -4e-4]))
+    found = gaps(scene, replace(poses, links={**poses.links, "rod": moved}))
+    np.testing.assert_allclose(found["C"], 4e-4, rtol=1e-9)
+    np.testing.assert_allclose(found["B"], 5e-4, rtol=1e-9)
+
+
+def test_a_sliding_body_that_turns_against_its_line_is_a_gap(fake_engine: ModuleType) -> None:
+    scene = load_scene("scotch-yoke")
+    poses = exact(scene, fake_engine)
+    yoke, block = poses.links["yoke"], poses.blocks["B"]
+    turned = replace(poses, links={**poses.links, "yoke": replace(yoke, theta=yoke.theta + 1e-5)})
+    np.testing.assert_allclose(gaps(scene, turned)["Y"], 1e-5 * scene.longest_m, rtol=1e-6)
+    tipped = replace(poses, blocks={"B": replace(block, theta=block.theta - 2e-5 + 4 * np.pi)})
+    np.testing.assert_allclose(gaps(scene, tipped)["B"], 2e-5 * scene.longest_m, rtol=1e-6)
+
+
+def test_a_speed_along_a_moving_line_is_that_seen_from_the_guide(fake_engine: ModuleType) -> None:
+    scene = load_scene("slotted-lever")
+    poses = exact(scene, fake_engine)
+    found = motion(scene, poses).sliders["B"]
+    by_hand = np.gradient(found.displacement, poses.time_s, edge_order=2)
+    np.testing.assert_allclose(found.speed[2:-2], by_hand[2:-2], atol=4e-3)
+    by_hand = np.gradient(found.speed, poses.time_s, edge_order=2)
+    np.testing.assert_allclose(found.acceleration[2:-2], by_hand[2:-2], atol=8e-2)
+
+
+def test_an_injected_error_comes_out_as_it_went_in(fake_engine: ModuleType) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    poses = exact(scene, fake_engine)
+    wrong = fake_engine.turned_link("rocker", lambda t: 1e-3 * t)(poses)
+    off = motion(scene, wrong).links["rocker"].theta - motion(scene, poses).links["rocker"].theta
+    np.testing.assert_allclose(off, 1e-3 * poses.time_s, atol=1e-15)
+    np.testing.assert_allclose(
+        gaps(scene, wrong)["C"], 0.2e-3 * poses.time_s, rtol=1e-6, atol=1e-15
+    )

@@ -1,0 +1,253 @@
+"""Runs: how they end, what they refuse, and what they cost."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.files import load_scene
+from models.scene import Scene
+from sim.engine import Facts, Run
+from sim.registry import ENGINES, available, engine
+from sim.run import run, time_run
+
+FOURBAR = load_scene("fourbar-lecture-1")
+TANGENT = load_scene("tangent")
+
+
+def ran(
+    scene: Scene = FOURBAR, engine: Any = "mujoco", profile: str = "tuned", **given: Any
+) -> Run:
+    """A run of a second of 1 ms steps unless told otherwise."""
+    start = solve(scene, np.array([0.0])).state(0)
+    return run(scene, start, engine, profile, **{"dt_s": 1e-3, "steps": 1000, **given})
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_sample_times_are_multiples_of_the_step(name: str) -> None:
+    result = ran(engine=name, steps=9001, every=3)
+    assert result.motion is not None
+    np.testing.assert_array_equal(result.motion.time_s, 1e-3 * (3.0 * np.arange(3001)))
+    assert result.stopped_at_s == result.motion.time_s[-1]
+    assert result.cost is not None
+    assert result.cost.steps == 9001
+    assert result.cost.logged
+    assert 0.05 < result.cost.us_per_step < 500.0
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_run_may_start_at_any_time_of_the_law(name: str) -> None:
+    scene = load_scene("fourbar-double-rocker")
+    start = solve(scene, np.array([0.3])).state(0)
+    result = run(scene, start, name, dt_s=1e-3, steps=300)
+    assert result.motion is not None
+    exact = solve(scene, result.motion.time_s)
+    assert result.motion.time_s[0] == 0.3
+    off = result.motion.links["rocker"].theta - exact.links["rocker"].theta
+    assert np.abs(off).max() < 1e-4
+
+
+def test_a_diverging_run_stops_early_quietly_and_says_when(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    explicit = {"servo_integrator": "RK4", "servo_gain": 1e4}
+    result = ran(drive="servo", settings=explicit, steps=100_000)
+    assert result.status == "diverged"
+    assert "came apart at 0.00" in result.reason
+    assert result.stopped_at_s < 0.05
+    assert result.motion is not None
+    assert result.motion.time_s[-1] == result.stopped_at_s
+    assert np.isfinite(result.motion.links["rocker"].theta).all()
+    assert result.cost is not None
+    assert result.cost.steps < 10_000
+    assert len(result.warnings) >= 1
+    assert "unstable" in result.warnings[0]
+    assert len(set(result.warnings)) == len(result.warnings)
+    shown = capfd.readouterr()
+    assert shown.out + shown.err == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_warnings_go_back_to_whom_they_went_before() -> None:
+    import mujoco  # type: ignore[import-untyped]  # ships no stubs
+
+    heard: list[str] = []
+    mujoco.set_mju_user_warning(heard.append)
+    try:
+        ran(drive="servo", settings={"servo_integrator": "RK4"})
+        assert heard == []
+        model = mujoco.MjModel.from_xml_string(
+            "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
+        )
+        data = mujoco.MjData(model)
+        data.qvel[:] = 1e300
+        mujoco.mj_step(model, data)
+        assert len(heard) == 1
+    finally:
+        mujoco.set_mju_user_warning(None)
+
+
+def test_a_pymunk_run_that_comes_apart_is_diverged_too() -> None:
+    scene = load_scene("slider-crank-excel-210")
+    per_turn = scene.driver.law.period_s
+    rough = {"lines": "groove"}
+    result = ran(scene, "pymunk", settings=rough, dt_s=per_turn / 600, steps=60_000)
+    assert result.status == "diverged"
+    assert result.stopped_at_s < 2 * per_turn
+
+
+def test_an_engine_that_says_it_diverged_is_believed(fake_engine: ModuleType) -> None:
+    result = ran(engine=fake_engine.FakeEngine(solve, diverges_after=120), steps=9000)
+    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
+
+
+def test_a_loop_open_by_more_than_the_longest_link_is_diverged(fake_engine: ModuleType) -> None:
+    apart = fake_engine.turned_link("rocker", lambda t: np.where(t > 0.2, 3.0, 0.0))
+    result = ran(engine=fake_engine.FakeEngine(solve, disturb=apart), steps=9000)
+    assert result.status == "diverged"
+    assert result.stopped_at_s == pytest.approx(0.2)
+
+
+def test_an_engine_that_raises_is_a_row_with_a_reason(fake_engine: ModuleType) -> None:
+    result = ran(engine=fake_engine.FakeEngine(solve, fails_after=5000), steps=9000)
+    assert result.status == "crashed"
+    assert "RuntimeError: the fake engine fails" in result.reason
+    assert result.motion is not None
+    assert result.stopped_at_s == pytest.approx(4.0)
+
+
+def test_a_scene_that_an_engine_cannot_hold_is_unsupported(fake_engine: ModuleType) -> None:
+    refusing = fake_engine.FakeEngine(solve, refuses="no such joint here")
+    result = ran(engine=refusing)
+    assert (result.status, result.reason) == ("unsupported", "no such joint here")
+    assert result.motion is None
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_free_link_without_mass_is_unsupported_and_named(name: str) -> None:
+    bare = replace(FOURBAR.links["rocker"], mass_kg=0.0, inertia_kg_m2=0.0)
+    scene = replace(FOURBAR, links={**FOURBAR.links, "rocker": bare})
+    result = ran(scene, name)
+    assert result.status == "unsupported"
+    assert result.reason.startswith("rocker: mass_kg 0")
+
+
+def test_a_massless_block_that_would_close_a_loop_in_mujoco_is_named() -> None:
+    scene = load_scene("scotch-yoke")
+    bare = replace(scene.sliders["B"], mass_kg=0.0, inertia_kg_m2=0.0)
+    scene = replace(scene, sliders={**scene.sliders, "B": bare})
+    refused = ran(scene, "mujoco")
+    assert refused.status == "unsupported"
+    assert "sliders.B a mass_kg" in refused.reason
+    assert ran(scene, "pymunk").status == "ok"
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_point_that_only_massless_blocks_share_is_named(name: str) -> None:
+    bare = {n: replace(s, mass_kg=0.0, inertia_kg_m2=0.0) for n, s in TANGENT.sliders.items()}
+    result = ran(replace(TANGENT, sliders=bare), name)
+    assert result.status == "unsupported"
+    assert "mass_kg" in result.reason
+
+
+def test_a_model_that_is_not_the_scene_raises(fake_engine: ModuleType) -> None:
+    def heavier(facts: Facts) -> Facts:
+        return replace(facts, mass_kg={**facts.mass_kg, "rocker": 1.0})
+
+    with pytest.raises(EngineError, match=r"does not hold fourbar-lecture-1: rocker has mass_kg 1"):
+        ran(engine=fake_engine.FakeEngine(solve, changes=heavier))
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"dt_s": 0.0}, "dt: found 0 s; it takes a step above 0"),
+        ({"dt_s": -1e-3}, "dt: found -0.001 s"),
+        ({"dt_s": float("nan")}, "dt: found nan s"),
+        ({"dt_s": 0.1}, r"dt: 0.1 s leaves 6.3 steps in a period .* dt up to 0.0785 s"),
+        ({"steps": 0}, "steps: found 0"),
+        ({"every": 0}, "logged every 0"),
+        ({"engine": "mujocco"}, "engine 'mujocco': unknown; did you mean mujoco"),
+        ({"engine": "x"}, "engine 'x': unknown; there are mujoco, pymunk"),
+        ({"profile": "best"}, "profile 'best': mujoco has none .* as-shipped or tuned"),
+        ({"settings": {"iteration": 3}}, "setting 'iteration': .* did you mean iterations"),
+        ({"settings": {"iterations": "many"}}, "setting iterations: found 'many'; .* whole number"),
+        ({"settings": {"iterations": 1.5}}, "setting iterations: found 1.5"),
+        ({"settings": {"tolerance": ""}}, "setting tolerance: found ''; it takes a number"),
+        ({"settings": {"integrator": "rk5"}}, "setting integrator: found 'rk5'; use Euler or RK4"),
+        ({"settings": {"close": "Q"}}, "close = Q: not a pin"),
+        ({"settings": {"close": "A"}}, "close = A: not a pin .* one of D, B, C; by default C"),
+        ({"settings": {"close": "C,D"}}, "close = D: no loop of fourbar-lecture-1 closes there"),
+        ({"settings": {"islands": "no"}}, "setting islands: found 'no'; use enable or disable"),
+        ({"engine": "pymunk", "settings": {"lines": "x"}}, "setting lines: found 'x'"),
+    ],
+)
+def test_bad_input_raises_with_the_cure(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(EngineError, match=message):
+        ran(**given)
+
+
+def test_settings_are_overridden_one_by_one_and_stored_as_the_engine_holds_them() -> None:
+    result = ran(settings={"iterations": "7", "solref_timeconst_steps": 10})
+    assert result.settings["iterations"] == 7
+    assert result.settings["solref_timeconst_s"] == pytest.approx(0.01)
+    assert result.settings["integrator"] == "RK4"
+    assert result.settings["timestep_s"] == 1e-3
+    shipped = ran(engine="pymunk", profile="as-shipped", settings={"error_bias": 0.5})
+    assert shipped.settings["error_bias"] == 0.5
+    assert shipped.settings["iterations"] == 10
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_an_engine_that_is_not_installed_names_the_command(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.delitem(sys.modules, ENGINES[name], raising=False)
+    monkeypatch.delitem(sys.modules, "models.space", raising=False)
+    monkeypatch.delitem(sys.modules, "models.rail", raising=False)
+    with pytest.raises(EngineError, match=f"engine {name}: not installed; pip install {name}"):
+        engine(name)
+    told = {info.name: info for info in available()}
+    assert told[name].version is None
+    assert told[name].install == f"pip install {name}"
+    assert all(info.version for other, info in told.items() if other != name)
+
+
+def test_importing_sim_loads_no_engine() -> None:
+    code = "import sim.run, sys; print([n for n in ('mujoco', 'pymunk') if n in sys.modules])"
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_timing_repeats_and_says_whether_it_logged(name: str) -> None:
+    start = solve(FOURBAR, np.array([0.0])).state(0)
+    bare = time_run(FOURBAR, start, name, dt_s=1e-3, steps=200, repeats=3)
+    logged = time_run(FOURBAR, start, name, dt_s=1e-3, steps=200, repeats=3, every=1)
+    assert (len(bare.walls_s), bare.logged, logged.logged) == (3, False, True)
+    assert 0.0 < bare.best.wall_s <= bare.median.wall_s
+    assert bare.best.steps == 200
+
+
+def test_timing_leaves_the_collector_as_it_was() -> None:
+    import gc
+
+    start = solve(FOURBAR, np.array([0.0])).state(0)
+    seen: list[Callable[[], bool]] = [gc.isenabled]
+    time_run(FOURBAR, start, "pymunk", dt_s=1e-3, steps=10, repeats=1)
+    assert seen[0]()
