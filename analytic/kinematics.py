@@ -33,7 +33,7 @@ from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import GROUND, Scene
 
-CHUNK = 16384
+CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
 
 

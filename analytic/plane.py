@@ -54,6 +54,13 @@ class Vec:
         """The vector less ``factor`` times another."""
         return Vec(_less(self.x, other.x * factor), _less(self.y, other.y * factor))
 
+    def more(self, other: Vec, factor: Real) -> Vec:
+        """The vector and ``factor`` times another."""
+        x, y = other.x * factor, other.y * factor
+        x += self.x
+        y += self.y
+        return Vec(x, y)
+
     # The sums below are taken in place, in the array of their first product: half the memory
     # traffic of a new array each, which is what the time of a chunk goes to.
 
@@ -202,7 +209,8 @@ class BodyKinematics:
 
 def fixed_point(place: Point) -> PointKinematics:
     """A point that rests and is known exactly."""
-    return PointKinematics(Vec(*place), ZERO, ZERO, EXACT_POINT)
+    p = Vec(*place) if any(place) else ZERO
+    return PointKinematics(p, ZERO, ZERO, EXACT_POINT)
 
 
 def fixed_body(*, certified: bool) -> BodyKinematics:

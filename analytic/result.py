@@ -167,6 +167,5 @@ class Result:
 def _continue_angle(theta: Array, span: slice) -> None:
     """Take whole turns off the samples of ``span`` so that they follow on from those before."""
     part = theta[max(span.start - 1, 0) : span.stop]
-    step = part[1:] - part[:-1]
-    if step.max(initial=0.0) > math.pi or step.min(initial=0.0) < -math.pi:
-        part[1:] -= math.tau * np.cumsum(np.round(step / math.tau))
+    if part.max() - part.min() > math.pi:  # else there is no jump to look for
+        part[1:] -= math.tau * np.cumsum(np.round((part[1:] - part[:-1]) / math.tau))

@@ -1,16 +1,20 @@
 """How fast the reference is: the four-bar against pylinkage's compiled kinematics.
 
 Angle, rate and acceleration of coupler and rocker at 1e5 crank positions, in this process, both
-warmed up, alternating. Prints nanoseconds a position, the ratio, an A/A pair that shows the noise,
+taking turns in rounds of a few calls, each
+round warmed up by one. Prints nanoseconds a position, the ratio, an A/A pair that shows the noise,
 and the memory peak over the arrays returned. Exits with 1 where a ratio asked for is missed.
 """
 
 from __future__ import annotations
 
+import sys
+
+sys.path.pop(0)  # this folder, whose logging.py would hide the standard library's
+
 import gc
 import math
 import platform
-import sys
 import time
 import tracemalloc
 import warnings
@@ -24,7 +28,7 @@ from analytic.kinematics import solve
 from models.files import load_scene
 
 POSITIONS = 100_000
-REPEATS = 25
+ROUNDS, CALLS = 8, 5
 WANTED_RATIO = 8.0
 MOST_MEMORY = 2.0
 
@@ -56,17 +60,16 @@ def reference(*, bound: bool) -> Callable[[], object]:
 
 
 def nanoseconds(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
-    """Time per position of each call, the calls taking turns."""
-    for call in calls.values():
-        call()
-        call()
+    """Time per position of each call, the calls taking turns in rounds."""
     found: dict[str, list[float]] = {name: [] for name in calls}
     gc.disable()
-    for _ in range(REPEATS):
+    for _ in range(ROUNDS):
         for name, call in calls.items():
-            start = time.perf_counter()
             call()
-            found[name].append(1e9 * (time.perf_counter() - start) / POSITIONS)
+            for _ in range(CALLS):
+                start = time.perf_counter()
+                call()
+                found[name].append(1e9 * (time.perf_counter() - start) / POSITIONS)
     gc.enable()
     return found
 

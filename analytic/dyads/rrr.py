@@ -75,8 +75,11 @@ def solve(
     root, short = closing_root(square, shortage, stretch)
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = 1.0 / d2
-        along = (0.5 * (l1 - l2) * (l1 + l2)) * inverse + 0.5
-        r1 = d.turned(Vec(along, (0.5 * branch * inverse) * root))
+        along = (0.5 * (l1 - l2) * (l1 + l2)) * inverse
+        along += 0.5
+        inverse *= 0.5 * branch
+        inverse *= root
+        r1 = d.turned(Vec(along, inverse))
         r2 = r1 - d
         # Cramer's rule with the columns r1' and -r2' (turned by 90 deg): their cross product is
         # minus twice the area, and a cross product with a turned vector is a dot product.
@@ -85,7 +88,7 @@ def solve(
         w1, w2 = relative.dot(r2), relative.dot(r1)
         w1 *= inverse
         w2 *= inverse
-        relative = (p1.a - p2.a).less(r1, w1 * w1) + r2 * (w2 * w2)
+        relative = (p1.a - p2.a).less(r1, w1 * w1).more(r2, w2 * w2)
         g1, g2 = relative.dot(r2), relative.dot(r1)
         g1 *= inverse
         g2 *= inverse
