@@ -77,7 +77,7 @@ def _options(
 def verify(
     scenes: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[SCENE]...", help="Shipped names or scene files; all if none."),
+        typer.Argument(metavar="SCENE", help="Shipped names or scene files; all if none."),
     ] = None,
     engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
     profile: Annotated[

@@ -16,6 +16,8 @@ Trend = Literal["shrinks", "levels off", "does not shrink", "grows", "at roundin
 
 AT_ROUNDING = 1e-11
 """A pure error that rounding over a run of thousands of steps explains by itself."""
+STAYS, GROWS = 0.6, 2.0
+"""Ratios of the last error to the first: first order makes 0.25, and a floor wanders a little."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class Convergence:
         """A few words for a table."""
         if self.trend == "shrinks":
             return f"order {self.order:.1f}"
+        if self.trend == "grows":
+            return "does not shrink: it grows"
         if self.trend in ("does not shrink", "levels off"):
             return f"{self.trend}: floor {self.floor:.1e}"
         return self.trend
@@ -64,9 +68,9 @@ def _read(e1: float, e2: float, e3: float) -> tuple[Trend, float, float]:
     if max(e2, e3) <= AT_ROUNDING:
         return "at rounding", math.nan, math.nan
     order = math.log2(e1 / e3) / 2 if e3 > 0.0 and e1 > 0.0 else math.nan
-    if e3 > 1.1 * e1:
+    if e3 > GROWS * e1:
         return "grows", order, math.nan
-    if e3 > 0.6 * e1:
+    if e3 > STAYS * e1:
         return "does not shrink", order, _floor(e1, e2, e3)
     floor = _floor(e1, e2, e3)
     if floor > 0.5 * e3:

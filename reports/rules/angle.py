@@ -12,9 +12,8 @@ class AngleWithin:
         "The angle of every link but the driver against the closed form at the commanded time."
     )
     cure = (
-        "Shorten the step (--steps-per-turn); compare the geometric error: where that is "
-        "small, mend the drive; where it does not shrink with the step, use profile "
-        "tuned."
+        "Shorten the step (--steps-per-turn); where the error at the logged crank angle is "
+        "small, mend the drive; where it does not shrink with the step, use profile tuned."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

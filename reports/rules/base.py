@@ -61,7 +61,9 @@ def within(
         return None
     limit = evidence.limits[tolerance]
     level: Level = "pass" if worst.pure <= limit.number else "fail"
-    text = f"{place(worst)}; limit {limit.number:.2g} ({limit.origin})"
+    same = evidence.errors.worst(quantity, source, "geometric") if evidence.errors else None
+    crank = f"; at the logged crank angle {same.maximum:.3g} {same.unit}" if same else ""
+    text = f"{place(worst)}{crank}; limit {limit.number:.2g} ({limit.origin})"
     return Finding(rule, level, text, worst.pure, limit.number)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from reports.rules.base import Evidence, Finding
 
 SHARE = 0.1
@@ -26,8 +28,8 @@ class ReferenceCertain:
                 continue  # shown, held to no limit
             key = row.tolerance
             share = row.pure_bound / evidence.limits[key].number
-            # `not <=` also takes a bound that is NaN for one that is too large.
-            if not share <= worst:
+            share = math.inf if math.isnan(share) else share
+            if share > worst:
                 worst, name, limit = share, f"{key} of {row.body}", evidence.limits[key].number
         if worst <= SHARE:
             return Finding(

@@ -1,0 +1,58 @@
+"""Runs of a fake engine whose error is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene
+from models.scene import Scene
+from reports.compare import compare
+from reports.errors import Errors
+from sim.engine import Poses, Run
+from sim.run import run
+
+STEPS = 720
+
+
+@pytest.fixture(scope="session")
+def fourbar() -> Scene:
+    return load_scene("fourbar-lecture-1")
+
+
+@pytest.fixture(scope="session")
+def slider_crank() -> Scene:
+    return load_scene("slider-crank-offset")
+
+
+@pytest.fixture(scope="session")
+def disturbed(fake_engine: ModuleType) -> Callable[..., Run]:
+    """A run over one turn whose poses were disturbed on purpose."""
+
+    def make(
+        scene: Scene,
+        disturb: Callable[[Poses], Poses] = lambda poses: poses,
+        steps: int = STEPS,
+        **options: object,
+    ) -> Run:
+        engine = fake_engine.FakeEngine(exact=solve, disturb=disturb, **options)
+        state = solve(scene, np.zeros(1)).state()
+        return run(scene, state, engine, dt_s=scene.driver.law.period_s / STEPS, steps=steps)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
+    """The errors that `compare` finds in a disturbed run."""
+
+    def find(scene: Scene, *args: object, **options: object) -> Errors:
+        found = compare(scene, disturbed(scene, *args, **options))
+        assert found is not None
+        return found
+
+    return find

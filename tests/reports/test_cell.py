@@ -1,0 +1,107 @@
+"""A cell from run to verdict, alone and in a pool."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+import pytest
+
+from models.files import load_scene
+from models.scene import Scene
+from reports import pool
+from reports.cell import Cell, check, unfinished
+
+STEPS = 360
+
+
+def cell(scene: Scene, engine: str = "mujoco", profile: str = "tuned") -> Cell:
+    return Cell(scene, engine, profile, scene.driver.law.period_s / STEPS, STEPS)
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) -> None:
+    seen = check(cell(fourbar, engine)).convergence
+    assert seen is not None
+    assert seen.trend == "shrinks"
+    assert seen.order == pytest.approx(2.0, abs=0.3)
+    assert seen.unit == "rad"
+    assert len(seen.error) == 3
+
+
+@pytest.mark.parametrize("dt_s", [1e-3, 1e-4])
+def test_mujoco_as_shipped_has_a_floor_and_says_so(fourbar: Scene, dt_s: float) -> None:
+    one = Cell(fourbar, "mujoco", "as-shipped", dt_s, round(0.63 / dt_s))
+    found = check(one)
+    assert found.verdict == "out"
+    assert found.errors is not None
+    rocker = found.errors.worst("angle")
+    assert rocker is not None
+    assert rocker.maximum > 5e-4
+    assert found.convergence is not None
+    assert found.convergence.trend == "does not shrink"
+    assert 5e-4 < found.convergence.floor < 1e-3
+
+
+def test_the_tuned_errors_promised_at_a_millisecond_over_ten_turns(fourbar: Scene) -> None:
+    steps = 6284
+    mujoco, pymunk = (
+        check(Cell(fourbar, name, "tuned", 1e-3, steps, converge=False)).errors
+        for name in ("mujoco", "pymunk")
+    )
+    assert mujoco is not None
+    assert pymunk is not None
+    for errors, angle in ((mujoco, 1e-6), (pymunk, 1e-4)):
+        rocker, drive = errors.worst("angle"), errors.worst("drive")
+        assert rocker is not None
+        assert drive is not None
+        assert rocker.maximum < angle
+        assert drive.maximum < 1e-9
+    gap = mujoco.worst("gap")
+    assert gap is not None
+    assert gap.maximum < 1e-6
+
+
+def test_a_tolerance_that_is_too_tight_puts_the_cell_out(fourbar: Scene) -> None:
+    found = check(replace(cell(fourbar), tolerance={"angle": 1e-12}, converge=False))
+    assert found.verdict == "out"
+    assert [f.rule for f in found.failures] == ["CC103"]
+    assert found.convergence is None
+
+
+def test_a_cell_that_has_no_run_is_a_row_with_a_reason(fourbar: Scene) -> None:
+    found = unfinished(cell(fourbar), "crashed", "the engine ended its process")
+    assert found.verdict == "out"
+    assert "the engine ended its process" in found.failures[0].text
+
+
+def test_a_pool_gives_the_same_errors_as_one_process_in_the_same_order(fourbar: Scene) -> None:
+    scenes = [fourbar, load_scene("slotted-lever"), load_scene("tangent")]
+    cells = [
+        replace(cell(scene, engine), converge=False)
+        for scene in scenes
+        for engine in ("mujoco", "pymunk")
+    ]
+    heard: list[str] = []
+    together = pool.check_all(cells, 2, lambda one: heard.append(one.cell.label))
+    alone = pool.check_all(cells, 1)
+    assert [one.cell.label for one in together] == [one.label for one in cells]
+    assert sorted(heard) == sorted(one.label for one in cells)
+    assert [one.errors for one in together] == [one.errors for one in alone]
+
+
+def test_a_cell_that_kills_its_process_costs_that_cell_alone(
+    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cells = [replace(cell(fourbar), converge=False) for _ in range(pool.FEW + 2)]
+    cells[2] = replace(cells[2], profile="deadly")
+    monkeypatch.setattr(pool, "check", deadly_check)
+    found = pool.check_all(cells, 2)
+    assert [one.status for one in found] == ["ok", "ok", "crashed", "ok", "ok", "ok"]
+
+
+def deadly_check(cell: Cell) -> object:
+    """As `check`, except that one profile ends its process as a fault in native code does."""
+    if cell.profile == "deadly":
+        os._exit(1)
+    return unfinished(cell, "ok", "")

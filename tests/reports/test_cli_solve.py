@@ -1,0 +1,228 @@
+"""`crankcheck solve`, `export`, `scenes`, `engines`, `view`: the reference alone, and its model."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+from typer.testing import CliRunner, Result
+
+from analytic.kinematics import solve
+from models.files import load_scene, shipped
+from reports.cli import app
+
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers(crank: Crank) -> None:
+    result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
+    assert result.exit_code == 0
+    rows = {line.split()[0]: line.split() for line in result.output.splitlines() if line.strip()}
+    assert rows["coupler"][3:5] == ["-1.3257269", "20.297811"]
+    assert rows["rocker"][3:5] == ["4.6761490", "19.396967"]
+    points = [line.split() for line in result.output.splitlines() if line.startswith("C ")]
+    assert [row[-1] for row in points] == ["0.93522980", "5.8459573"]
+
+
+def test_numbers_that_are_0_within_their_bound_are_shown_as_0(crank: Crank) -> None:
+    result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
+    (place, _) = [line.split() for line in result.output.splitlines() if line.startswith("B ")]
+    assert place[1] == "0.0000000"
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_every_shipped_scene_is_solved_and_drawn_as_a_table(crank: Crank, name: str) -> None:
+    result = crank("solve", name)
+    assert result.exit_code == 0
+    assert "mobility 1" in result.output
+    assert "nan" not in result.output.lower().split()
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+
+
+READERS = {
+    ".csv": pd.read_csv,
+    ".parquet": pd.read_parquet,
+    ".xlsx": lambda path: pd.read_excel(path, sheet_name="motion"),
+}
+
+
+@pytest.mark.parametrize("ending", list(READERS))
+def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
+    crank: Crank, tmp_path: Path, ending: str
+) -> None:
+    path = tmp_path / f"out{ending}"
+    result = crank("solve", "slider-crank-offset", "--turns", "2", "-o", str(path))
+    assert result.exit_code == 0
+    frame = READERS[ending](path)
+    scene = load_scene("slider-crank-offset")
+    motion = solve(scene, frame["time_s"].to_numpy())
+    assert len(frame) == 721
+    # A spreadsheet keeps 15 to 17 digits, the others all.
+    close = {"rtol": 1e-12, "atol": 1e-12} if ending == ".xlsx" else {"rtol": 0.0, "atol": 0.0}
+    np.testing.assert_allclose(frame["rod_omega_rad_s"], motion.links["rod"].omega, **close)
+    np.testing.assert_allclose(frame["C_ax_m_s2"], motion.points["C"].acceleration[:, 0], **close)
+    np.testing.assert_allclose(frame["C_slider_speed_m_s"], motion.sliders["C"].speed, **close)
+    assert frame["time_s"].iloc[-1] == pytest.approx(2 * scene.driver.law.period_s)
+
+
+def test_the_workbook_says_where_its_numbers_come_from(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "out.xlsx"
+    crank("solve", "tangent", "-o", str(path))
+    origin = pd.read_excel(path, sheet_name="source")
+    assert load_scene("tangent").source in origin["value"].tolist()
+
+
+def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
+    result = crank("solve", "tangent", "--at-deg", "0")
+    (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
+    amplitude = math.radians(40.0)
+    assert float(lever[3]) == pytest.approx(10.0 * amplitude, rel=1e-7)
+    assert float(lever[4]) == 0.0
+
+
+MISTAKES = {
+    "unknown scene": (["solve", "scotch-yok"], ["'scotch-yok'", "scotch-yoke"]),
+    "angle out of reach": (
+        ["solve", "{locks}", "--at-deg", "180"],
+        ["180", "can stand at"],
+    ),
+    "angle out of the law's swing": (
+        ["solve", "tangent", "--at-deg", "41"],
+        ["--at-deg 41", "swings from -40 to 40 deg"],
+    ),
+    "angle of nan": (["solve", "tangent", "--at-deg", "nan"], ["--at-deg nan"]),
+    "angle and turns": (
+        ["solve", "tangent", "--at-deg", "0", "--turns", "1"],
+        ["--at-deg with --turns", "one of them"],
+    ),
+    "no turns": (["solve", "tangent", "--turns", "0"], ["--turns 0", "above 0"]),
+    "no steps": (["solve", "tangent", "--steps-per-turn", "0"], ["--steps-per-turn 0"]),
+    "too many samples": (
+        ["solve", "tangent", "--steps-per-turn", "2000000"],
+        ["2000001 samples", "at most 1000000"],
+    ),
+    "unknown ending": (
+        ["solve", "tangent", "-o", "out.txt"],
+        ["-o out.txt", "'.txt'", ".csv, .parquet, .xlsx"],
+    ),
+    "no folder": (["solve", "tangent", "-o", "no/out.csv"], ["there is no folder no"]),
+    "export elsewhere": (["export", "tangent", "-o", "out.mjcf"], ["'.mjcf'", "use .xml"]),
+    "export of nothing": (["export", "tangen", "-o", "out.xml"], ["mean tangent"]),
+    "picture of another kind": (["view", "tangent", "-o", "t.mp4"], ["'.mp4'", ".gif, .png"]),
+}
+
+
+@pytest.mark.parametrize("name", list(MISTAKES))
+def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
+    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    locks = tmp_path / "locks.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    locks.write_text(text.replace("0.25", "0.17"), encoding="utf-8")
+    args, parts = MISTAKES[name]
+    result = crank(*(arg.format(locks=locks) for arg in args))
+    assert result.exit_code == 2, result.output
+    flat = " ".join(result.stderr.split())
+    assert all(part in flat for part in parts), flat
+    assert list(tmp_path.iterdir()) == [locks]
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_the_exported_model_compiles_alone_and_its_keyframe_closes_the_loops(
+    crank: Crank, tmp_path: Path, name: str
+) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    path = tmp_path / "scene.xml"
+    assert crank("export", name, "-o", str(path)).exit_code == 0
+    model = mujoco.MjModel.from_xml_path(str(path))
+    state = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, state, 0)
+    mujoco.mj_forward(model, state)
+    assert np.max(np.abs(state.efc_pos[: state.ne]), initial=0.0) < 1e-12
+
+
+def test_export_without_a_file_prints_the_model(crank: Crank) -> None:
+    result = crank("export", "tangent")
+    assert result.output.startswith("<mujoco")
+    assert result.output.rstrip().endswith("</mujoco>")
+
+
+def test_scenes_lists_every_shipped_scene_with_its_groups(crank: Crank) -> None:
+    output = crank("scenes").output
+    assert all(name in output for name in shipped())
+    assert "RPR + RRP" in output
+
+
+def test_engines_lists_versions_profiles_and_settings_with_reasons(crank: Crank) -> None:
+    plain, full = crank("engines").output, crank("engines", "--settings").output
+    assert "mujoco" in plain
+    assert "tuned" in plain
+    assert "as-shipped" in plain
+    assert len(full.splitlines()) > len(plain.splitlines()) + 5
+
+
+def test_an_engine_that_is_missing_shows_the_command_that_installs_it(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports.commands import listing
+    from sim.registry import Availability
+
+    missing = (Availability("mujoco", None, "pip install mujoco"),)
+    monkeypatch.setattr(listing, "available", lambda: missing)
+    assert "not installed: pip install mujoco" in crank("engines").output
+
+
+def moves(frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]]) -> bool:
+    return any(not np.array_equal(frames[0], frame) for frame in frames[1:])
+
+
+def test_view_without_a_screen_draws_an_animation_that_moves(
+    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports import picture
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr("reports.commands.view.sys.platform", "linux")
+    monkeypatch.setattr(picture, "FRAMES", 4)
+    result = crank("view", "scotch-yoke")
+    assert result.exit_code == 0
+    assert "scotch-yoke.gif" in result.output
+    with Image.open(tmp_path / "scotch-yoke.gif") as film:
+        assert film.n_frames == 4
+        frames = []
+        for index in range(4):
+            film.seek(index)
+            frames.append(np.asarray(film.convert("RGB")))
+    assert moves(frames)
+
+
+@pytest.mark.parametrize("name", ["shaper", "tangent", "sixbar-stephenson"])
+def test_a_strip_shows_every_link_in_its_colour(name: str) -> None:
+    from reports import picture
+
+    scene = load_scene(name)
+    with Image.open(io.BytesIO(picture.strip(scene))) as image:
+        pixels = np.asarray(image.convert("RGB")).reshape(-1, 3)
+    for colour in picture.COLOURS[: len(scene.links)]:
+        rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        assert np.any(np.all(pixels == rgb, axis=1)), colour

@@ -1,0 +1,248 @@
+"""`crankcheck verify` from the command line: verdict, table, files, and every mistake."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from models.errors import EngineError
+from reports.cli import app
+from reports.rules import RULES
+
+FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
+ONE = ["verify", "fourbar-lecture-1", *FAST]
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def refused(result: Result, *parts: str) -> None:
+    """The command ended with exit code 2 and one message that holds all the parts."""
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    flat = " ".join(result.stderr.replace("│", " ").split())
+    for part in parts:
+        assert part in flat, flat
+
+
+def test_a_scene_within_tolerance_ends_with_0(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
+    assert result.exit_code == 0
+    assert "WITHIN TOLERANCE: all 1 cells" in result.output
+    assert "mujoco 4" in " ".join(result.output.split())
+
+
+def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
+    crank: Crank,
+) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned", "--tol", "angle=1e-12")
+    assert result.exit_code == 1
+    assert "OUT OF TOLERANCE: 1 of 1 cells" in result.output
+    head, _, _ = result.output.partition("profile tuned")
+    assert "CC103 angle" in head
+    assert "limit 1e-12 (--tol)" in " ".join(head.split())
+    assert "cure:" in head
+
+
+def test_by_default_as_shipped_is_shown_and_does_not_count(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco")
+    assert result.exit_code == 0
+    assert "profile tuned (gated)" in result.output
+    assert "profile as-shipped (shown, not gated)" in result.output
+    assert "OUT fourbar-lecture-1" in result.output
+
+
+def test_a_profile_that_is_named_is_gated(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "as-shipped")
+    assert result.exit_code == 1
+    assert "profile as-shipped (gated)" in result.output
+
+
+@pytest.mark.parametrize("dt", ["1e-3", "1e-4"])
+def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(crank: Crank, dt: str) -> None:
+    result = crank("verify", "fourbar-lecture-1", "--engine", "mujoco", "--profile",
+                   "as-shipped", "--dt", dt, "--turns", "1")  # fmt: skip
+    assert result.exit_code == 1
+    assert "does not shrink" in result.output.partition("profile as-shipped")[2]
+
+
+def test_no_line_is_wider_than_a_hundred_columns(crank: Crank) -> None:
+    result = crank("verify", "slider-crank-excel-350", "--turns", "1")
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    assert "slider-crank-excel-350" in result.output.partition("profile tuned")[2]
+
+
+def test_a_scene_may_be_a_path(crank: Crank, tmp_path: Path) -> None:
+    from models.files import shipped
+
+    path = tmp_path / "mine.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text.replace('"fourbar-lecture-1"', '"mine"'), encoding="utf-8")
+    result = crank("verify", str(path), *FAST, "--engine", "mujoco")
+    assert result.exit_code == 0
+    assert "mine" in result.output
+
+
+def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(
+    crank: Crank, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out"
+    assert crank(*ONE, "-o", str(folder), "--engine", "mujoco").exit_code == 0
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "errors.parquet",
+        "verify.csv",
+        "verify.json",
+        "verify.junit.xml",
+    ]
+    cells = pd.read_csv(folder / "verify.csv")
+    assert cells["profile"].tolist() == ["tuned", "as-shipped"]
+    stored = json.loads((folder / "verify.json").read_text())
+    assert [cell["verdict"] for cell in stored["cells"]] == ["within", "out"]
+    assert stored["cells"][0]["angle_error_rad"] == pytest.approx(cells["angle_error_rad"][0])
+    assert {f["rule"] for f in stored["cells"][0]["findings"]} <= set(RULES)
+    long = pd.read_parquet(folder / "errors.parquet")
+    rocker = long.query("profile == 'tuned' and body == 'rocker' and quantity == 'angle'")
+    assert set(rocker["kind"]) == {"total", "geometric"}
+    assert rocker["maximum"].max() <= cells["angle_error_rad"][0] * (1 + 1e-12)
+    suite = Xml.fromstring((folder / "verify.junit.xml").read_text())
+    assert [case.get("name") for case in suite.iter("testcase")] == ["fourbar-lecture-1"] * 2
+
+
+def test_a_second_run_replaces_the_files_of_the_first(crank: Crank, tmp_path: Path) -> None:
+    for tolerance in ("1e-12", "1e-1"):
+        crank(*ONE, "-o", str(tmp_path), "--engine", "mujoco", "--tol", f"angle={tolerance}")
+    cells = pd.read_csv(tmp_path / "verify.csv")
+    assert cells["verdict"][0] == "within"
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_junit_names_the_failure_and_skips_what_is_not_gated(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "j.xml"
+    result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
+    assert result.exit_code == 1
+    (suite,) = Xml.fromstring(path.read_text())
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
+    failure = suite.find("testcase/failure")
+    assert failure is not None
+    assert failure.get("type") == "CC103"
+    assert "cure" in (failure.text or "")
+
+
+def test_outputs_are_written_even_when_out_of_tolerance(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "cells.csv"
+    result = crank(*ONE, "--engine", "pymunk", "--tol", "drive=1e-30", "--csv", str(path))
+    assert result.exit_code == 1
+    assert "CC102" in pd.read_csv(path)["failed_rules"][0]
+
+
+MISTAKES = {
+    "unknown scene": (["verify", "fourbar-lectur-1"], ["'fourbar-lectur-1'", "fourbar-lecture-1"]),
+    "unknown engine": ([*ONE, "--engine", "mujco"], ["'mujco'", "did you mean mujoco"]),
+    "unknown profile": ([*ONE, "--profile", "tund"], ["'tund'", "did you mean tuned"]),
+    "unknown drive": ([*ONE, "--drive", "belt"], ["'belt'", "prescribed or servo"]),
+    "tolerance": ([*ONE, "--tol", "angle:1e-4"], ["--tol 'angle:1e-4'", "angle=1e-4"]),
+    "unknown quantity": ([*ONE, "--tol", "angel=1"], ["'angel' is no quantity", "mean angle"]),
+    "dt of 0": (["verify", "fourbar-lecture-1", "--dt", "0"], ["--dt 0", "above 0"]),
+    "negative dt": (["verify", "fourbar-lecture-1", "--dt", "-1e-3"], ["--dt -0.001", "above 0"]),
+    "dt of nan": (["verify", "fourbar-lecture-1", "--dt", "nan"], ["--dt nan", "above 0"]),
+    "dt of words": (["verify", "fourbar-lecture-1", "--dt", "small"], ["--dt", "valid number"]),
+    "large dt": (
+        ["verify", "fourbar-lecture-1", "--dt", "0.1"],
+        ["--dt 0.1", "6.28 steps in a turn", "at least 8", "at most 0.07854 s"],
+    ),
+    "few steps": (["verify", "--steps-per-turn", "7.9"], ["--steps-per-turn 7.9", "at least 8"]),
+    "tiny dt": (["verify", "fourbar-lecture-1", "--dt", "1e-9"], ["--dt 1e-09", "at most 5000000"]),
+    "dt and steps": ([*ONE, "--dt", "1e-3"], ["--dt and --steps-per-turn", "one of them"]),
+    "no turns": (["verify", "fourbar-lecture-1", "--turns", "0"], ["--turns 0", "above 0"]),
+    "infinite turns": (["verify", "fourbar-lecture-1", "--turns", "inf"], ["--turns inf"]),
+    "junit below a file": ([*ONE, "--junit", __file__ + "/j.xml"], ["--junit", "no folder"]),
+    "csv is a folder": ([*ONE, "--csv", str(Path(__file__).parent)], ["--csv", "a folder"]),
+    "folder is a file": ([*ONE, "-o", __file__], ["-o", "is a file; name a folder"]),
+    "scene is a folder": (["verify", str(Path(__file__).parent)], ["a directory"]),
+    "negative jobs": ([*ONE, "--jobs", "-1"], ["--jobs", "greater than or equal to 0"]),
+    "unknown option": ([*ONE, "--toll", "angle=1"], ["--toll"]),
+    "unknown command": (["verfy"], ["verfy"]),
+}
+
+
+@pytest.mark.parametrize("name", list(MISTAKES))
+def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
+    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    args, parts = MISTAKES[name]
+    refused(crank(*args), *parts)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.commands.names as names
+
+    def missing(name: str) -> object:
+        raise EngineError(f"engine {name}: not installed; pip install {name}")
+
+    monkeypatch.setattr(names, "engine", missing)
+    refused(crank(*ONE), "engine mujoco: not installed", "pip install mujoco")
+
+
+def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> None:
+    from models.files import shipped
+
+    path = tmp_path / "other.toml"
+    text = shipped()["fourbar-crossed"].read_text(encoding="utf-8")
+    text = text.replace('"fourbar-crossed"', '"fourbar-lecture-1"')
+    path.write_text(text, encoding="utf-8")
+    refused(crank(*ONE, str(path)), "a second scene called fourbar-lecture-1", "rename one")
+
+
+def test_a_fault_of_the_scene_is_told_before_anything_runs(crank: Crank, tmp_path: Path) -> None:
+    from models.files import shipped
+
+    path = tmp_path / "bad.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text + "\n[tolerance]\nangel = 1e-3\n", encoding="utf-8")
+    refused(crank("verify", str(path)), "[tolerance] angel", "did you mean angle")
+
+
+def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.MonkeyPatch) -> None:
+    import reports.commands.verify as command
+
+    def interrupted(*_: object) -> object:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "check_all", interrupted)
+    result = crank(*ONE)
+    assert result.exit_code == 130
+    assert result.stderr.splitlines() == ["crankcheck: interrupted, nothing written"]
+
+
+def test_a_scene_that_no_engine_can_hold_is_a_row_and_exit_2(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.cell as cell
+
+    def refuse(*_: object, **__: object) -> object:
+        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
+
+    monkeypatch.setattr(cell, "run", refuse)
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
+    assert result.exit_code == 2
+    assert "coupler has no mass" in " ".join(result.output.split())
+    assert "NONE fourbar-lecture-1" in result.output
