@@ -64,7 +64,7 @@ VELOCITY = Tolerance(
 ACCELERATION = Tolerance(
     "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
     "engines with soft constraints keep a share of it open at every step (MuJoCo 1e-4).",
-    coefficient=8.0,
+    coefficient=10.0,
     power=2.0,
     conditioned=True,
     floor=1e-3,

@@ -102,7 +102,7 @@ def _cells(one: Checked) -> list[Text | str]:
         errors.worst("velocity"),
         errors.worst("acceleration"),
     ]
-    seen = one.convergence.words if one.convergence else ""
+    seen = one.convergence.words.replace(": ", "\n") if one.convergence else ""
     if one.status != "ok":
         seen = f"{one.status} at t = {one.stopped_at_s:.3g} s"
     return [*head, *(_number(error) for error in numbers), _share(one.findings), seen]

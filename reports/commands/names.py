@@ -5,12 +5,17 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.scene import Scene
 from reports.tolerance import check_names
 from sim.registry import ENGINES, engine
 
+LOOKS = 721
+"""Positions of the first look at a period; the run itself looks at every sample."""
 PROFILES = ("tuned", "as-shipped")
 
 
@@ -26,11 +31,24 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
     for name in names or shipped():
         scene = load_scene(name)
         check_names(scene)
+        _check_motion(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
                 f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
             )
     return list(scenes.values())
+
+
+def _check_motion(scene: Scene) -> None:
+    """Refuse a scene that has no closed form, or can not follow its driver through a period.
+
+    Raises
+    ------
+    CrankcheckError
+        A StructureError or ReachError of the reference, which names group or range.
+    """
+    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    solve(scene, turn, points=(), sliders=(), bound=False)
 
 
 def chosen_engines(names: Sequence[str]) -> list[str]:

@@ -71,7 +71,10 @@ def verify(request: Request, console: Console, progress: Console) -> int:
     _write(request, checked, facts)
     show(console, checked, facts)
     gated = [one for one in checked if one.cell.gated]
-    if any(one.verdict == "unsupported" for one in gated):
+    missing = [one for one in gated if one.verdict == "unsupported"]
+    for one in missing:
+        progress.print(f"crankcheck: {one.cell.label}: {one.reason}", markup=False, soft_wrap=True)
+    if missing:
         return 2
     return int(any(one.verdict == "out" for one in gated))
 

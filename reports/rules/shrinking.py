@@ -16,7 +16,7 @@ class ErrorShrinks:
     )
     cure = (
         "A shorter step does not help; change what the engine models "
-        "(MuJoCo: solref and solimp are soft as shipped; profile tuned stiffens them)."
+        "(MuJoCo: solref, solimp; pymunk: error_bias, iterations); profile tuned does it."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -9,7 +9,10 @@ class StatusOk:
     id = "CC101"
     title = "status"
     explanation = "A run that stopped early, or never started, says nothing about the rest."
-    cure = "Shorten the step (--steps-per-turn), or use profile tuned; the reason says what broke."
+    cure = (
+        "What is unsupported says itself what to change; a run that came apart needs a shorter "
+        "step (--steps-per-turn) or profile tuned."
+    )
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.status == "ok":

@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from models.errors import EngineError
+from models.files import shipped
 from reports.cli import app
 from reports.rules import RULES
 
@@ -88,8 +89,6 @@ def test_no_line_is_wider_than_a_hundred_columns(crank: Crank) -> None:
 
 
 def test_a_scene_may_be_a_path(crank: Crank, tmp_path: Path) -> None:
-    from models.files import shipped
-
     path = tmp_path / "mine.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     path.write_text(text.replace('"fourbar-lecture-1"', '"mine"'), encoding="utf-8")
@@ -203,8 +202,6 @@ def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
 
 
 def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> None:
-    from models.files import shipped
-
     path = tmp_path / "other.toml"
     text = shipped()["fourbar-crossed"].read_text(encoding="utf-8")
     text = text.replace('"fourbar-crossed"', '"fourbar-lecture-1"')
@@ -213,12 +210,46 @@ def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> No
 
 
 def test_a_fault_of_the_scene_is_told_before_anything_runs(crank: Crank, tmp_path: Path) -> None:
-    from models.files import shipped
-
     path = tmp_path / "bad.toml"
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
     path.write_text(text + "\n[tolerance]\nangel = 1e-3\n", encoding="utf-8")
     refused(crank("verify", str(path)), "[tolerance] angel", "did you mean angle")
+
+
+def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
+    """A shipped scene with some of its text changed, as a file."""
+    text = shipped()[name].read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "edited.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_a_loop_that_can_not_follow_its_driver_is_told_with_its_range(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.17"))
+    refused(crank("verify", path), "crank can stand at", "deg")
+
+
+def test_a_loop_that_never_closes_says_by_how_much(crank: Crank, tmp_path: Path) -> None:
+    path = edited(
+        tmp_path, "fourbar-lecture-1", ("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")
+    )
+    refused(crank("verify", path), "cannot be assembled", "open by", "change a length")
+
+
+def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = edited(
+        tmp_path, "fourbar-lecture-1", ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
+    )
+    result = crank("verify", path, *FAST)
+    refused(result, "coupler", "mass_kg")
+    assert "unsupported" in result.output
 
 
 def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.MonkeyPatch) -> None:
