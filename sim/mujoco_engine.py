@@ -82,7 +82,9 @@ class MujocoSession:
         self._shift = 0.0 if integrator(settings, drive) == "RK4" else -0.5
         chosen = writing(scene, settings, dt_s, drive)
         start = launched(state, self._shift * dt_s)
-        self._limbs = mjcf.depth_first(_tree(scene, start, chosen.close))
+        tree = _tree(scene, start, chosen.close)
+        self._limbs = mjcf.depth_first(tree)
+        self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         self._warnings: list[str] = []
         with self._quiet():
             self._model = _compiled(mjcf.build(scene, start, chosen))
@@ -103,6 +105,7 @@ class MujocoSession:
         names = [limb.body for limb in self._limbs]
         opt = model.opt
         held: dict[str, SettingValue] = dict(self._settings) | {
+            "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
             "iterations": int(opt.iterations),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -187,7 +188,9 @@ def test_a_law_other_than_constant_speed_brings_a_motor_and_a_servo_a_velocity_a
 
 def test_a_comment_in_the_source_cannot_break_the_file() -> None:
     scene = replace(load_scene("fourbar-lecture-1"), source='a -- b --> <c> & "d"')
-    assembled(build(scene, start_of(scene)))
+    text = build(scene, start_of(scene))
+    assembled(text)
+    ElementTree.fromstring(text)
 
 
 def test_a_flywheel_weighs_the_same_against_a_scene_of_any_size() -> None:

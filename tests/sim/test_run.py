@@ -98,13 +98,20 @@ def test_warnings_go_back_to_whom_they_went_before() -> None:
         mujoco.set_mju_user_warning(None)
 
 
-def test_a_pymunk_run_that_comes_apart_is_diverged_too() -> None:
-    scene = load_scene("slider-crank-excel-210")
+@pytest.mark.parametrize(
+    ("name", "rough"),
+    [("slider-crank-excel-210", {"lines": "groove"}), ("shaper", {"iterations": 2})],
+)
+def test_a_pymunk_run_that_comes_apart_is_diverged_too(
+    name: str, rough: dict[str, Any], capfd: pytest.CaptureFixture[str]
+) -> None:
+    scene = load_scene(name)
     per_turn = scene.driver.law.period_s
-    rough = {"lines": "groove"}
     result = ran(scene, "pymunk", settings=rough, dt_s=per_turn / 600, steps=60_000)
     assert result.status == "diverged"
     assert result.stopped_at_s < 2 * per_turn
+    shown = capfd.readouterr()
+    assert shown.out + shown.err == ""
 
 
 def test_an_engine_that_says_it_diverged_is_believed(fake_engine: ModuleType) -> None:
@@ -204,6 +211,7 @@ def test_settings_are_overridden_one_by_one_and_stored_as_the_engine_holds_them(
     assert result.settings["solref_timeconst_s"] == pytest.approx(0.01)
     assert result.settings["integrator"] == "RK4"
     assert result.settings["timestep_s"] == 1e-3
+    assert result.settings["close"] == "C"
     shipped = ran(engine="pymunk", profile="as-shipped", settings={"error_bias": 0.5})
     assert shipped.settings["error_bias"] == 0.5
     assert shipped.settings["iterations"] == 10
