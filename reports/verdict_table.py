@@ -26,8 +26,7 @@ MARKS = {
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Print the whole verification."""
     failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
-    for one in failed:
-        _failure(console, one)
+    _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
         console.print(_table(profile, gated, chosen), "")
@@ -36,14 +35,19 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     console.print(_footer(checked, facts), style="dim", highlight=False)
 
 
-def _failure(console: Console, one: Checked) -> None:
-    """One gated cell out of tolerance: what is wrong, and what would mend it."""
-    console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
-    for finding in one.failures:
-        rule = RULES[finding.rule]
-        _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
-        _hanging(console, "        cure: ", rule.cure, style="cyan")
-    console.print()
+def _failures(console: Console, failed: Sequence[Checked]) -> None:
+    """What is out of tolerance, cell by cell, then what would mend it, rule by rule."""
+    for one in failed:
+        console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
+        for finding in one.failures:
+            rule = RULES[finding.rule]
+            _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
+    broken = {finding.rule for one in failed for finding in one.failures}
+    for rule in RULES.values():
+        if rule.id in broken:
+            _hanging(console, f"{rule.id} cure: ", rule.cure, style="cyan")
+    if failed:
+        console.print()
 
 
 def _hanging(console: Console, head: str, text: str, style: str = "") -> None:

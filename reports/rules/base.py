@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -57,23 +58,38 @@ def within(
 ) -> Finding | None:
     """Hold the largest error of a quantity to its limit; an error that is not finite fails."""
     worst = evidence.errors.worst(quantity, source) if evidence.errors else None
-    if worst is None:
+    if worst is None or evidence.errors is None:
         return None
     limit = evidence.limits[tolerance]
     level: Level = "pass" if worst.pure <= limit.number else "fail"
-    same = evidence.errors.worst(quantity, source, "geometric") if evidence.errors else None
-    crank = f"; at the logged crank angle {same.maximum:.3g} {same.unit}" if same else ""
-    text = f"{place(worst)}{crank}; limit {limit.number:.2g} ({limit.origin})"
+    at_crank = evidence.errors.worst(quantity, source, "geometric")
+    geometric = f"; {measure(at_crank)} at the logged crank angle" if at_crank else ""
+    number = f"{limit.number:.2g} {SCALES[worst.unit]} ({limit.origin})"
+    text = f"{place(worst)}{geometric}; limit {number}"
     return Finding(rule, level, text, worst.pure, limit.number)
 
 
-def place(error: Error) -> str:
-    """An error in words: body, size in its unit and as a pure number, where it is largest."""
-    degrees = error.driver_at_maximum_rad * 57.29577951308232
+SCALES = {
+    "rad": "rad",
+    "m": "L",
+    "rad/s": "w",
+    "m/s": "w L",
+    "rad/s^2": "w^2",
+    "m/s^2": "w^2 L",
+}
+"""What a pure number of a unit is a multiple of: L the longest link, w the driver's peak speed."""
+
+
+def measure(error: Error) -> str:
+    """The size of an error in its unit, and over its scale where that is another number."""
     size = f"{error.maximum:.3g} {error.unit}"
-    if error.unit != "rad":
-        size += f" ({error.pure:.3g})"
+    return size if error.unit == "rad" else f"{size} = {error.pure:.3g} {SCALES[error.unit]}"
+
+
+def place(error: Error) -> str:
+    """An error in words: body, size, and where it is largest."""
+    degrees = math.degrees(error.driver_at_maximum_rad)
     return (
-        f"{error.body_kind} {error.body}: {size} at t = {error.time_of_maximum_s:.4g} s, "
+        f"{error.body_kind} {error.body}: {measure(error)} at t = {error.time_of_maximum_s:.4g} s, "
         f"driver {degrees:.1f} deg"
     )

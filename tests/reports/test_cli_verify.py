@@ -56,7 +56,7 @@ def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
     assert "OUT OF TOLERANCE: 1 of 1 cells" in result.output
     head, _, _ = result.output.partition("profile tuned")
     assert "CC103 angle" in head
-    assert "limit 1e-12 (--tol)" in " ".join(head.split())
+    assert "limit 1e-12 rad (--tol)" in " ".join(head.split())
     assert "cure:" in head
 
 
