@@ -79,15 +79,19 @@ class Certificate:
         )
         lost = self.d1 * n2 + n1 * self.d2 + self.d1 * self.d2 + 4 * EPS * n1 * n2
         left = np.abs(self.jacobian.det) - lost
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sure = 1.0 / np.where(left > 0.0, left, 0.0)
-            e1 = np.where(left > 0.0, (n2 + self.d2) * residual * sure, np.inf)
-            e2 = np.where(left > 0.0, (n1 + self.d1) * residual * sure, np.inf)
+        # What comes from a singular dyad before this one may be 0 times infinity: not certain.
+        sure = (left > 0.0) & (residual < np.inf)
+        e1 = np.where(sure, (n2 + self.d2) * residual / left, np.inf)
+        e2 = np.where(sure, (n1 + self.d1) * residual / left, np.inf)
         return e1, e2
 
 
 def certify(
-    jacobian: Jacobian, residual: Real, curvature: Curvature, fold: tuple[Real, Real]
+    jacobian: Jacobian,
+    residual: Real,
+    curvature: Curvature,
+    fold: tuple[Real, Real],
+    lost: Real = 0.0,
 ) -> tuple[Real, Real]:
     """Bounds on the errors of a dyad's two unknowns at position level.
 
@@ -102,10 +106,11 @@ def certify(
     fold : tuple
         What the errors of the unknowns are at most beside the toggle, where the first order
         no longer says anything.
+    lost : Array or float
+        What the errors of the inputs may take off the determinant, where its columns hold any.
     """
     n1, n2 = jacobian.c1.norm(), jacobian.c2.norm()
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        inverse = 1.0 / np.abs(jacobian.det)
-        e1, e2 = n2 * residual * inverse, n1 * residual * inverse
-        valid = 4.0 * curvature.remainder(e1, e2) <= residual
+    inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)
+    e1, e2 = n2 * residual * inverse, n1 * residual * inverse
+    valid = 4.0 * curvature.remainder(e1, e2) <= residual
     return np.where(valid, 2.0 * e1, fold[0]), np.where(valid, 2.0 * e2, fold[1])

@@ -196,13 +196,14 @@ class BodyKinematics:
         e, at = self.error, self.anchor.error
         rate, gain = abs(self.omega), abs(self.alpha)
         speed, pull = r * rate, r * (gain + rate * rate)
+        change = e.alpha + e.omega * (2 * rate + e.omega)
         return PointError(
             at.position + r * e.theta + 4 * EPS * (found.p.norm() + self.anchor.p.norm() + r),
             at.velocity
-            + r * (e.omega + rate * e.theta)
+            + r * (e.omega + (rate + e.omega) * e.theta)
             + 4 * EPS * (found.v.norm() + self.anchor.v.norm() + speed),
             at.acceleration
-            + r * (e.alpha + e.omega * (2 * rate + e.omega) + (gain + rate * rate) * e.theta)
+            + r * (change + (gain + rate * rate + change) * e.theta)
             + 6 * EPS * (found.a.norm() + self.anchor.a.norm() + pull),
         )
 

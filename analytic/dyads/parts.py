@@ -81,15 +81,12 @@ class MovingLine:
         assert self.error is not None
         e, p = self.error, self.point.error
         w, g, d, v = abs(self.omega), abs(self.alpha), np.abs(s), np.abs(speed)
+        shift = d * e.theta + es
+        gain = e.alpha + e.omega * (2.0 * w + e.omega)
         position = p.position + d * e.theta
-        velocity = p.velocity + d * e.omega + w * (d * e.theta + es) + e.omega * es
-        acceleration = (
-            p.acceleration
-            + d * (e.alpha + e.omega * (2.0 * w + e.omega))
-            + (g + w * w) * (d * e.theta + es)
-            + 2.0 * (v * e.omega + w * ev + e.omega * ev + w * v * e.theta)
-            + (e.alpha + e.omega * (2.0 * w + e.omega)) * es
-        )
+        velocity = p.velocity + d * e.omega + (w + e.omega) * shift
+        coriolis = v * e.omega + (w + e.omega) * ev + w * v * e.theta
+        acceleration = p.acceleration + d * gain + (g + w * w + gain) * shift + 2.0 * coriolis
         return position, velocity, acceleration
 
     def sizes(self, s: Real, speed: Real) -> tuple[Real, Real, Real]:

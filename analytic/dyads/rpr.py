@@ -83,6 +83,7 @@ def solve(
     return Dyad(Turning(along, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
     p1: PointKinematics,
     p2: PointKinematics,
@@ -100,10 +101,9 @@ def _errors(
     gap = (p1.p - p2.p - along * s - along.perp() * offset).norm()
     size = p1.p.norm() + p2.p.norm() + 2.0 * (np.abs(s) + abs(offset))
     residual = gap + p1.error.position + p2.error.position + ROUNDING * size
-    with np.errstate(divide="ignore", invalid="ignore"):
-        fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
-        # Where the two pins nearly meet the direction of the line is not determined at all.
-        turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
+    fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
+    # Where the two pins nearly meet the direction of the line is not determined at all.
+    turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
     t, es = certify(jacobian, residual, Curvature(arm, 1.0, 0.0), (turn, fold + residual))
     certificate = Certificate(jacobian, t, es, arm * t + es, t)
     r, ev = certificate.above(

@@ -84,6 +84,7 @@ def solve(
     return Dyad(Turning(u, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
     p1: PointKinematics,
     line: MovingLine,
@@ -100,10 +101,17 @@ def _errors(
     place, _, _ = line.errors(s, speed, 0.0, 0.0)
     size = p1.p.norm() + 2.0 * length + 2.0 * line.sizes(s, speed)[0]
     residual = gap + p1.error.position + place + ROUNDING * size
-    fold = 2.0 * np.abs(jacobian.det) + 2.0 * np.sqrt(residual * length)
-    folds: tuple[Real, Real] = (np.minimum(fold / length, np.pi), fold + residual)
-    t, es = certify(jacobian, residual, Curvature(length, 0.0, 0.0), folds)
-    certificate = Certificate(jacobian, t, es, length * t, line.error.theta + 2 * EPS)
+    # The line turns with the error of its body: about the pin itself this opens nothing, yet it
+    # moves the toggle.
+    turn = line.error.theta + 2 * EPS
+    slack = residual + turn * (np.abs(jacobian.det) + turn * length)
+    fold = 2.0 * np.abs(jacobian.det) + 2.5 * np.sqrt(slack * length)
+    folds: tuple[Real, Real] = (
+        np.minimum(fold / length + turn, np.pi),
+        fold + slack + turn * length,
+    )
+    t, es = certify(jacobian, residual, Curvature(length, 0.0, 0.0), folds, turn * length)
+    certificate = Certificate(jacobian, t, es, length * t, turn)
     _, drift, _ = line.errors(s, speed, es, 0.0)
     r, ev = certificate.above(
         w, speed, p1.error.velocity + drift, p1.v.norm() + line.sizes(s, speed)[1]

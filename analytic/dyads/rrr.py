@@ -101,6 +101,7 @@ def solve(
     return Dyad(replace(first, error=e1), replace(second, error=e2), sine)
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
     p1: PointKinematics,
     p2: PointKinematics,
@@ -118,10 +119,10 @@ def _errors(
     gap = gap + np.abs(first.turn.norm() - l1) + np.abs(second.turn.norm() - l2)
     size = p1.p.norm() + p2.p.norm() + 2.0 * (l1 + l2)
     residual = gap + p1.error.position + p2.error.position + ROUNDING * size
-    with np.errstate(divide="ignore", invalid="ignore"):
-        bend = np.sqrt(residual * l1 * l2 / apart)
-        fold = 2.0 * np.abs(jacobian.det) / apart + 2.0 * bend
-    folds = (_at_most_pi(fold / l1), _at_most_pi(fold / l2))
+    bend = np.sqrt(residual * l1 * l2 / apart)
+    fold = 2.0 * np.abs(jacobian.det) / apart + 2.5 * bend
+    turn = np.pi * residual / apart  # of the line between the outer pins
+    folds = (_at_most_pi(fold / l1 + turn), _at_most_pi(fold / l2 + turn))
     t1, t2 = certify(jacobian, residual, Curvature(l1, 0.0, l2), folds)
     certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2)
     w1, w2 = np.abs(first.omega), np.abs(second.omega)

@@ -1,0 +1,331 @@
+"""Random dyads of each kind, in bunches that share their lengths, up to their toggle positions.
+
+Every bunch can solve itself in floats (the solver under test, on arrays) and, sample by sample, in
+fifty digits (the oracle) from the same inputs, or from inputs moved within their stated errors.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from mpmath import mp
+from numpy.typing import NDArray
+
+from analytic.dyads import prp, rpp, rpr, rrp, rrr
+from analytic.dyads.parts import Dyad, MovingLine
+from analytic.plane import (
+    EXACT_ANGLE,
+    EXACT_POINT,
+    ZERO,
+    AngleError,
+    PointError,
+    PointKinematics,
+    Vec,
+)
+from tests.analytic import oracle
+from tests.analytic.jets import Jet, Number
+
+Array = NDArray[np.float64]
+BUNCH = 50
+EXACTLY = 0.1
+"""Share of the dyads near toggle that stand in it exactly, but for rounding."""
+
+
+class Exact:
+    """The inputs as they are."""
+
+    def vector(self, size: float) -> tuple[Number, Number]:
+        return 0, 0
+
+    def number(self, size: float) -> Number:
+        return 0
+
+
+class Moved:
+    """The inputs wrong by exactly what they may be wrong by, in random directions."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng = rng
+
+    def vector(self, size: float) -> tuple[Number, Number]:
+        c, s = mp.cos_sin(self.rng.uniform(0.0, math.tau))
+        return c * size, s * size
+
+    def number(self, size: float) -> Number:
+        return mp.mpf(size) * int(self.rng.choice((-1, 1)))
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points in motion: per level (position, velocity, acceleration) x, y and error, (3, n)."""
+
+    x: Array
+    y: Array
+    error: Array
+
+    def kinematics(self) -> PointKinematics:
+        p, v, a = (Vec(self.x[k], self.y[k]) for k in range(3))
+        error = PointError(*self.error) if self.error.any() else EXACT_POINT
+        if not (self.x[1:].any() or self.y[1:].any()):  # as the ground gives its pins
+            return PointKinematics(p, ZERO, ZERO, error)
+        return PointKinematics(p, v, a, error)
+
+    def place(self, i: int, shift: Exact | Moved) -> oracle.Place:
+        moves = [shift.vector(float(e)) for e in self.error[:, i]]
+        x = (mp.mpf(float(v)) + move[0] for v, move in zip(self.x[:, i], moves, strict=True))
+        y = (mp.mpf(float(v)) + move[1] for v, move in zip(self.y[:, i], moves, strict=True))
+        return oracle.Place(Jet(*x), Jet(*y))
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Turning lines: a point of each, and per level its angle and error, (3, n)."""
+
+    through: Points
+    angle: Array
+    error: Array
+
+    def kinematics(self) -> MovingLine:
+        theta, omega, alpha = self.angle
+        error = AngleError(*self.error) if self.error.any() else EXACT_ANGLE
+        along = Vec(np.cos(theta), np.sin(theta))
+        return MovingLine(self.through.kinematics(), along, omega, alpha, error)
+
+    def line(self, i: int, shift: Exact | Moved) -> oracle.Line:
+        angle = (
+            mp.mpf(float(v)) + shift.number(float(e))
+            for v, e in zip(self.angle[:, i], self.error[:, i], strict=True)
+        )
+        return oracle.Line(self.through.place(i, shift), Jet(*angle))
+
+
+@dataclass(frozen=True)
+class Bunch:
+    """Dyads of one kind with the same lengths.
+
+    ``truth`` gives both unknowns of a sample, ``short`` by how much it is short of closing [m],
+    ``sine`` its conditioning; ``size`` is the largest length in the closure of each sample over
+    the smallest link, the factor that rounding comes with.
+    """
+
+    dyad: Dyad
+    truth: Callable[[int, Exact | Moved], tuple[Jet, Jet]]
+    short: Callable[[int], Number]
+    sine: Array
+    size: Array
+    scale: float
+    rate: float
+
+
+@dataclass(frozen=True)
+class Draw:
+    """How to draw: ``near`` half of the dyads at toggle; inputs wrong by ``wrong`` (relative)."""
+
+    rng: np.random.Generator
+    near: bool = True
+    wrong: tuple[float, float] | None = None
+    far_m: float = 1e6
+    """Places lie up to so many lengths from the origin (a hundred, for those near toggle)."""
+
+    def log(self, low: float, high: float, n: int | None = None) -> Array:
+        return np.asarray(10.0 ** self.rng.uniform(math.log10(low), math.log10(high), n))
+
+    def sign(self, n: int | None = None) -> NDArray[np.int64]:
+        return np.asarray(self.rng.choice((-1, 1), n))
+
+    def clearances(self) -> tuple[Array, NDArray[np.bool_]]:
+        """Relative distances from toggle, and which of them are those of dyads near it."""
+        near = np.arange(BUNCH) % 2 == 0 if self.near else np.zeros(BUNCH, dtype=bool)
+        close = self.log(1e-12, 1e-6, BUNCH)
+        close[self.rng.random(BUNCH) < EXACTLY] = 0.0
+        return np.where(near, close, self.rng.uniform(0.02, 0.98, BUNCH)), near
+
+    def origins(self, scale: float, near: NDArray[np.bool_], exact: NDArray[np.bool_]) -> Array:
+        """Where the mechanism stands (2, n): anywhere, at the origin for those exactly in toggle."""
+        far = np.where(near, self.log(0.1, 1e2, BUNCH), self.log(0.1, self.far_m, BUNCH))
+        angle = self.rng.uniform(0.0, math.tau, BUNCH)
+        return scale * far * np.where(exact, 0.0, 1.0) * np.array([np.cos(angle), np.sin(angle)])
+
+    def errors(self, scale: float, rate: float) -> Array:
+        """Errors of the inputs at each level (3, n)."""
+        if self.wrong is None:
+            return np.zeros((3, BUNCH))
+        share = self.log(*self.wrong, BUNCH) * self.log(0.1, 10.0, 3 * BUNCH).reshape(3, BUNCH)
+        share *= self.rng.random((3, BUNCH)) < 0.7  # now and then one level alone is wrong
+        return share * scale * np.array([[1.0], [rate], [rate**2]])
+
+    def points(self, place: Array, scale: float, rate: float, *, rest: bool = False) -> Points:
+        motion = self.rng.normal(size=(2, 2, BUNCH)) * (0.0 if rest else scale)
+        motion *= np.array([rate, rate**2])[:, None, None]
+        x, y = np.concatenate([place[None], motion]).swapaxes(0, 1)
+        return Points(x, y, np.zeros((3, BUNCH)) if rest else self.errors(scale, rate))
+
+    def lines(self, place: Array, theta: Array, scale: float, rate: float) -> Lines:
+        rest = bool(self.rng.random() < 0.3)
+        turn = self.rng.normal(size=(2, BUNCH)) * (0.0 if rest else 1.0)
+        angle = np.stack([theta, turn[0] * rate, turn[1] * rate**2])
+        error = np.zeros((3, BUNCH)) if rest else self.errors(1.0, rate)
+        return Lines(self.points(place, scale, rate, rest=rest), angle, error)
+
+
+def _directed(angle: Array) -> Array:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def draw_rrr(draw: Draw) -> Bunch:
+    scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
+    l1, l2 = (float(scale * draw.log(0.1, 10.0)) for _ in range(2))
+    branch = int(draw.sign())
+    clear, near = draw.clearances()
+    outer, inner = l1 + l2, abs(l1 - l2)
+    at_outer = draw.rng.random(BUNCH) < 0.5
+    d = np.where(at_outer, outer * (1.0 - clear), inner * (1.0 + clear))
+    d = np.where(near, d, inner + (outer - inner) * clear)
+    place = draw.origins(outer, near, clear == 0.0)
+    first = draw.points(place, scale, rate)
+    away = d * _directed(draw.rng.uniform(-math.pi, math.pi, BUNCH))
+    second = draw.points(place + away, scale, rate, rest=bool(draw.rng.random() < 0.3))
+    dyad = rrr.solve(first.kinematics(), second.kinematics(), l1, l2, branch, certified=True)
+
+    def ends(i: int, shift: Exact | Moved) -> tuple[oracle.Place, oracle.Place]:
+        return first.place(i, shift), second.place(i, shift)
+
+    sine = [float(oracle.sine_rrr(*ends(i, Exact()), l1, l2)) for i in range(BUNCH)]
+    return Bunch(
+        dyad,
+        lambda i, shift: oracle.rrr(*ends(i, shift), l1, l2, branch),
+        lambda i: oracle.rrr_short(*ends(i, Exact()), l1, l2),
+        np.array(sine),
+        (np.hypot(*place) + outer) / min(l1, l2),
+        scale,
+        rate,
+    )
+
+
+def draw_rrp(draw: Draw) -> Bunch:
+    scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
+    length, branch = float(scale * draw.log(0.1, 10.0)), int(draw.sign())
+    clear, near = draw.clearances()
+    height = length * (1.0 - clear) * draw.sign(BUNCH)
+    theta = draw.rng.uniform(-math.pi, math.pi, BUNCH)
+    exact = clear == 0.0
+    theta = np.where(exact, 0.0, theta)  # else the height is not what it should be exactly
+    place = draw.origins(length, near, exact)
+    line = draw.lines(place, theta, scale, rate)
+    ahead = length * draw.log(1e-9, 10.0, BUNCH) * draw.sign(BUNCH)
+    e = _directed(theta)
+    pin = draw.points(place + ahead * e + height * np.array([-e[1], e[0]]), scale, rate)
+    dyad = rrp.solve(pin.kinematics(), line.kinematics(), length, branch, certified=True)
+
+    def given(i: int, shift: Exact | Moved) -> tuple[oracle.Place, oracle.Line]:
+        return pin.place(i, shift), line.line(i, shift)
+
+    high = [float(oracle.rrp_short(*given(i, Exact()), length)) / length for i in range(BUNCH)]
+    return Bunch(
+        dyad,
+        lambda i, shift: oracle.rrp(*given(i, shift), length, branch),
+        lambda i: oracle.rrp_short(*given(i, Exact()), length),
+        np.sqrt(np.maximum(0.0, -np.array(high) * (2.0 + np.array(high)))),
+        (np.hypot(*place) + np.abs(ahead) + length) / length,
+        scale,
+        rate,
+    )
+
+
+def draw_rpr(draw: Draw) -> Bunch:
+    scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
+    offset = float(scale * draw.log(0.01, 10.0)) * int(draw.sign())
+    central = bool(draw.rng.random() < 0.3)
+    branch = int(draw.sign())
+    clear, near = draw.clearances()
+    if central:  # the line passes through its pin: nothing is singular before the pins meet
+        offset, d = 0.0, scale * np.maximum(np.sqrt(clear), 1e-6)
+        clear = np.maximum(clear, 1e-12)
+    else:
+        d = np.where(near, abs(offset) * (1.0 + clear), abs(offset) / (1.0 - clear * clear))
+    place = draw.origins(float(np.max(d)) if central else abs(offset), near, clear == 0.0)
+    second = draw.points(place, scale, rate, rest=bool(draw.rng.random() < 0.3))
+    away = d * _directed(draw.rng.uniform(-math.pi, math.pi, BUNCH))
+    first = draw.points(place + away, scale, rate)
+    dyad = rpr.solve(first.kinematics(), second.kinematics(), offset, branch, certified=True)
+
+    def ends(i: int, shift: Exact | Moved) -> tuple[oracle.Place, oracle.Place]:
+        return first.place(i, shift), second.place(i, shift)
+
+    high = [
+        float(oracle.rpr_short(*ends(i, Exact()), offset) / d[i]) for i in range(BUNCH)
+    ]  # negative where it closes; the sine squared is (d^2 - h^2) / d^2
+    near_to = -np.array(high)
+    return Bunch(
+        dyad,
+        lambda i, shift: oracle.rpr(*ends(i, shift), offset, branch),
+        lambda i: oracle.rpr_short(*ends(i, Exact()), offset),
+        np.sqrt(np.maximum(0.0, near_to * (1.0 + abs(offset) / d))),
+        (np.hypot(*place) + d) / d,
+        scale,
+        rate,
+    )
+
+
+def _line_angles(draw: Draw) -> Array:
+    """Angles between two lines: anything, or nearly (or but for rounding) parallel."""
+    clear, near = draw.clearances()
+    clear = np.maximum(clear, 1e-16)
+    half = np.where(draw.rng.random(BUNCH) < 0.5, math.pi, 0.0)
+    return np.where(near, half + clear * draw.sign(BUNCH), math.pi * clear * draw.sign(BUNCH))
+
+
+def draw_prp(draw: Draw) -> Bunch:
+    scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
+    between = _line_angles(draw)
+    theta = draw.rng.uniform(-1.0, 1.0, BUNCH)
+    place = draw.origins(scale, np.abs(np.sin(between)) < 1e-5, np.zeros(BUNCH, dtype=bool))
+    line1 = draw.lines(place, theta, scale, rate)
+    away = scale * draw.rng.normal(size=(2, BUNCH))
+    line2 = draw.lines(place + away, theta + between, scale, rate)
+    dyad = prp.solve(line1.kinematics(), line2.kinematics(), certified=True)
+    return Bunch(
+        dyad,
+        lambda i, shift: oracle.prp(line1.line(i, shift), line2.line(i, shift)),
+        lambda i: mp.mpf(-1),
+        np.abs(np.sin(between)),
+        (np.hypot(*place) + np.hypot(*away)) / scale,
+        scale,
+        rate,
+    )
+
+
+def draw_rpp(draw: Draw) -> Bunch:
+    scale, rate = float(draw.log(1e-3, 1e3)), float(draw.log(1e-2, 1e2))
+    near = draw.near and bool(draw.rng.random() < 0.5)  # the angle is one for the whole bunch
+    angle = float(draw.log(1e-12, 1e-6)) if near else float(draw.rng.uniform(0.02, 3.12))
+    inner = (angle if draw.rng.random() < 0.5 else math.pi - angle) * int(draw.sign())
+    theta = draw.rng.uniform(-math.pi, math.pi, BUNCH)
+    place = draw.origins(scale, np.full(BUNCH, near), np.zeros(BUNCH, dtype=bool))
+    line = draw.lines(place, theta, scale, rate)
+    away = scale * draw.rng.normal(size=(2, BUNCH))
+    pin = draw.points(place + away, scale, rate)
+    turn = Vec(math.cos(inner), math.sin(inner))
+    dyad = rpp.solve(pin.kinematics(), line.kinematics(), turn, certified=True)
+    return Bunch(
+        dyad,
+        lambda i, shift: oracle.rpp(pin.place(i, shift), line.line(i, shift), inner),
+        lambda i: mp.mpf(-1),
+        np.full(BUNCH, abs(math.sin(inner))),
+        (np.hypot(*place) + np.hypot(*away)) / scale,
+        scale,
+        rate,
+    )
+
+
+KINDS: dict[str, Callable[[Draw], Bunch]] = {
+    "RRR": draw_rrr,
+    "RRP": draw_rrp,
+    "RPR": draw_rpr,
+    "PRP": draw_prp,
+    "RPP": draw_rpp,
+}
