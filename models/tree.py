@@ -149,11 +149,7 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
         for i, a in enumerate(pin.bodies)
         for b in pin.bodies[i + 1 :]
     ]
-
-    def rank(pair: tuple[str, _Edge]) -> int:
-        return 2 if pair[0] in close else int(pair[1].a != GROUND)
-
-    for _, edge in sorted(pairs, key=rank):
+    for _, edge in sorted(pairs, key=lambda pair: pair[0] in close):  # ground pins come first
         yield [edge]
 
 

@@ -146,7 +146,6 @@ class MujocoSession:
         kept = np.concatenate([first, states[every - 1 :: every]])
         at = self._done + every * np.arange(len(kept), dtype=np.float64)
         good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
-        good &= np.isfinite(kept).all(axis=1)
         diverged = any(self._data.warning[kind].number for kind in DIVERGED)
         count = len(kept) if good.all() else int(np.argmin(good))
         with self._quiet():

@@ -54,18 +54,20 @@ TUNED = Profile(
     | {
         "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
         "tolerance": Setting(
-            1e-22,
+            mjcf.TOLERANCE,
             "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
             "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
         ),
         "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
         "solref_timeconst_steps": Setting(
-            4.0,
+            mjcf.STIFF_STEPS,
             "4 dt: at 2 dt (the least MuJoCo allows) RK4 resolves the closing spring badly, above "
             "5 dt the soft constraint gives way more; measured on the four-bar at 1e-3 s",
         ),
-        "solimp_dmin": Setting(0.9999, "the most MuJoCo allows: give way by 0.01 % only"),
-        "solimp_dmax": Setting(0.9999, "as dmin: no dependence on the gap"),
+        "solimp_dmin": Setting(
+            mjcf.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
+        ),
+        "solimp_dmax": Setting(mjcf.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
         "servo_integrator": Setting(
             "discrete",
             "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "

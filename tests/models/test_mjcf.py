@@ -57,6 +57,21 @@ def test_every_scene_loads_with_closed_loops_and_the_velocities_of_the_state(
     np.testing.assert_array_equal(data.qpos, model.qpos0)
 
 
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "slider-crank-offset", "shaper"])
+def test_the_text_alone_runs_a_turn_in_a_bare_mujoco(name: str) -> None:
+    scene = load_scene(name)
+    model, data = assembled(build(scene, start_of(scene)))
+    mujoco.mj_step(model, data, 1000)
+    mujoco.mj_forward(model, data)
+    wanted = start_of(scene, scene.driver.law.period_s)
+    for equality in range(model.neq):
+        a, b = (data.site_xpos[i[equality]] for i in (model.eq_obj1id, model.eq_obj2id))
+        assert np.abs(a - b).max() < 1e-5 * scene.longest_m
+    for link, theta in wanted.theta.items():
+        turn = data.xmat[model.body(link).id].reshape(3, 3)
+        assert turn[1, 0] == pytest.approx(np.sin(theta), abs=1e-5)
+
+
 @pytest.mark.parametrize("name", sorted(shipped()))
 def test_masses_centres_and_inertias_are_those_of_the_scene(name: str) -> None:
     scene = load_scene(name)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -252,10 +252,20 @@ def test_timing_repeats_and_says_whether_it_logged(name: str) -> None:
     assert bare.best.steps == 200
 
 
-def test_timing_leaves_the_collector_as_it_was() -> None:
-    import gc
+def test_the_collector_is_off_while_timing_and_as_before_afterwards(
+    fake_engine: ModuleType,
+) -> None:
+    seen: list[bool] = []
+
+    def exact(scene: Scene, time_s: Any) -> Any:
+        seen.append(gc.isenabled())
+        return solve(scene, time_s)
 
     start = solve(FOURBAR, np.array([0.0])).state(0)
-    seen: list[Callable[[], bool]] = [gc.isenabled]
-    time_run(FOURBAR, start, "pymunk", dt_s=1e-3, steps=10, repeats=1)
-    assert seen[0]()
+    timing = time_run(
+        FOURBAR, start, fake_engine.FakeEngine(exact), dt_s=1e-3, steps=9, repeats=2, every=1
+    )
+    assert timing.logged
+    assert seen
+    assert not any(seen)
+    assert gc.isenabled()
