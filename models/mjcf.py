@@ -14,64 +14,27 @@ control is the angular acceleration of the crank.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from xml.sax.saxutils import escape, quoteattr
 
 from models.errors import EngineError
 from models.joints import bodies, local_point
-from models.laws import ConstantSpeed
+from models.mjcf_options import (
+    Attributes,
+    Value,
+    Writing,
+    armature,
+    driver_joint,
+    exact,
+    has_control,
+)
 from models.motion import State
-from models.poses import centre_of, inertia_scale, mass_of
+from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from models.tree import Limb, Tree, plan
 
-FLYWHEEL_RATIO = 1e12
-"""Armature of the driven hinge over the inertia scale of the scene."""
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
-Value = str | float | int | Sequence[float]
-Attributes = Mapping[str, Value]
 Row = dict[str, Value]
-
-
-@dataclass(frozen=True)
-class Writing:
-    """What may be chosen about the text; what is left out is MuJoCo's own default.
-
-    ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
-    ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo.
-    """
-
-    close: tuple[str, ...] = ()
-    option: Attributes = field(default_factory=dict)
-    flag: Attributes = field(default_factory=dict)
-    connect: Attributes = field(default_factory=dict)
-    flywheel_ratio: float = FLYWHEEL_RATIO
-    servo_gain: float | None = None
-
-
-STIFF_STEPS = 4.0
-"""Time constant of the loop closures in steps: at 2, the least that MuJoCo allows, RK4 resolves the
-closing spring badly; above 5 the soft constraint gives way more (measured on four-bars)."""
-STIFF_IMPEDANCE = 0.9999
-"""The most that MuJoCo allows: the loop closures give way by 0.01 %."""
-TOLERANCE = 1e-22
-"""Of the solver, over the flywheel's ratio: MuJoCo scales its stopping rule by the inertia of the
-whole model, and with its default would stop before the first iteration, leaving the loops open."""
-STEPS_PER_PERIOD = 1000
-
-
-def exact(scene: Scene) -> Writing:
-    """RK4 at a thousandth of the driver's period, the loops as stiff as that step allows."""
-    dt_s = scene.driver.law.period_s / STEPS_PER_PERIOD
-    return Writing(
-        option={"timestep": dt_s, "integrator": "RK4", "tolerance": TOLERANCE / FLYWHEEL_RATIO},
-        connect={
-            "solref": (STIFF_STEPS * dt_s, 1.0),
-            "solimp": (STIFF_IMPEDANCE, STIFF_IMPEDANCE, 0.001, 0.5, 2.0),
-        },
-    )
 
 
 def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
@@ -102,21 +65,6 @@ def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
         "</mujoco>",
     ]
     return "\n".join(lines) + "\n"
-
-
-def driver_joint(scene: Scene) -> str:
-    """The name of the driven hinge."""
-    return f"{scene.driver.link}.{scene.driver_pivot}"
-
-
-def has_control(scene: Scene, writing: Writing) -> bool:
-    """Whether the model has an actuator that wants a control at each step."""
-    return writing.servo_gain is not None or not isinstance(scene.driver.law, ConstantSpeed)
-
-
-def armature(scene: Scene, writing: Writing) -> float:
-    """Inertia of the flywheel on the crank [kg m^2]; 0 under a servo."""
-    return 0.0 if writing.servo_gain is not None else writing.flywheel_ratio * inertia_scale(scene)
 
 
 def _check_masses(scene: Scene) -> None:
@@ -251,8 +199,8 @@ def _actuator(scene: Scene, writing: Writing) -> list[str]:
 
 
 def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
-    """The assembled state; joints count from the ground outwards, depth first, as MuJoCo does."""
-    freedoms = [f for limb in depth_first(tree) for f in limb.freedoms]
+    """The assembled state; the limbs are in the order in which MuJoCo numbers joints."""
+    freedoms = [f for limb in tree.limbs for f in limb.freedoms]
     row: Row = {
         "name": "assembled",
         "qpos": tuple(f.ref for f in freedoms),
@@ -263,15 +211,6 @@ def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[
         servo = writing.servo_gain is not None
         row["ctrl"] = state.omega[link] if servo else state.alpha[link]
     return ["  <keyframe>", f"    <key{_attributes(row)}/>", "  </keyframe>"]
-
-
-def depth_first(tree: Tree, parent: str = GROUND) -> list[Limb]:
-    """The limbs in the order in which MuJoCo numbers them."""
-    ordered: list[Limb] = []
-    for limb in tree.limbs:
-        if limb.parent == parent:
-            ordered += [limb, *depth_first(tree, limb.body)]
-    return ordered
 
 
 def _attributes(row: Attributes) -> str:

@@ -71,7 +71,7 @@ class Closure:
 
 @dataclass(frozen=True)
 class Tree:
-    """The limbs, parents before children, and the pins that close the loops."""
+    """The limbs depth first, as MuJoCo numbers them, and the pins that close the loops."""
 
     limbs: tuple[Limb, ...]
     closures: tuple[Closure, ...]
@@ -194,19 +194,25 @@ def _closures(scene: Scene, at_point: _Groups) -> tuple[Closure, ...]:
 
 
 def _limbs(scene: Scene, state: State, edges: Sequence[_Edge]) -> tuple[Limb, ...]:
-    """The limbs, from the ground outwards."""
+    """The limbs from the ground outwards, depth first."""
     where = frames(scene, state)
-    placed, limbs = [GROUND], []
-    for parent in placed:  # grows as bodies are placed
+    placed = [GROUND]
+
+    def grown(parent: str) -> list[Limb]:
+        """The limbs that hang on ``parent``, each followed by its own."""
+        limbs: list[Limb] = []
         for edge in edges:
             child = {edge.a: edge.b, edge.b: edge.a}.get(parent)
             if child is not None and child not in placed:
                 placed.append(child)
-                limbs.append(_limb(scene, where, edge, parent, child))
+                limbs += [_limb(scene, where, edge, parent, child), *grown(child)]
+        return limbs
+
+    limbs = tuple(grown(GROUND))
     loose = [body for body in bodies(scene) if body not in placed]
     if loose:
         raise EngineError(f"{scene.name}: {', '.join(loose)} hangs on nothing; pin it to a link")
-    return tuple(limbs)
+    return limbs
 
 
 def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child: str) -> Limb:

@@ -12,9 +12,10 @@ import numpy as np
 from mujoco import rollout
 from numpy.typing import NDArray
 
-from models import mjcf
 from models.errors import EngineError
 from models.joints import blocks
+from models.mjcf import build
+from models.mjcf_options import driver_joint, has_control
 from models.motion import State
 from models.poses import launched
 from models.scene import Scene
@@ -83,16 +84,16 @@ class MujocoSession:
         chosen = writing(scene, settings, dt_s, drive)
         start = launched(state, self._shift * dt_s)
         tree = _tree(scene, start, chosen.close)
-        self._limbs = mjcf.depth_first(tree)
+        self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         self._warnings: list[str] = []
         with self._quiet():
-            self._model = _compiled(mjcf.build(scene, start, chosen))
+            self._model = _compiled(build(scene, start, chosen))
         self._data = mujoco.MjData(self._model)
         mujoco.mj_resetDataKeyframe(self._model, self._data, 0)
         self._servo = chosen.servo_gain is not None
-        self._controlled = mjcf.has_control(scene, chosen)
-        crank = self._model.joint(mjcf.driver_joint(scene)).dofadr[0]
+        self._controlled = has_control(scene, chosen)
+        crank = self._model.joint(driver_joint(scene)).dofadr[0]
         law = scene.driver.law
         self._data.qvel[crank] = drives.start_speed(law, state.time_s, dt_s, self._shift)
         self._pushes = np.empty(0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from models import mjcf
+from models import mjcf, mjcf_options
 from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
@@ -41,7 +41,7 @@ AS_SHIPPED = Profile(
         "islands": Setting("enable", "default"),
         "contact": Setting("enable", "default"),
         "close": Setting("", "the pins that `models.tree` chooses; names with commas between"),
-        "flywheel_ratio": Setting(mjcf.FLYWHEEL_RATIO, "the drive, not an engine default"),
+        "flywheel_ratio": Setting(mjcf_options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
     },
@@ -54,20 +54,20 @@ TUNED = Profile(
     | {
         "integrator": Setting("RK4", "between the samples the motion is smooth: 500 x less error"),
         "tolerance": Setting(
-            mjcf.TOLERANCE,
+            mjcf_options.TOLERANCE,
             "over flywheel_ratio, as MuJoCo's stopping rule is scaled by the inertia of the whole "
             "model, flywheel included; low enough for cranks of 0.01 rad/s, and 25 % faster than 0",
         ),
         "iterations": Setting(2, "pins give a quadratic problem: Newton is there after one"),
         "solref_timeconst_steps": Setting(
-            mjcf.STIFF_STEPS,
+            mjcf_options.STIFF_STEPS,
             "4 dt: at 2 dt (the least MuJoCo allows) RK4 resolves the closing spring badly, above "
             "5 dt the soft constraint gives way more; measured on the four-bar at 1e-3 s",
         ),
         "solimp_dmin": Setting(
-            mjcf.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
+            mjcf_options.STIFF_IMPEDANCE, "the most MuJoCo allows: give way by 0.01 % only"
         ),
-        "solimp_dmax": Setting(mjcf.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
+        "solimp_dmax": Setting(mjcf_options.STIFF_IMPEDANCE, "as dmin: no dependence on the gap"),
         "servo_integrator": Setting(
             "discrete",
             "a stiff servo explodes under explicit integrators, and implicitfast solves the loops "
@@ -81,7 +81,7 @@ TUNED = Profile(
 
 def writing(
     scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
-) -> mjcf.Writing:
+) -> mjcf_options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     check_choices(settings, CHOICES)
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
@@ -92,7 +92,7 @@ def writing(
     steps = float(settings["solref_timeconst_steps"])
     timeconst = steps * dt_s if steps else float(settings["solref_timeconst_s"])
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
-    return mjcf.Writing(
+    return mjcf_options.Writing(
         close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
         option={
             "timestep": dt_s,

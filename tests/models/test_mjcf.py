@@ -14,7 +14,8 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene, shipped
-from models.mjcf import Writing, build
+from models.mjcf import build
+from models.mjcf_options import Writing
 from models.motion import State
 from models.scene import Scene
 from models.tree import plan

@@ -8,7 +8,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene, shipped
-from models.mjcf import build, depth_first
+from models.mjcf import build
 from models.tree import plan
 from sim.chain import body_poses
 
@@ -21,7 +21,7 @@ def test_positions_and_velocities_are_those_of_mujoco(name: str) -> None:
     data = mujoco.MjData(model)
     random = np.random.default_rng(5)
     q, rate, push = random.normal(size=(3, 6, model.nv))
-    found = body_poses(depth_first(plan(scene, start)), q, rate, push)
+    found = body_poses(plan(scene, start).limbs, q, rate, push)
     for row in range(len(q)):
         data.qpos[:], data.qvel[:] = q[row], rate[row]
         mujoco.mj_forward(model, data)
@@ -41,7 +41,7 @@ def test_positions_and_velocities_are_those_of_mujoco(name: str) -> None:
 def test_accelerations_are_the_rates_of_the_velocities(name: str) -> None:
     scene = load_scene(name)
     start = solve(scene, np.array([0.0])).state(0)
-    limbs = depth_first(plan(scene, start))
+    limbs = plan(scene, start).limbs
     count = sum(len(limb.freedoms) for limb in limbs)
     random = np.random.default_rng(6)
     q0, v0, a0 = random.normal(size=(3, count))
