@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from mpmath import mp
@@ -33,6 +32,8 @@ Array = NDArray[np.float64]
 BUNCH = 50
 EXACTLY = 0.1
 """Share of the dyads near toggle that stand in it exactly, but for rounding."""
+CLOSE = 1e-12
+"""Dyads nearer to toggle stand at the origin: elsewhere the rounding of a place is more."""
 
 
 class Exact:
@@ -140,15 +141,15 @@ class Draw:
     def clearances(self) -> tuple[Array, NDArray[np.bool_]]:
         """Relative distances from toggle, and which of them are those of dyads near it."""
         near = np.arange(BUNCH) % 2 == 0 if self.near else np.zeros(BUNCH, dtype=bool)
-        close = self.log(1e-12, 1e-6, BUNCH)
+        close = np.where(self.rng.random(BUNCH) < 0.3, 1e-4, 1.0) * self.log(1e-12, 1e-6, BUNCH)
         close[self.rng.random(BUNCH) < EXACTLY] = 0.0
         return np.where(near, close, self.rng.uniform(0.02, 0.98, BUNCH)), near
 
-    def origins(self, scale: float, near: NDArray[np.bool_], exact: NDArray[np.bool_]) -> Array:
-        """Where the mechanism stands (2, n): anywhere, at the origin for those exactly in toggle."""
+    def origins(self, scale: float, near: NDArray[np.bool_], home: NDArray[np.bool_]) -> Array:
+        """Where the mechanism stands (2, n): anywhere, or at the origin."""
         far = np.where(near, self.log(0.1, 1e2, BUNCH), self.log(0.1, self.far_m, BUNCH))
         angle = self.rng.uniform(0.0, math.tau, BUNCH)
-        return scale * far * np.where(exact, 0.0, 1.0) * np.array([np.cos(angle), np.sin(angle)])
+        return scale * far * np.where(home, 0.0, 1.0) * np.array([np.cos(angle), np.sin(angle)])
 
     def errors(self, scale: float, rate: float) -> Array:
         """Errors of the inputs at each level (3, n)."""
@@ -185,7 +186,7 @@ def draw_rrr(draw: Draw) -> Bunch:
     at_outer = draw.rng.random(BUNCH) < 0.5
     d = np.where(at_outer, outer * (1.0 - clear), inner * (1.0 + clear))
     d = np.where(near, d, inner + (outer - inner) * clear)
-    place = draw.origins(outer, near, clear == 0.0)
+    place = draw.origins(outer, near, clear < CLOSE)
     first = draw.points(place, scale, rate)
     away = d * _directed(draw.rng.uniform(-math.pi, math.pi, BUNCH))
     second = draw.points(place + away, scale, rate, rest=bool(draw.rng.random() < 0.3))
@@ -212,9 +213,9 @@ def draw_rrp(draw: Draw) -> Bunch:
     clear, near = draw.clearances()
     height = length * (1.0 - clear) * draw.sign(BUNCH)
     theta = draw.rng.uniform(-math.pi, math.pi, BUNCH)
-    exact = clear == 0.0
-    theta = np.where(exact, 0.0, theta)  # else the height is not what it should be exactly
-    place = draw.origins(length, near, exact)
+    home = clear < CLOSE
+    theta = np.where(home, 0.0, theta)  # else the height is not what it should be exactly
+    place = draw.origins(length, near, home)
     line = draw.lines(place, theta, scale, rate)
     ahead = length * draw.log(1e-9, 10.0, BUNCH) * draw.sign(BUNCH)
     e = _directed(theta)
@@ -247,7 +248,7 @@ def draw_rpr(draw: Draw) -> Bunch:
         clear = np.maximum(clear, 1e-12)
     else:
         d = np.where(near, abs(offset) * (1.0 + clear), abs(offset) / (1.0 - clear * clear))
-    place = draw.origins(float(np.max(d)) if central else abs(offset), near, clear == 0.0)
+    place = draw.origins(float(np.max(d)) if central else abs(offset), near, clear < CLOSE)
     second = draw.points(place, scale, rate, rest=bool(draw.rng.random() < 0.3))
     away = d * _directed(draw.rng.uniform(-math.pi, math.pi, BUNCH))
     first = draw.points(place + away, scale, rate)
@@ -265,7 +266,7 @@ def draw_rpr(draw: Draw) -> Bunch:
         lambda i, shift: oracle.rpr(*ends(i, shift), offset, branch),
         lambda i: oracle.rpr_short(*ends(i, Exact()), offset),
         np.sqrt(np.maximum(0.0, near_to * (1.0 + abs(offset) / d))),
-        (np.hypot(*place) + d) / d,
+        (np.hypot(*place) + scale + d) / d,
         scale,
         rate,
     )
@@ -274,7 +275,7 @@ def draw_rpr(draw: Draw) -> Bunch:
 def _line_angles(draw: Draw) -> Array:
     """Angles between two lines: anything, or nearly (or but for rounding) parallel."""
     clear, near = draw.clearances()
-    clear = np.maximum(clear, 1e-16)
+    clear = np.maximum(clear, 1e-15)  # in floats no nearer: parallel lines do not close
     half = np.where(draw.rng.random(BUNCH) < 0.5, math.pi, 0.0)
     return np.where(near, half + clear * draw.sign(BUNCH), math.pi * clear * draw.sign(BUNCH))
 
