@@ -27,7 +27,7 @@ from sim.engine import Engine, Session
 from sim.registry import engine
 from sim.settings import resolved
 
-SCENE, DT_S, STEPS, REPEATS = "fourbar-lecture-1", 1e-3, 4000, 21
+SCENE, DT_S, STEPS, REPEATS = "fourbar-lecture-1", 1e-3, 2000, 41
 
 
 @dataclass(frozen=True)

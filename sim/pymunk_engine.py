@@ -30,6 +30,8 @@ FIELDS = (
 )
 WIDTH = 6
 """Numbers per body: x, y, angle, vx, vy, omega."""
+ROOM = 64
+"""Numbers of memory to spare: the buffer may not grow memory that is not its own."""
 VELOCITY_SHIFT = 0.5
 """Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
 
@@ -116,6 +118,7 @@ class PymunkSession:
         first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
         self._model.crank.angular_velocity = first
         self._buffer = pymunk.batch.Buffer()
+        self._memory = np.empty(0)
         self._rows = _rows(self._model)
 
     def facts(self) -> Facts:
@@ -150,9 +153,9 @@ class PymunkSession:
 
     def record(self, steps: int, every: int) -> Log:
         """Advance; one batch call per logged step appends all bodies to one buffer."""
-        self._buffer.clear()
         at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
         began = time.perf_counter()
+        self._make_room(len(at))
         self._log()
         self._advance(steps, every)
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
@@ -165,10 +168,18 @@ class PymunkSession:
 
     def read(self) -> Poses:
         """The current state."""
-        self._buffer.clear()
+        self._make_room(1)
         self._log()
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
+
+    def _make_room(self, samples: int) -> None:
+        """Empty the buffer, after lending it memory for the samples: what it grows itself it leaks."""
+        need = samples * (len(self._rows) + 1) * WIDTH + ROOM
+        if len(self._memory) < need:
+            self._memory = np.empty(need)
+            self._buffer.set_float_buf(self._memory)
+        self._buffer.clear()
 
     def _log(self) -> None:
         """Append the current state of all bodies to the buffer."""
@@ -176,36 +187,49 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
+        if self._constant:
+            self._coast(steps, every)
+        else:
+            self._follow(steps, every)
+        self._done += steps
+
+    def _coast(self, steps: int, every: int) -> None:
+        """Step with the crank at constant speed; tight loops, as logging may not slow them much."""
         step, dt = self._space.step, self._dt
-        crank, motor = self._model.crank, self._model.motor
-        if self._constant and not every:
+        log, space, buffer = pymunk.batch.get_space_bodies, self._space, self._buffer
+        if every == 1:
             for _ in range(steps):
                 step(dt)
-            self._done += steps
-            return
-        log, buffer, space = pymunk.batch.get_space_bodies, self._buffer, self._space
-        if self._constant:
-            for _ in range(steps // every):
-                for _ in range(every):
-                    step(dt)
                 log(space, FIELDS, buffer)
-            for _ in range(steps % every):
-                step(dt)
-            self._done += steps
             return
+        for _ in range(steps // every if every else 0):
+            for _ in range(every):
+                step(dt)
+            log(space, FIELDS, buffer)
+        for _ in range(steps % every if every else steps):
+            step(dt)
+
+    def _follow(self, steps: int, every: int) -> None:
+        """Step with the crank on its law.
+
+        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
+        the crank is set back by the next step's turn and ends at the law's angle, with the speed
+        of the step to come.
+        """
+        step, dt = self._space.step, self._dt
+        crank, motor = self._model.crank, self._model.motor
         law, first = self._scene.driver.law, self._done + 1
         theta = drives.angles(law, self._start_s, dt, first, first + steps - 1)
         chord = drives.chords(law, self._start_s, dt, first, first + steps - 1)
         for k, (angle, speed) in enumerate(zip(theta.tolist(), chord.tolist(), strict=True), 1):
             if motor is not None:
                 motor.rate = speed
-            else:  # the step turns the crank by speed * dt to `angle`, then others see `speed`
+            else:
                 crank.angle = angle - speed * dt
                 crank.angular_velocity = speed
             step(dt)
             if every and k % every == 0:
-                log(space, FIELDS, buffer)
-        self._done += steps
+                self._log()
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
