@@ -97,6 +97,12 @@ def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
     assert float(lever[4]) == 0.0
 
 
+def test_an_oscillating_driver_is_drawn_back_to_its_centre(crank: Crank) -> None:
+    result = crank("solve", "tangent", "--at-deg", "20")
+    (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
+    assert float(lever[4]) == pytest.approx(-100.0 * math.radians(20.0), rel=1e-7)
+
+
 MISTAKES = {
     "unknown scene": (["solve", "scotch-yok"], ["'scotch-yok'", "scotch-yoke"]),
     "angle out of reach": (

@@ -10,7 +10,7 @@ import pytest
 
 from models.scene import Scene
 from reports.convergence import convergence
-from reports.errors import Error, Errors
+from reports.errors import Error, Errors, largest
 from reports.rules import RULES, judge
 from reports.rules.base import Evidence
 from reports.tolerance import DEFAULTS, Limit
@@ -109,6 +109,14 @@ def test_an_error_over_its_limit_fails_its_own_rule(
     assert {rule for rule, finding in found.items() if finding.level == "fail"} == failed
     assert found[id_].limit == 1e-3
     assert "rocker" in found[id_].text
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_number_that_is_missing_is_worse_than_any_other(first: bool) -> None:
+    rows = [row("angle", maximum=math.nan), row("angle", maximum=1e300)]
+    worst = largest(rows if first else reversed(rows))
+    assert worst is not None
+    assert math.isnan(worst.maximum)
 
 
 def test_an_error_at_its_limit_passes() -> None:
