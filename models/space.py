@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import pymunk
 
@@ -33,8 +32,6 @@ from models.poses import along, centre_of, frames, mass_of
 from models.rail import Rail
 from models.scene import GROUND, Point, Scene, Slider
 
-Lines = Literal["groove", "exact"]
-
 
 @dataclass(frozen=True)
 class SpaceModel:
@@ -51,11 +48,13 @@ class SpaceModel:
     motor: pymunk.SimpleMotor | None
 
 
-def build(scene: Scene, state: State, *, servo: bool = False, lines: Lines = "exact") -> SpaceModel:
+def build(
+    scene: Scene, state: State, *, servo: bool = False, exact_lines: bool = True
+) -> SpaceModel:
     """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
 
-    ``lines`` says what holds points on lines: Chipmunk's ``groove`` everywhere, or, ``exact``, a
-    `Rail` where the groove is in error.
+    Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
+    is in error.
 
     Raises
     ------
@@ -87,7 +86,7 @@ def build(scene: Scene, state: State, *, servo: bool = False, lines: Lines = "ex
         space.add(_plain(motor))
     found = _pins(scene, held, made, centre, servo)
     for slide in held.slides:
-        found += _slide(scene, state, slide, made, centre, lines)
+        found += _slide(scene, state, slide, made, centre, exact_lines)
     for constraint in found:
         space.add(_plain(constraint))
     del made[GROUND]
@@ -139,7 +138,7 @@ def _slide(
     slide: Prism | Slot,
     made: Mapping[str, pymunk.Body],
     centre: Mapping[str, Point],
-    lines: Lines,
+    exact_lines: bool,
 ) -> list[pymunk.Constraint]:
     """A point on a line and, on a moving guide, the gear that keeps a sliding body's angle."""
     slider, rider = slide.slider, _rider(slide)
@@ -149,9 +148,9 @@ def _slide(
     start = _less(slider.through_m, centre[slider.on])
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
-    exact = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
+    sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
     found: list[pymunk.Constraint] = []
-    if exact or lines == "groove":
+    if sound or not exact_lines:
         ends = [_less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
         found.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
     else:

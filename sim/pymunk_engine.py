@@ -16,10 +16,10 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.poses import launched
 from models.scene import Scene
-from models.space import Lines, SpaceModel, build
+from models.space import SpaceModel, build
 from sim import drive as drives
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, SettingValue
-from sim.settings import check_choices
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
+from sim.pymunk_settings import AS_SHIPPED, TUNED, exact_lines
 
 Array = NDArray[np.float64]
 FIELDS = (
@@ -34,35 +34,6 @@ ROOM = 64
 """Numbers of memory to spare: the buffer may not grow memory that is not its own."""
 VELOCITY_SHIFT = 0.5
 """Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
-
-AS_SHIPPED = Profile(
-    "as-shipped",
-    "pymunk",
-    "pymunk's own defaults",
-    {
-        "iterations": Setting(10, "default"),
-        "error_bias": Setting(
-            (1.0 - 0.1) ** 60.0, "default: a joint error loses 10 % in 1/60 s, so errors fall as dt"
-        ),
-        "damping": Setting(1.0, "default: none"),
-        "lines": Setting("groove", "points on lines run in pymunk's groove joints"),
-    },
-)
-TUNED = Profile(
-    "tuned",
-    "pymunk",
-    "Joint errors removed within the step",
-    {
-        "iterations": Setting(100, "error_bias matters only as far as the iteration converges"),
-        "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
-        "damping": Setting(1.0, "none"),
-        "lines": Setting(
-            "exact",
-            "a groove lets the sliding speed leak across the line unless the pushed bodies cannot "
-            "turn; there a pin joint with a moving end holds the point (see models.space)",
-        ),
-    },
-)
 
 
 class PymunkEngine:
@@ -104,10 +75,10 @@ class PymunkSession:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
         start = launched(state, VELOCITY_SHIFT * dt_s)
-        check_choices(settings, {"lines": ("groove", "exact")})
-        lines: Lines = "groove" if settings["lines"] == "groove" else "exact"
         servo = drive == "servo"
-        self._model: SpaceModel = build(scene, start, servo=servo, lines=lines)
+        self._model: SpaceModel = build(
+            scene, start, servo=servo, exact_lines=exact_lines(settings)
+        )
         self._space = self._model.space
         self._space.iterations = int(settings["iterations"])
         self._space.damping = float(settings["damping"])
@@ -174,7 +145,7 @@ class PymunkSession:
         return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
 
     def _make_room(self, samples: int) -> None:
-        """Empty the buffer, after lending it memory for the samples: what it grows itself it leaks."""
+        """Empty the buffer, after lending it memory for the samples; what it grows it leaks."""
         need = samples * (len(self._rows) + 1) * WIDTH + ROOM
         if len(self._memory) < need:
             self._memory = np.empty(need)

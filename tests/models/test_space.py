@@ -61,11 +61,11 @@ def test_the_crank_is_kinematic_or_under_a_servo_dynamic_with_a_motor() -> None:
 
 
 def test_joints_follow_from_what_slides_on_what() -> None:
-    def made(name: str, **given: str) -> list[str]:
+    def made(name: str, **given: bool) -> list[str]:
         scene = load_scene(name)
-        return kinds(build(scene, start_of(scene), **given).space)  # type: ignore[arg-type]
+        return kinds(build(scene, start_of(scene), **given).space)
 
-    assert made("slider-crank-excel-350", lines="groove") == ["GrooveJoint", "PivotJoint"]
+    assert made("slider-crank-excel-350", exact_lines=False) == ["GrooveJoint", "PivotJoint"]
     assert made("slider-crank-excel-350") == ["PinJoint", "PivotJoint"]
     assert made("slider-crank-offset") == ["GrooveJoint", "PivotJoint", "PivotJoint"]
     assert made("slotted-lever") == ["GrooveJoint", "PivotJoint"]
@@ -85,8 +85,7 @@ def test_only_the_groove_lets_the_sliding_speed_leak_across_the_line(joint: str)
     """One rod, its end C on the x-axis, with speeds that keep it there: nothing to correct."""
     scene = load_scene("slider-crank-excel-350")
     state = start_of(scene, 0.7)
-    lines = "groove" if joint == "groove" else "exact"
-    model = build(scene, state, lines=lines)  # type: ignore[arg-type]
+    model = build(scene, state, exact_lines=joint == "rail")
     for constraint in model.space.constraints:
         constraint.error_bias = 1.0  # correct no positions: only velocities are at stake
     model.space.iterations = 1000

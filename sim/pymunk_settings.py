@@ -1,0 +1,43 @@
+"""pymunk's settings: the two profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sim.engine import Profile, Setting, SettingValue
+from sim.settings import check_choices
+
+AS_SHIPPED = Profile(
+    "as-shipped",
+    "pymunk",
+    "pymunk's own defaults",
+    {
+        "iterations": Setting(10, "default"),
+        "error_bias": Setting(
+            (1.0 - 0.1) ** 60.0, "default: a joint error loses 10 % in 1/60 s, so errors fall as dt"
+        ),
+        "damping": Setting(1.0, "default: none"),
+        "lines": Setting("groove", "points on lines run in pymunk's groove joints"),
+    },
+)
+TUNED = Profile(
+    "tuned",
+    "pymunk",
+    "Joint errors removed within the step",
+    {
+        "iterations": Setting(100, "error_bias matters only as far as the iteration converges"),
+        "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
+        "damping": Setting(1.0, "none"),
+        "lines": Setting(
+            "exact",
+            "a groove lets the sliding speed leak across the line unless the pushed bodies cannot "
+            "turn; there a pin joint with a moving end holds the point (see models.rail)",
+        ),
+    },
+)
+
+
+def exact_lines(settings: Mapping[str, SettingValue]) -> bool:
+    """Whether points on lines are held exactly. Raises SettingError for another word."""
+    check_choices(settings, {"lines": ("groove", "exact")})
+    return settings["lines"] == "exact"
