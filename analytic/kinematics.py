@@ -24,7 +24,7 @@ from analytic.plane import (
     fixed_body,
     fixed_point,
 )
-from analytic.reach import describe_reach
+from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted
 from analytic.steps import Chunk, Step, prepare
 from analytic.structure import analyse
@@ -123,12 +123,19 @@ def solve_driven(
     return result.motion()
 
 
+def reach(scene: Scene) -> list[Range]:
+    """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
+    steps = prepare(scene, analyse(scene))
+    return ranges(scene, lambda angles: stretched(scene, steps, angles))
+
+
 def stretched(scene: Scene, steps: list[Step], theta: Array) -> Chunk:
     """The mechanism at driver angles that may be out of reach, its open dyads stretched in line."""
     zero = np.zeros_like(theta)
     chunk = _start(scene, theta, zero, zero, None, stretch=True)
-    for step in steps:
-        step.advance(chunk)
+    with np.errstate(all="ignore"):  # parallel lines cross at infinity
+        for step in steps:
+            step.advance(chunk)
     return chunk
 
 

@@ -53,13 +53,15 @@ def travel(scene: Scene, output: str) -> Travel:
     ReachError
         The driver does not turn fully.
     CrankcheckError
-        No such output; an output that turns fully; or one with more than two limit positions.
+        No such output; an output that turns fully; one with more than two limit positions; or a
+        turn that passes a singular position.
     """
     if output not in scene.links and output not in scene.sliders:
         have = ", ".join([*scene.links, *scene.sliders])
         raise CrankcheckError(f"{scene.name}: no link or slider {output!r}; it has {have}")
     grid: Array = (np.arange(SCAN, dtype=np.float64) + 0.5) * (math.tau / SCAN)
     rate = _rate(scene, output, grid)
+    _refuse_singular(scene, grid)
     turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
     if len(turns) == 0:
         raise CrankcheckError(f"{scene.name}: {output} never turns back: it has no limit positions")
@@ -82,6 +84,19 @@ def travel(scene: Scene, output: str) -> Travel:
     return Travel(
         float(places[first]), float(places[1 - first]), float(at[first]), float(at[1 - first])
     )
+
+
+def _refuse_singular(scene: Scene, grid: Array) -> None:
+    """Refuse a turn in which a dyad all but loses its position: its output may run to infinity."""
+    one, zero = np.ones_like(grid), np.zeros_like(grid)
+    motion = solve_driven(scene, grid, one, zero, links=(), points=(), sliders=(), bound=False)
+    for key, sine in motion.conditioning.items():
+        worst = int(np.argmin(sine))
+        if sine[worst] < math.tau / SCAN:
+            raise CrankcheckError(
+                f"{scene.name}: the dyad of {key} passes a singular position near "
+                f"{math.degrees(grid[worst]):.4g} deg, where its travel has no limits"
+            )
 
 
 def _rate(scene: Scene, output: str, theta: Array) -> Array:
