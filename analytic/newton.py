@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 LONGEST_STEP_RAD = 0.05
 """The driver turns at most so far between two positions: the predictor stays on its branch."""
 MOST_ITERATIONS = 25
+EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
@@ -245,12 +246,13 @@ def _solved(system: Constraints, q: Array, right: Array, theta: float) -> Array:
 def _closed(system: Constraints, q: Array, theta: float) -> Array:
     """Newton's method from q at driver angle theta, down to rounding."""
     last = math.inf
+    unit = np.tile([system.scene.longest_m, system.scene.longest_m, 1.0], len(q) // 3)
     for _ in range(MOST_ITERATIONS):
         step = _solved(system, q, -system.phi(q, theta), theta)
         q = q + step
-        size = float(np.max(np.abs(step)))
-        if size == 0.0 or (size < 1e-9 and size >= 0.5 * last):
-            return q  # the steps no longer shrink: what is left is rounding
+        size = float(np.max(np.abs(step) / unit))
+        if size <= EPS or (size < 1e-9 and size >= 0.5 * last):
+            return q  # the steps no longer matter, or no longer shrink: what is left is rounding
         last = size
     raise CrankcheckError(
         f"{system.scene.name}: Newton's method does not converge at {math.degrees(theta):.6g} deg "

@@ -1,0 +1,173 @@
+"""A whole mechanism in fifty digits: every constraint at once, on numbers that carry derivatives.
+
+The unknowns are the frames of all bodies. A float Jacobian only leads the iteration; what is
+brought to zero, at all three levels, are the exact constraints and their derivatives by time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from mpmath import mp, mpf
+
+from analytic.newton import Constraints
+from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.motion import Motion
+from models.scene import GROUND, Point, Scene, Slider
+from tests.analytic import jets, oracle
+from tests.analytic.jets import Jet, Number
+from tests.analytic.oracle import Place
+
+DONE = mpf(10) ** -42
+
+
+def law_at(law: Law, time_s: float) -> Jet:
+    """The driver's angle with its derivatives, from the formula of the law."""
+    t = Jet(time_s, 1)
+    if isinstance(law, ConstantSpeed):
+        return t * mpf(law.speed_rad_s) + mpf(law.start_rad)
+    if isinstance(law, Oscillating):
+        phase = t * mpf(law.frequency_rad_s) + mpf(law.phase_rad)
+        return jets.sin(phase) * mpf(law.amplitude_rad) + mpf(law.centre_rad)
+    assert isinstance(law, FromRest)
+    speed, rise = mpf(law.speed_rad_s), mpf(law.rise_s)
+    if time_s >= law.rise_s:
+        return (t - rise / 2) * speed + mpf(law.start_rad)
+    tau = t / rise
+    full = 2 * mp.pi
+    ramp = tau * tau / 2 + (jets.cos(tau * full) - 1) / full**2
+    return ramp * (speed * rise) + mpf(law.start_rad)
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The exact motion at one time."""
+
+    links: Mapping[str, Jet]
+    points: Mapping[str, Place]
+    sliders: Mapping[str, Jet]
+
+
+class Chain:
+    """The constraints of a scene over jets."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.floats = Constraints(scene)
+        self.bodies = self.floats.bodies
+        self.held: dict[str, list[tuple[str, Point]]] = {
+            point: [(body, self._local(body, point)) for body in bodies]
+            for point, bodies in scene.pins.items()
+        }
+        for slider in scene.sliders.values():
+            if slider.link is None:
+                self.held.setdefault(slider.point, []).append((_body(slider), (0.0, 0.0)))
+
+    def _local(self, body: str, point: str) -> Point:
+        return (self.scene.ground if body == GROUND else self.scene.links[body].points)[point]
+
+    def solve(self, time_s: float, start: list[float]) -> Solved:
+        """The motion at a time, by iteration from coordinates near it."""
+        drive = law_at(self.scene.driver.law, time_s)
+        inverse = np.linalg.inv(self.floats.jacobian(np.array(start)))
+        levels: list[list[Number]] = [[mpf(c) for c in start]]
+        levels += [[mpf(0)] * len(start) for _ in range(2)]
+        for level, values in enumerate(levels):
+            for _ in range(40):
+                q = [Jet(*row) for row in zip(*levels, strict=True)]
+                wrong = [_level(e, level) for e in self._equations(q, drive)]
+                step = _times(inverse, wrong)
+                for i, s in enumerate(step):
+                    values[i] -= s
+                size = max(abs(v) for v in values) + 1
+                if max(abs(s) for s in step) < DONE * size:
+                    break
+            else:
+                raise AssertionError(f"no convergence at {time_s} s, level {level}")
+        return self._solved([Jet(*row) for row in zip(*levels, strict=True)])
+
+    def _frames(self, q: list[Jet]) -> dict[str, tuple[Place, Jet, Place]]:
+        """Origin, angle and direction of each body."""
+        frames = {GROUND: (oracle.at(0, 0), Jet(0), oracle.at(1, 0))}
+        for i, body in enumerate(self.bodies):
+            x, y, angle = q[3 * i : 3 * i + 3]
+            frames[body] = (Place(x, y), angle, oracle.toward(angle))
+        return frames
+
+    def _equations(self, q: list[Jet], drive: Jet) -> list[Jet]:
+        frames = self._frames(q)
+        rows: list[Jet] = []
+        for (first, at_first), *others in self.held.values():
+            for body, local in others:
+                gap = _point(frames[first], at_first) - _point(frames[body], local)
+                rows += [gap.x, gap.y]
+        for slider in self.scene.sliders.values():
+            away, along = self._ride(frames, slider)
+            turn = frames[_body(slider)][1] - frames[slider.on][1]
+            rows += [along.cross(away), turn - mpf(slider.direction_rad) - mpf(slider.angle_rad)]
+        return [*rows, frames[self.scene.driver.link][1] - drive]
+
+    def _ride(
+        self, frames: Mapping[str, tuple[Place, Jet, Place]], slider: Slider
+    ) -> tuple[Place, Place]:
+        """From the line's point to the slider's, and the direction of the line."""
+        body = _body(slider)
+        tip = (0.0, 0.0) if slider.link is None else self._local(body, slider.point)
+        away = _point(frames[body], tip) - _point(frames[slider.on], slider.through_m)
+        return away, oracle.toward(frames[slider.on][1] + mpf(slider.direction_rad))
+
+    def _solved(self, q: list[Jet]) -> Solved:
+        frames = self._frames(q)
+        rides = {name: self._ride(frames, s) for name, s in self.scene.sliders.items()}
+        held = {name: bodies[0] for name, bodies in self.held.items()}
+        for slider in self.scene.sliders.values():
+            held.setdefault(slider.point, (_body(slider), (0.0, 0.0)))
+        return Solved(
+            {name: frames[name][1] for name in self.scene.links},
+            {name: _point(frames[body], local) for name, (body, local) in held.items()},
+            {name: along.dot(away) for name, (away, along) in rides.items()},
+        )
+
+
+def coordinates(scene: Scene, motion: Motion, index: int) -> list[float]:
+    """The frames of all bodies at a sample, from the angles and points of a motion."""
+    angles = {GROUND: 0.0} | {name: float(m.theta[index]) for name, m in motion.links.items()}
+    found: list[float] = []
+    for link in scene.links.values():
+        point, (x, y) = next(iter(link.points.items()))
+        c, s = np.cos(angles[link.name]), np.sin(angles[link.name])
+        place = motion.points[point].position[index]
+        found += [place[0] - c * x + s * y, place[1] - s * x - c * y, angles[link.name]]
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            place = motion.points[slider.point].position[index]
+            found += [*place, angles[slider.on] + slider.direction_rad]
+    return [float(c) for c in found]
+
+
+def _body(slider: Slider) -> str:
+    return slider.link or f"block {slider.name}"
+
+
+def _point(frame: tuple[Place, Jet, Place], local: Point) -> Place:
+    origin, _, along = frame
+    x, y = mpf(local[0]), mpf(local[1])
+    return Place(
+        origin.x + along.x * x - along.y * y,
+        origin.y + along.y * x + along.x * y,
+    )
+
+
+def _level(jet: Jet, level: int) -> Number:
+    return (jet.value, jet.rate, jet.second)[level]
+
+
+def _times(inverse: np.ndarray, wrong: list[Number]) -> list[Number]:
+    """A float matrix times exact numbers, of which only the leading digits matter."""
+    size = max((abs(w) for w in wrong), default=mpf(0))
+    if size == 0:
+        return [mpf(0)] * len(wrong)
+    step = inverse @ np.array([float(w / size) for w in wrong])
+    return [mpf(float(s)) * size for s in step]
