@@ -21,7 +21,7 @@ def test_every_tolerance_has_a_reason() -> None:
 def test_place_and_rates_shrink_with_the_square_of_the_step(fourbar: Scene) -> None:
     coarse, fine = (limits(fourbar, replace(ERRORS, step_rad=h), {}) for h in (0.02, 0.01))
     for name in ("angle", "displacement", "position", "gap", "velocity"):
-        assert coarse[name].number / fine[name].number == pytest.approx(4.0, rel=1e-3)
+        assert coarse[name].number / fine[name].number == pytest.approx(4.0, rel=0.02)
     assert coarse["drive"].number == pytest.approx(fine["drive"].number)
 
 
@@ -34,6 +34,7 @@ def test_a_badly_conditioned_scene_gets_wider_angles_and_no_wider_gap(fourbar: S
 
 def test_no_default_falls_below_what_rounding_does(fourbar: Scene) -> None:
     tiny = limits(fourbar, replace(ERRORS, step_rad=1e-7), {})
+    assert tiny["velocity"].number >= 1e-3 * 1e-7  # the share of an acceleration, over a step
     assert tiny["angle"].number >= 1e-11
     assert tiny["acceleration-differenced"].number >= 1e-11 / 1e-14
 
