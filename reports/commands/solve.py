@@ -19,6 +19,7 @@ from models.files import load_scene
 from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
 from models.scene import Scene
+from reports.mechanism import facts
 from reports.motion_frame import cleaned, motion_frame
 from reports.motion_tables import certainty, motion_tables, position_tables
 from reports.provenance import crankcheck_version
@@ -58,7 +59,7 @@ def run_solve(request: Request, console: Console) -> None:
         _write(request.output, scene, motion)
         console.print(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
         return
-    console.print(heading(scene, structure), highlight=False)
+    console.print(heading(scene, structure), highlight=False, markup=False)
     if request.at_deg is not None:
         for table in position_tables(cleaned(motion)):
             console.print(table, "")
@@ -72,13 +73,15 @@ def run_solve(request: Request, console: Console) -> None:
 
 
 def heading(scene: Scene, structure: Structure) -> str:
-    """What the mechanism is, in two lines."""
+    """What the mechanism is, and what the theory says of it as a whole."""
     groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
-    return (
-        f"{scene.name}: {scene.source}\n"
+    lines = [
+        f"{scene.name}: {scene.source}",
         f"mobility {structure.mobility}; driver {scene.driver.link}, {describe_law(scene)}; "
-        f"groups in solving order: {groups}"
-    )
+        f"groups in solving order: {groups}",
+        *facts(scene, structure),
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def describe_law(scene: Scene) -> str:

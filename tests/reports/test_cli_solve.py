@@ -41,6 +41,22 @@ def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers(crank: Cra
     assert [row[-1] for row in points] == ["0.93522980", "5.8459573"]
 
 
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("fourbar-lecture-1", ["crank-rocker", "transmission angle", "rocker: swing"]),
+        ("fourbar-double-crank", ["double-crank"]),
+        ("fourbar-double-rocker", ["double-rocker", "18.1949 to 65.3757 deg"]),
+        ("slider-crank-central", ["C: stroke 0.2 m, time ratio 1"]),
+    ],
+)
+def test_the_heading_says_what_kind_of_mechanism_it_is(
+    crank: Crank, name: str, parts: list[str]
+) -> None:
+    output = crank("solve", name).output
+    assert all(part in output for part in parts), output
+
+
 def test_numbers_that_are_0_within_their_bound_are_shown_as_0(crank: Crank) -> None:
     result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
     (place, _) = [line.split() for line in result.output.splitlines() if line.startswith("B ")]
