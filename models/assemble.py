@@ -1,17 +1,15 @@
-"""From the tables of a scene file to a Scene: short forms written out, defaults filled in, names checked."""
+"""From the tables of a scene file to a Scene: short forms written out, names checked."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 
-from pydantic import BaseModel
-
 from models.errors import SceneError
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 from models.schema import (
-    ConstantDriver,
+    DriverTable,
     FromRestDriver,
     LinkTable,
     OscillatingDriver,
@@ -24,7 +22,7 @@ BLOCK_OF_LONGEST = 0.1
 """Side of a square slider block with mass, over the longest link, where no inertia is given."""
 
 
-def scene_from_table(table: SceneTable, driver: BaseModel, place: str) -> Scene:
+def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scene:
     """The scene that the tables describe.
 
     Raises
@@ -56,7 +54,7 @@ def scene_from_table(table: SceneTable, driver: BaseModel, place: str) -> Scene:
         ground=dict(table.ground.points),
         links=links,
         sliders=sliders,
-        driver=Driver(str(getattr(driver, "link")), law),
+        driver=Driver(driver.link, law),
         branch=dict(table.branch),
         gravity_m_s2=table.gravity_m_s2,
         tolerance=dict(table.tolerance),
@@ -72,7 +70,7 @@ def _points(link: LinkTable) -> dict[str, Point]:
 
 
 def _faults_of_names(
-    table: SceneTable, points: Mapping[str, Mapping[str, Point]], driver: BaseModel
+    table: SceneTable, points: Mapping[str, Mapping[str, Point]], driver: DriverTable
 ) -> list[str]:
     """References to things that the scene does not have."""
     faults = []
@@ -106,7 +104,7 @@ def _faults_of_names(
                 f"{key}.point: no body has a point {point}; set point to one of "
                 f"{', '.join(sorted(everywhere))}"
             )
-    link = getattr(driver, "link")
+    link = driver.link
     if link not in table.links:
         faults.append(f"driver.link: found {link}; use one of {', '.join(table.links)}")
     elif not set(points[link]) & set(table.ground.points):
@@ -179,7 +177,7 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
     )
 
 
-def _law(driver: BaseModel) -> Law:
+def _law(driver: DriverTable) -> Law:
     """The law of motion of a driver table. Raises ValueError for numbers that drive nothing."""
     if isinstance(driver, OscillatingDriver):
         return Oscillating(
@@ -190,5 +188,4 @@ def _law(driver: BaseModel) -> Law:
         )
     if isinstance(driver, FromRestDriver):
         return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
-    assert isinstance(driver, ConstantDriver)
     return ConstantSpeed(math.radians(driver.start_deg), driver.speed_rad_s)

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from models.assemble import scene_from_table
 from models.errors import CrankcheckError, SceneError
 from models.scene import Scene
-from models.schema import DRIVERS, SceneTable
+from models.schema import DRIVERS, DriverTable, SceneTable
 
 SCENE_FOLDER = Path(__file__).parent / "scenes"
 MOST_BYTES = 1_000_000
@@ -93,7 +93,7 @@ def _read_text(path: Path) -> str:
         raise SceneError(str(path), [f"cannot be read: {why}; check its permissions"]) from None
 
 
-def _driver(raw: object, faults: list[str]) -> BaseModel | None:
+def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     """The driver table under the model of its law."""
     if isinstance(raw, list):
         faults.append(f"driver: found {len(raw)} drivers; a scene has one [driver] table")

@@ -50,7 +50,7 @@ def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
     """
     _check_masses(scene)
     writing = exact(scene) if writing is None else writing
-    tree = plan(scene, state, writing.close)
+    tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
         f"  <!-- {_comment(scene.source)} -->",

@@ -21,6 +21,7 @@ class Writing:
 
     ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
     ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo.
+    The keyframe's velocities are those of ``delay_s`` after its positions.
     """
 
     close: tuple[str, ...] = ()
@@ -29,6 +30,7 @@ class Writing:
     connect: Attributes = field(default_factory=dict)
     flywheel_ratio: float = FLYWHEEL_RATIO
     servo_gain: float | None = None
+    delay_s: float = 0.0
 
 
 STIFF_STEPS = 4.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from models.joints import blocks, sliding_angle, turned
 from models.motion import State
@@ -12,12 +12,17 @@ from models.scene import GROUND, Point, Scene, Slider
 
 @dataclass(frozen=True)
 class Frame:
-    """A body's frame: origin [m], angle [rad], velocity of the origin [m/s], omega [rad/s]."""
+    """A body's frame: origin [m], angle [rad], velocity of the origin [m/s], omega [rad/s].
+
+    The velocities may belong to a later (or earlier) instant than the position; ``ahead_rad`` is
+    how far the body turns until then.
+    """
 
     origin: Point
     theta: float
     velocity: Point
     omega: float
+    ahead_rad: float = 0.0
 
     def at(self, local: Point) -> Point:
         """A point of the body in the plane [m]."""
@@ -25,8 +30,8 @@ class Frame:
         return self.origin[0] + x, self.origin[1] + y
 
     def velocity_at(self, place: Point) -> Point:
-        """Velocity of the body where ``place`` in the plane is [m/s]."""
-        x, y = place[0] - self.origin[0], place[1] - self.origin[1]
+        """Velocity of the point of the body that is at ``place`` in the plane [m/s]."""
+        x, y = turned((place[0] - self.origin[0], place[1] - self.origin[1]), self.ahead_rad)
         return self.velocity[0] - self.omega * y, self.velocity[1] + self.omega * x
 
     def into(self, place: Point) -> Point:
@@ -37,26 +42,39 @@ class Frame:
 FIXED = Frame((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
 
 
-def frames(scene: Scene, state: State) -> dict[str, Frame]:
-    """The frames of the ground, the links and the blocks with mass at ``state``."""
+def frames(scene: Scene, state: State, delay_s: float = 0.0) -> dict[str, Frame]:
+    """The frames of the ground, the links and the blocks with mass at ``state``.
+
+    Velocities are those of ``delay_s`` later, as engines want them that step positions and
+    velocities by turns; accurate to the second order of the delay.
+    """
     found = {GROUND: FIXED}
     for link in scene.links.values():
         point = next(iter(link.points))
-        arm = turned(link.points[point], state.theta[link.name])
-        place, velocity = state.position[point], state.velocity[point]
-        omega = state.omega[link.name]
+        theta, alpha = state.theta[link.name], state.alpha[link.name]
+        omega = state.omega[link.name] + delay_s * alpha
+        ahead = delay_s * (state.omega[link.name] + 0.5 * delay_s * alpha)
+        arm, later = turned(link.points[point], theta), turned(link.points[point], theta + ahead)
+        place, velocity = state.position[point], _later(state, point, delay_s)
         found[link.name] = Frame(
             (place[0] - arm[0], place[1] - arm[1]),
-            state.theta[link.name],
-            (velocity[0] + omega * arm[1], velocity[1] - omega * arm[0]),
+            theta,
+            (velocity[0] + omega * later[1], velocity[1] - omega * later[0]),
             omega,
+            ahead,
         )
     for name, slider in blocks(scene).items():
         guide = found[slider.on]
         theta = guide.theta + sliding_angle(slider)
-        place, velocity = state.position[slider.point], state.velocity[slider.point]
-        found[name] = Frame(place, theta, velocity, guide.omega)
+        place, velocity = state.position[slider.point], _later(state, slider.point, delay_s)
+        found[name] = Frame(place, theta, velocity, guide.omega, guide.ahead_rad)
     return found
+
+
+def _later(state: State, point: str, delay_s: float) -> Point:
+    """The velocity of a point ``delay_s`` later [m/s]."""
+    (vx, vy), (ax, ay) = state.velocity[point], state.acceleration[point]
+    return vx + delay_s * ax, vy + delay_s * ay
 
 
 def along(slider: Slider, guide: Frame, place: Point, velocity: Point) -> tuple[float, float]:
@@ -65,24 +83,9 @@ def along(slider: Slider, guide: Frame, place: Point, velocity: Point) -> tuple[
     dx, dy = x - slider.through_m[0], y - slider.through_m[1]
     c, s = turned((1.0, 0.0), slider.direction_rad)
     carried = guide.velocity_at(place)
-    drift = turned((velocity[0] - carried[0], velocity[1] - carried[1]), -guide.theta)
+    turn = -guide.theta - guide.ahead_rad
+    drift = turned((velocity[0] - carried[0], velocity[1] - carried[1]), turn)
     return c * dx + s * dy, c * drift[0] + s * drift[1]
-
-
-def launched(state: State, delay_s: float) -> State:
-    """The state with its velocities advanced by ``delay_s``, positions unchanged.
-
-    Engines that step positions and velocities by turns hold velocities half a step away from the
-    positions; they start from such a state. Accurate to the second order of the delay.
-    """
-    return replace(
-        state,
-        omega={n: w + delay_s * state.alpha[n] for n, w in state.omega.items()},
-        velocity={
-            n: (vx + delay_s * state.acceleration[n][0], vy + delay_s * state.acceleration[n][1])
-            for n, (vx, vy) in state.velocity.items()
-        },
-    )
 
 
 def inertia_scale(scene: Scene) -> float:

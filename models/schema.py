@@ -1,4 +1,4 @@
-"""The shape of a scene file, as pydantic models: keys, types and the rules of one table at a time."""
+"""The shape of a scene file in pydantic models: keys, types, and the rules of one table each."""
 
 from __future__ import annotations
 
@@ -105,7 +105,8 @@ class SceneTable(Table):
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
 
 
-DRIVERS: dict[str, type[ConstantDriver] | type[OscillatingDriver] | type[FromRestDriver]] = {
+DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver
+DRIVERS: dict[str, type[DriverTable]] = {
     "constant": ConstantDriver,
     "oscillating": OscillatingDriver,
     "from-rest": FromRestDriver,

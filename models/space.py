@@ -49,12 +49,17 @@ class SpaceModel:
 
 
 def build(
-    scene: Scene, state: State, *, servo: bool = False, exact_lines: bool = True
+    scene: Scene,
+    state: State,
+    *,
+    servo: bool = False,
+    exact_lines: bool = True,
+    delay_s: float = 0.0,
 ) -> SpaceModel:
     """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
 
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
-    is in error.
+    is in error. Velocities are those of ``delay_s`` later (see `models.poses.frames`).
 
     Raises
     ------
@@ -65,7 +70,7 @@ def build(
     space.gravity = scene.gravity_m_s2
     held = joints(scene)
     fixed_angle = {p.body for p in held.prisms if p.slider.on == GROUND}
-    where = frames(scene, state)
+    where = frames(scene, state, delay_s)
     made: dict[str, pymunk.Body] = {GROUND: space.static_body}
     centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
     for name in bodies(scene):

@@ -109,8 +109,10 @@ class _Groups:
         return True
 
 
-def plan(scene: Scene, state: State, close: Sequence[str] = ()) -> Tree:
+def plan(scene: Scene, state: State, close: Sequence[str] = (), *, delay_s: float = 0.0) -> Tree:
     """The tree of a scene at an assembled state, with the loops closed at pins.
+
+    The rates of the coordinates are those of ``delay_s`` later (see `models.poses.frames`).
 
     Raises
     ------
@@ -133,7 +135,7 @@ def plan(scene: Scene, state: State, close: Sequence[str] = ()) -> Tree:
     for point in close:
         if point not in {c.point for c in closures}:
             raise EngineError(f"close = {point}: no loop of {scene.name} closes there")
-    return Tree(_limbs(scene, state, edges), closures)
+    return Tree(_limbs(scene, frames(scene, state, delay_s), edges), closures)
 
 
 def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
@@ -193,9 +195,8 @@ def _closures(scene: Scene, at_point: _Groups) -> tuple[Closure, ...]:
     return tuple(found)
 
 
-def _limbs(scene: Scene, state: State, edges: Sequence[_Edge]) -> tuple[Limb, ...]:
-    """The limbs from the ground outwards, depth first."""
-    where = frames(scene, state)
+def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tuple[Limb, ...]:
+    """The limbs, from the ground outwards."""
     placed = [GROUND]
 
     def grown(parent: str) -> list[Limb]:

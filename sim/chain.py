@@ -41,9 +41,12 @@ class _Moving:
 
 
 def body_poses(
-    limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array
+    limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array, lag_s: float = 0.0
 ) -> Mapping[str, BodyPose]:
     """Poses of all bodies.
+
+    Where the rates belong to ``lag_s`` after the coordinates, each level is worked out at its own
+    instant: velocities at the coordinates of then, accelerations with the rates of now.
 
     Parameters
     ----------
@@ -52,6 +55,18 @@ def body_poses(
     q, rate, acceleration : Array
         Joint coordinates, rates and accelerations [rad or m, per s, per s^2], shape (T, n).
     """
+    if lag_s == 0.0:
+        moving = _bodies(limbs, q, rate, acceleration)
+        return {name: _pose(body, body) for name, body in moving.items()}
+    now = _bodies(limbs, q, rate - lag_s * acceleration, acceleration)
+    then = _bodies(limbs, q + lag_s * rate, rate, acceleration)
+    return {name: _pose(now[name], then[name]) for name in now}
+
+
+def _bodies(
+    limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array
+) -> dict[str, _Moving]:
+    """All bodies, every level at one instant."""
     still = np.zeros(len(q))
     ground = still.astype(np.complex128)
     moving = {GROUND: _Moving(ground, still, ground, still, ground, still)}
@@ -65,7 +80,7 @@ def body_poses(
             body = _moved(body, freedom, shift, rate[:, column], acceleration[:, column])
             column += 1
         moving[limb.body] = body
-    return {limb.body: _pose(moving[limb.body]) for limb in limbs}
+    return {limb.body: moving[limb.body] for limb in limbs}
 
 
 def _moved(body: _Moving, freedom: Freedom, shift: Array, rate: Array, push: Array) -> _Moving:
@@ -88,12 +103,12 @@ def _arm(theta: Array, local: Point) -> Plane:
     return np.asarray(np.exp(1j * theta) * complex(*local))
 
 
-def _pose(body: _Moving) -> BodyPose:
-    """The frame as real arrays."""
+def _pose(now: _Moving, then: _Moving) -> BodyPose:
+    """The frame as real arrays: velocities from ``then``, the rest from ``now``."""
 
     def pair(number: Plane) -> Array:
         return np.stack([number.real, number.imag], axis=-1)
 
     return BodyPose(
-        pair(body.place), body.theta, pair(body.speed), body.omega, pair(body.push), body.alpha
+        pair(now.place), now.theta, pair(then.speed), then.omega, pair(now.push), now.alpha
     )

@@ -10,7 +10,7 @@ import numpy as np
 from models.errors import EngineError
 from models.joints import block_name, bodies
 from models.motion import State
-from models.poses import Frame, frames, launched, mass_of
+from models.poses import Frame, frames, mass_of
 from models.scene import Scene
 from sim.drive import start_speed
 from sim.engine import BodyPose, Drive, Facts
@@ -63,7 +63,7 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[st
     constant speed starts with a chord of the law.
     """
     delay = facts.velocity_shift * dt_s
-    wanted = frames(scene, launched(state, delay))
+    wanted = frames(scene, state, delay)
     law = scene.driver.law
     crank = start_speed(law, state.time_s, dt_s, facts.velocity_shift)
     peak = max(law.peak_speed_rad_s, *(abs(w) for w in state.omega.values()))

@@ -59,11 +59,15 @@ class BodyPose:
 
 @dataclass(frozen=True)
 class Poses:
-    """The bodies of the engine over time: every link, and each slider block that has a body."""
+    """The bodies of the engine over time: every link, and each slider block that has a body.
+
+    Velocities belong to ``lag_s`` after the times of the positions.
+    """
 
     time_s: Array
     links: Mapping[str, BodyPose]
     blocks: Mapping[str, BodyPose]
+    lag_s: float = 0.0
 
 
 @dataclass(frozen=True)

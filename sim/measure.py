@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,23 +29,58 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     """The motion that the poses show.
 
     Points are taken as carried by the ground or the first link that lists them, else by the first
-    block with mass. A slider's speed and acceleration are those seen from its guide. Velocities
-    of different instants are not mixed: everything derives from the same sample.
+    block with mass. A slider's speed and acceleration are those seen from its guide. Where the
+    velocities lag, each level is worked out at its own instant: velocities with the positions of
+    then, accelerations with the velocities of now.
     """
-    tracks = _tracks(scene, poses)
-    holders = carriers(scene)
-    points = {
-        name: PointMotion(t.position, t.velocity, t.acceleration)
-        for name, t in ((n, tracks[n][bodies[0]]) for n, bodies in holders.items() if bodies)
-    }
-    return Motion(
-        time_s=poses.time_s,
-        links={n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in poses.links.items()},
-        points=points,
-        sliders={
-            name: _slide(slider, _guide(slider, poses), tracks[slider.point][_rider(scene, slider)])
-            for name, slider in scene.sliders.items()
-        },
+    now = _at_now(poses)
+    then = _at_then(poses)
+    tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
+    points, sliders = {}, {}
+    for name, held in carriers(scene).items():
+        if held:
+            track = tracks[name][held[0]]
+            velocity = (later or tracks)[name][held[0]].velocity
+            points[name] = PointMotion(track.position, velocity, track.acceleration)
+    for name, slider in scene.sliders.items():
+        rider = _rider(scene, slider)
+        seen = _seen(slider, _guide(slider, now), tracks[slider.point][rider])
+        speed = seen.velocity
+        if later is not None:
+            speed = _seen(slider, _guide(slider, then), later[slider.point][rider]).velocity
+        sliders[name] = SliderMotion(seen.position[:, 0], speed[:, 0], seen.acceleration[:, 0])
+    links = {n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in poses.links.items()}
+    return Motion(poses.time_s, links, points, sliders)
+
+
+def _at_now(poses: Poses) -> Poses:
+    """The poses with the velocities of their own instants, as far as accelerations tell them."""
+    lag = poses.lag_s
+
+    def back(body: BodyPose) -> BodyPose:
+        velocity = body.velocity - lag * body.origin_acceleration
+        return replace(body, velocity=velocity, omega=body.omega - lag * body.alpha)
+
+    return poses if lag == 0.0 else _each(poses, back)
+
+
+def _at_then(poses: Poses) -> Poses:
+    """The poses moved on to the instants of their velocities."""
+    lag = poses.lag_s
+
+    def on(body: BodyPose) -> BodyPose:
+        origin = body.origin + lag * body.velocity
+        return replace(body, origin=origin, theta=body.theta + lag * body.omega)
+
+    return poses if lag == 0.0 else _each(poses, on)
+
+
+def _each(poses: Poses, change: Callable[[BodyPose], BodyPose]) -> Poses:
+    """The poses with every body changed."""
+    return replace(
+        poses,
+        links={name: change(body) for name, body in poses.links.items()},
+        blocks={name: change(body) for name, body in poses.blocks.items()},
     )
 
 
@@ -146,9 +181,3 @@ def _seen(slider: Slider, guide: BodyPose, track: _Track) -> _Track:
         return np.stack([(vector * u).sum(axis=1), (vector * n).sum(axis=1)], axis=-1)
 
     return _Track(split(place) - start, split(drift), split(push))
-
-
-def _slide(slider: Slider, guide: BodyPose, track: _Track) -> SliderMotion:
-    """The motion along the line."""
-    seen = _seen(slider, guide, track)
-    return SliderMotion(seen.position[:, 0], seen.velocity[:, 0], seen.acceleration[:, 0])

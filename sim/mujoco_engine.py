@@ -17,7 +17,6 @@ from models.joints import blocks
 from models.mjcf import build
 from models.mjcf_options import driver_joint, has_control
 from models.motion import State
-from models.poses import launched
 from models.scene import Scene
 from models.tree import Tree, plan
 from sim import drive as drives
@@ -30,7 +29,7 @@ from sim.engine import (
     Profile,
     SettingValue,
 )
-from sim.mujoco_settings import AS_SHIPPED, INTEGRATORS, TUNED, integrator, writing
+from sim.mujoco_settings import AS_SHIPPED, INTEGRATORS, TUNED, velocity_shift, writing
 from sim.settings import SettingError
 
 Array = NDArray[np.float64]
@@ -80,15 +79,14 @@ class MujocoSession:
     ) -> None:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        self._shift = 0.0 if integrator(settings, drive) == "RK4" else -0.5
+        self._shift = velocity_shift(settings, drive)
         chosen = writing(scene, settings, dt_s, drive)
-        start = launched(state, self._shift * dt_s)
-        tree = _tree(scene, start, chosen.close)
+        tree = _tree(scene, state, chosen.close)
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         self._warnings: list[str] = []
         with self._quiet():
-            self._model = _compiled(build(scene, start, chosen))
+            self._model = _compiled(build(scene, state, chosen))
         self._data = mujoco.MjData(self._model)
         mujoco.mj_resetDataKeyframe(self._model, self._data, 0)
         self._servo = chosen.servo_gain is not None
@@ -200,12 +198,15 @@ class MujocoSession:
         """Poses of logged states; accelerations are those of `mj_forward` at each state."""
         nq, nv = self._model.nq, self._model.nv
         q, rate = states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
-        found = body_poses(self._limbs, q, rate, self._accelerations(states, at))
+        lag = self._shift * self._dt
+        push = self._accelerations(states, at)
+        found = body_poses(self._limbs, q, rate, push, lag)
         held = blocks(self._scene)
         return Poses(
             time_s=self._start_s + self._dt * at,
             links={name: found[name] for name in self._scene.links},
             blocks={slider.name: found[body] for body, slider in held.items()},
+            lag_s=lag,
         )
 
     def _accelerations(self, states: Array, at: Array) -> Array:

@@ -108,7 +108,17 @@ def writing(
         },
         flywheel_ratio=ratio,
         servo_gain=servo,
+        delay_s=velocity_shift(settings, drive) * dt_s,
     )
+
+
+def velocity_shift(settings: Mapping[str, SettingValue], drive: Drive) -> float:
+    """To which instant, in steps after the positions, the velocities of a state belong.
+
+    RK4 steps both together; the others move positions with the new velocity, which is the mean
+    over the step before.
+    """
+    return 0.0 if integrator(settings, drive) == "RK4" else -0.5
 
 
 def integrator(settings: Mapping[str, SettingValue], drive: Drive) -> str:

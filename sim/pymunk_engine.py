@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from models.joints import block_name, blocks
 from models.laws import ConstantSpeed
 from models.motion import State
-from models.poses import launched
-from models.scene import Scene
+from models.scene import Point, Scene
 from models.space import SpaceModel, build
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
@@ -74,10 +73,13 @@ class PymunkSession:
     ) -> None:
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        start = launched(state, VELOCITY_SHIFT * dt_s)
         servo = drive == "servo"
         self._model: SpaceModel = build(
-            scene, start, servo=servo, exact_lines=exact_lines(settings)
+            scene,
+            state,
+            servo=servo,
+            exact_lines=exact_lines(settings),
+            delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
         self._space.iterations = int(settings["iterations"])
@@ -204,14 +206,17 @@ class PymunkSession:
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
+        lag = VELOCITY_SHIFT * self._dt
         found = {
-            name: _pose(rows[:, row], self._model.centre[name]) for name, row in self._rows.items()
+            name: _pose(rows[:, row], self._model.centre[name], lag)
+            for name, row in self._rows.items()
         }
         held = blocks(self._scene)
         return Poses(
             time_s=self._start_s + self._dt * at,
             links={name: found[name] for name in self._scene.links},
             blocks={s.name: found[block_name(s)] for s in held.values()},
+            lag_s=lag,
         )
 
 
@@ -223,18 +228,23 @@ def _rows(model: SpaceModel) -> dict[str, int]:
     return {name: order.index(body.id) for name, body in model.bodies.items()}
 
 
-def _pose(row: Array, centre: tuple[float, float]) -> BodyPose:
+def _pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
     """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
     theta, omega = row[:, 2], row[:, 5]
-    c, s = np.cos(theta), np.sin(theta)
-    arm = np.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]], axis=-1)
-    across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+    later = _arm(theta + lag_s * omega, centre)
+    across = np.stack([-later[:, 1], later[:, 0]], axis=-1)
     none = np.full(len(theta), np.nan)
     return BodyPose(
-        origin=row[:, 0:2] - arm,
+        origin=row[:, 0:2] - _arm(theta, centre),
         theta=theta,
         velocity=row[:, 3:5] - omega[:, None] * across,
         omega=omega,
         origin_acceleration=np.full((len(theta), 2), np.nan),
         alpha=none,
     )
+
+
+def _arm(theta: Array, local: Point) -> Array:
+    """A vector of a body's frame in the plane (T, 2)."""
+    c, s = np.cos(theta), np.sin(theta)
+    return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)

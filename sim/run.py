@@ -232,6 +232,7 @@ def _first(poses: Poses, count: int, skip: int) -> Poses:
         poses.time_s[skip:count],
         {name: cut(body) for name, body in poses.links.items()},
         {name: cut(body) for name, body in poses.blocks.items()},
+        poses.lag_s,
     )
 
 
@@ -247,4 +248,5 @@ def _joined(logs: Sequence[Poses]) -> Poses:
         np.concatenate([log.time_s for log in logs]),
         {name: join([log.links[name] for log in logs]) for name in logs[0].links},
         {name: join([log.blocks[name] for log in logs]) for name in logs[0].blocks},
+        logs[0].lag_s,
     )

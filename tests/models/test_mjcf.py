@@ -237,8 +237,10 @@ def test_a_link_that_hangs_on_nothing_is_named() -> None:
         state,
         theta={**state.theta, "loose": 0.0},
         omega={**state.omega, "loose": 0.0},
+        alpha={**state.alpha, "loose": 0.0},
         position=place,
         velocity=speed,
+        acceleration={**state.acceleration, "X": (0.0, 0.0), "Y": (0.0, 0.0)},
     )
     with pytest.raises(EngineError, match="loose hangs on nothing"):
         build(scene, state)

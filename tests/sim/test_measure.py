@@ -11,7 +11,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.scene import Scene
-from sim.engine import Poses
+from sim.engine import BodyPose, Poses
 from sim.measure import gaps, motion
 
 
@@ -102,3 +102,48 @@ def test_an_injected_error_comes_out_as_it_went_in(fake_engine: ModuleType) -> N
     np.testing.assert_allclose(
         gaps(scene, wrong)["C"], 0.2e-3 * poses.time_s, rtol=1e-6, atol=1e-15
     )
+
+
+def lagging(scene: Scene, fake_engine: ModuleType, lag_s: float) -> Poses:
+    """Positions and accelerations of each time with the velocities of ``lag_s`` later."""
+    now = exact(scene, fake_engine)
+    later: Poses = fake_engine.exact_poses(
+        scene, fake_engine.FakeEngine(solve), now.time_s + lag_s, 1e-3
+    )
+
+    def mixed(kind: str) -> dict[str, BodyPose]:
+        return {
+            name: replace(body, velocity=other.velocity, omega=other.omega)
+            for (name, body), other in zip(
+                getattr(now, kind).items(), getattr(later, kind).values(), strict=True
+            )
+        }
+
+    return replace(now, links=mixed("links"), blocks=mixed("blocks"), lag_s=lag_s)
+
+
+@pytest.mark.parametrize(
+    "name", ["fourbar-lecture-1", "slotted-lever", "shaper", "slider-crank-offset"]
+)
+def test_velocities_that_lag_are_those_of_their_own_instant(
+    name: str, fake_engine: ModuleType
+) -> None:
+    scene = load_scene(name)
+
+    def worst(lag_s: float, level: int) -> float:
+        poses = lagging(scene, fake_engine, lag_s)
+        found = motion(scene, poses)
+        wanted = solve(scene, poses.time_s + (lag_s if level == 1 else 0.0))
+        errors = []
+        for kind in ("points", "sliders"):
+            for key, track in getattr(wanted, kind).items():
+                quantity = list(vars(track))[level]
+                got = getattr(getattr(found, kind)[key], quantity)
+                errors.append(float(np.abs(got - getattr(track, quantity)).max()))
+        return max(errors)
+
+    period = scene.driver.law.period_s
+    for level in (1, 2):
+        coarse, fine = worst(period / 200, level), worst(period / 400, level)
+        assert fine < 2e-3 * scene.longest_m * scene.driver.law.peak_speed_rad_s**level
+        assert 3.5 < coarse / fine < 4.5, level
