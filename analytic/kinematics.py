@@ -12,6 +12,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from analytic.chunk import Chunk
 from analytic.dyads.parts import OpenError
 from analytic.plane import (
     EPS,
@@ -26,7 +27,7 @@ from analytic.plane import (
 )
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted
-from analytic.steps import Chunk, Step, prepare
+from analytic.steps import Step, prepare
 from analytic.structure import analyse
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law

@@ -19,8 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.structure import block_name
+from analytic.structure import sliding_body
 from models.errors import CrankcheckError
+from models.joints import block_name, local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Point, Scene, Slider
 
@@ -64,20 +65,16 @@ class Constraints:
         """Each pin as pairs of bodies, with the place of the pin in the frame of each."""
         places: dict[str, list[tuple[str, Point]]] = {}
         for point, bodies in self.scene.pins.items():
-            places[point] = [(body, self.local(body, point)) for body in bodies]
+            places[point] = [(body, local_point(self.scene, body, point)) for body in bodies]
         for slider in self.scene.sliders.values():
             if slider.link is None:
                 places.setdefault(slider.point, []).append((block_name(slider), (0.0, 0.0)))
         return [(*held[0], *other) for held in places.values() for other in held[1:]]
 
-    def local(self, body: str, point: str) -> Point:
-        """The place of a named point in the frame of a link or the ground."""
-        return (self.scene.ground if body == GROUND else self.scene.links[body].points)[point]
-
     def tip(self, slider: Slider) -> tuple[str, Point]:
         """The body that slides and the place of its point on the line."""
-        local = (0.0, 0.0) if slider.link is None else self.local(slider.link, slider.point)
-        return block_name(slider), local
+        body = sliding_body(slider)
+        return body, local_point(self.scene, body, slider.point)
 
     def _point(self, q: Array, body: str, local: Point) -> tuple[Array, Array]:
         """Position of a point, and its arm R r from the frame's origin."""
@@ -308,7 +305,9 @@ def _motion(
         )
         return SliderMotion(displacement, speed, acceleration)
 
-    carriers = {p: (bodies[0], system.local(bodies[0], p)) for p, bodies in scene.pins.items()}
+    carriers = {
+        p: (bodies[0], local_point(scene, bodies[0], p)) for p, bodies in scene.pins.items()
+    }
     for s in scene.sliders.values():
         carriers.setdefault(s.point, system.tip(s))
     return Motion(

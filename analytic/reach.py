@@ -13,9 +13,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.chunk import Chunk
 from analytic.dyads.parts import CLOSED
 from analytic.plane import Array
-from analytic.steps import Chunk
 from models.scene import Scene
 
 SCAN = 1440

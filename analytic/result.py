@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.chunk import Chunk
 from analytic.plane import EPS, Array, BodyKinematics, PointKinematics, Real
-from analytic.steps import Chunk, Step
+from analytic.steps import Step
 from models.errors import CrankcheckError
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene

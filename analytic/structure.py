@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from models.errors import StructureError
+from models.joints import block_name
 from models.scene import GROUND, Scene, Slider
 
 
@@ -58,9 +59,9 @@ class Structure:
         return _count_pairs(self.pins, self.prismatics)
 
 
-def block_name(slider: Slider) -> str:
-    """The body that a slider is: its link, or a block of its own (no link name has a space)."""
-    return slider.link or f"block {slider.name}"
+def sliding_body(slider: Slider) -> str:
+    """The body that a slider is: its link, or a block of its own, with mass or without."""
+    return slider.link or block_name(slider)
 
 
 def analyse(scene: Scene) -> Structure:
@@ -75,7 +76,7 @@ def analyse(scene: Scene) -> Structure:
     blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
     bodies = (*scene.links, *blocks)
     pins = _pins(scene)
-    prismatics = {s.name: (block_name(s), s.on) for s in scene.sliders.values()}
+    prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
     n, p5 = len(bodies), _count_pairs(pins, prismatics)
     mobility = 3 * n - 2 * p5
     if mobility != 1:

@@ -108,14 +108,14 @@ def main() -> int:
     )
     ours = times["crankcheck"]
     print(f"{POSITIONS} crank positions of a four-bar: angle, rate, acceleration of two links\n")
-    print(f"{'':38}{'min':>8}{'median':>8}   ratio of medians")
+    print(f"{'ns a position':38}{'min':>8}{'median':>8}   ratio of minima, medians")
     for name, found in times.items():
-        ratio = np.median(found) / np.median(ours)
-        print(f"{name:38}{min(found):8.1f}{np.median(found):8.1f}   {ratio:.2f}")
-    theirs = times["pylinkage step_fast_with_kinematics"]
-    ratio, memory = float(np.median(theirs) / np.median(ours)), memory_over_result()
-    print("(ns a position)\n")
-    print(f"times as fast as pylinkage: {ratio:.1f} (asked: {WANTED_RATIO:g})")
+        ratios = f"{min(found) / min(ours):.2f}, {np.median(found) / np.median(ours):.2f}"
+        print(f"{name:38}{min(found):8.1f}{np.median(found):8.1f}   {ratios}")
+    # Whatever else the machine does only adds time: the minimum is what the code takes.
+    ratio = min(times["pylinkage step_fast_with_kinematics"]) / min(ours)
+    memory = memory_over_result()
+    print(f"\ntimes as fast as pylinkage: {ratio:.1f} (asked: {WANTED_RATIO:g})")
     print(f"memory peak over the arrays returned: {memory:.2f} (asked: under {MOST_MEMORY:g})")
     names = ("numpy", "numba", "pylinkage")
     versions = ", ".join(f"{name} {version(name)}" for name in names)

@@ -1,4 +1,4 @@
-"""Scene files: what ships loads, and every fault is named with its key, what was found and a cure."""
+"""Scene files: what ships loads; every fault is named with its key, what was found, a cure."""
 
 from __future__ import annotations
 
@@ -65,9 +65,21 @@ def test_angles_of_the_file_are_degrees_and_of_the_scene_radians() -> None:
 
 FAULTS = {
     "unknown key": ("[driver]", "[driver]\nspeed = 3.0", "driver.speed: unknown key"),
-    "unknown table": ("[driver]", "[drivers]\nx = 1\n[driver]", "drivers: unknown key; did you mean driver"),
-    "misspelt key": ("length_m = 0.25", "lenght_m = 0.25", "links.coupler.lenght_m: unknown key; did you mean length_m"),
-    "missing link of the driver": ('link = "crank"', 'link = "krank"', "driver.link: found krank; use one of crank"),
+    "unknown table": (
+        "[driver]",
+        "[drivers]\nx = 1\n[driver]",
+        "drivers: unknown key; did you mean driver",
+    ),
+    "misspelt key": (
+        "length_m = 0.25",
+        "lenght_m = 0.25",
+        "links.coupler.lenght_m: unknown key; did you mean length_m",
+    ),
+    "missing link of the driver": (
+        'link = "crank"',
+        'link = "krank"',
+        "driver.link: found krank; use one of crank",
+    ),
     "zero length": ("length_m = 0.25", "length_m = 0.0", "links.coupler.length_m: found 0.0"),
     "negative length": ("length_m = 0.25", "length_m = -1.0", "links.coupler.length_m: found -1.0"),
     "coincident points": (
@@ -77,22 +89,74 @@ FAULTS = {
     ),
     "NaN": ("length_m = 0.25", "length_m = nan", "links.coupler.length_m: found nan"),
     "infinity": ("D = [0.3, 0.0]", "D = [inf, 0.0]", "ground.points.D.0: found inf"),
-    "text for a number": ("length_m = 0.25", 'length_m = "long"', "links.coupler.length_m: found 'long'"),
-    "two drivers as tables": ("[driver]", '[[driver]]\nlink = "rocker"\nspeed_rad_s = 1.0\n[[driver]]', "driver: found 2 drivers"),
-    "two drivers as a list": ('link = "crank"', 'link = ["crank", "rocker"]', "a scene has one driver, one link"),
+    "text for a number": (
+        "length_m = 0.25",
+        'length_m = "long"',
+        "links.coupler.length_m: found 'long'",
+    ),
+    "two drivers as tables": (
+        "[driver]",
+        '[[driver]]\nlink = "rocker"\nspeed_rad_s = 1.0\n[[driver]]',
+        "driver: found 2 drivers",
+    ),
+    "two drivers as a list": (
+        'link = "crank"',
+        'link = ["crank", "rocker"]',
+        "a scene has one driver, one link",
+    ),
     "driver at rest": ("speed_rad_s = 10.0", "speed_rad_s = 0.0", "driver: speed_rad_s is 0"),
-    "unknown law": ("[driver]", '[driver]\nlaw = "jerky"', "driver.law: found 'jerky'; use one of constant"),
-    "driver without a ground pin": ('link = "crank"', 'link = "coupler"', "driver.link: coupler has no ground pin"),
-    "branch of nothing": ("[driver]", "[branch]\nZ = 1\n[driver]", "branch.Z: no pin or slider of that name"),
+    "unknown law": (
+        "[driver]",
+        '[driver]\nlaw = "jerky"',
+        "driver.law: found 'jerky'; use one of constant",
+    ),
+    "driver without a ground pin": (
+        'link = "crank"',
+        'link = "coupler"',
+        "driver.link: coupler has no ground pin",
+    ),
+    "branch of nothing": (
+        "[driver]",
+        "[branch]\nZ = 1\n[driver]",
+        "branch.Z: no pin or slider of that name",
+    ),
     "branch other than 1": ("[driver]", "[branch]\nC = 2\n[driver]", "branch.C: found 2"),
-    "slider on nothing": ("[driver]", '[sliders.C]\non = "table"\n[driver]', "sliders.C.on: found table"),
-    "slider without its point": ("[driver]", '[sliders.Q]\non = "ground"\n[driver]', "sliders.Q.point: no body has a point Q"),
-    "slider on itself": ("[driver]", '[sliders.C]\nlink = "coupler"\non = "coupler"\n[driver]', "slides on itself"),
-    "slider named like a link": ("[driver]", '[sliders.crank]\npoint = "C"\non = "ground"\n[driver]', "a link has that name too"),
-    "negative mass": ("length_m = 0.25", "length_m = 0.25, mass_kg = -1.0", "links.coupler.mass_kg: found -1.0"),
-    "inertia without mass": ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0, inertia_kg_m2 = 1.0", "links.coupler: inertia_kg_m2 is 1.0 with mass_kg 0"),
-    "one point and no mass": ('rocker = { bar = ["D", "C"], length_m = 0.2 }', "rocker = { points = { D = [0.0, 0.0] } }", "links.rocker: one point has no length"),
-    "bar without length": (', length_m = 0.25', "", "bar and length_m go together"),
+    "slider on nothing": (
+        "[driver]",
+        '[sliders.C]\non = "table"\n[driver]',
+        "sliders.C.on: found table",
+    ),
+    "slider without its point": (
+        "[driver]",
+        '[sliders.Q]\non = "ground"\n[driver]',
+        "sliders.Q.point: no body has a point Q",
+    ),
+    "slider on itself": (
+        "[driver]",
+        '[sliders.C]\nlink = "coupler"\non = "coupler"\n[driver]',
+        "slides on itself",
+    ),
+    "slider named like a link": (
+        "[driver]",
+        '[sliders.crank]\npoint = "C"\non = "ground"\n[driver]',
+        "a link has that name too",
+    ),
+    "negative mass": (
+        "length_m = 0.25",
+        "length_m = 0.25, mass_kg = -1.0",
+        "links.coupler.mass_kg: found -1.0",
+    ),
+    "inertia without mass": (
+        "length_m = 0.25",
+        "length_m = 0.25, mass_kg = 0.0, inertia_kg_m2 = 1.0",
+        "links.coupler: inertia_kg_m2 is 1.0 with mass_kg 0",
+    ),
+    "one point and no mass": (
+        'rocker = { bar = ["D", "C"], length_m = 0.2 }',
+        "rocker = { points = { D = [0.0, 0.0] } }",
+        "links.rocker: one point has no length",
+    ),
+    "bar without length": (", length_m = 0.25", "", "bar and length_m go together"),
     "bar to itself": ('bar = ["B", "C"]', 'bar = ["B", "B"]', "joins point B to itself"),
     "name with a path": ("crank =", '"../crank" =', "a name is a letter"),
     "name with markup": ('name = "good"', 'name = "<b>"', "a name is a letter"),
