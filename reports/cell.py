@@ -14,7 +14,7 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from reports.compare import compare, places
-from reports.convergence import Convergence, convergence
+from reports.convergence import AT_ROUNDING, Convergence, convergence
 from reports.errors import Error, Errors, Quantity, largest
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
@@ -24,6 +24,10 @@ from sim.run import run
 
 PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
 HALVINGS = 2
+EXACT_DRIVE = 1e-9
+"""A drive error [rad] up to which the crank is where it should be, but for rounding."""
+BEHIND_DRIVE = 5.0
+"""How far behind the rounding of the crank that of the other links may be."""
 
 
 @dataclass(frozen=True)
@@ -140,13 +144,22 @@ def _convergence(cell: Cell, state: State, errors: Errors) -> Convergence | None
     if worst is None:
         return None
     sizes = [worst.pure]
+    drives = [row for row in errors.rows if row.quantity == "drive"]
     for halving in range(1, HALVINGS + 1):
         motion = _run(cell, state, 2**halving).motion
         rows = places(cell.scene, motion) if motion is not None and motion.time_s.size else []
         same = largest(row for row in rows if row.quantity == worst.quantity)
         sizes.append(same.pure if same else math.nan)
+        drives += [row for row in rows if row.quantity == "drive"]
     unit = "rad" if worst.unit == "rad" else "of the longest link"
-    return convergence([cell.dt_s / 2**k for k in range(HALVINGS + 1)], sizes, unit)
+    steps = [cell.dt_s / 2**k for k in range(HALVINGS + 1)]
+    return convergence(steps, sizes, unit, _rounding(largest(drives)))
+
+
+def _rounding(drive: Error | None) -> float:
+    """The error of place that rounding explains: a prescribed crank is off by nothing else."""
+    seen = drive.pure if drive is not None and drive.pure <= EXACT_DRIVE else 0.0
+    return max(AT_ROUNDING, BEHIND_DRIVE * seen)
 
 
 def _worst_place(errors: Errors) -> Error | None:

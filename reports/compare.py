@@ -79,10 +79,11 @@ def compare(scene: Scene, run: Run) -> Errors | None:
 
 
 def places(scene: Scene, motion: Motion) -> list[Error]:
-    """Total errors of angle, displacement and position alone, without the reference's bound."""
+    """Drive error and total errors of place alone, without the reference's bound."""
     at = _instants(scene, motion.time_s)
     reference = solve(scene, motion.time_s, bound=False)
-    return [_row(track, at) for track in tracks(scene, motion, reference, 0)]
+    found = [_row(track, at) for track in tracks(scene, motion, reference, 0)]
+    return [_drive(scene, motion, at), *found]
 
 
 def _instants(scene: Scene, time_s: Array) -> _Instants:

@@ -47,8 +47,10 @@ class Convergence:
         return self.trend
 
 
-def convergence(dt_s: Sequence[float], error: Sequence[float], unit: str) -> Convergence:
-    """Read three errors at dt, dt/2, dt/4 (see the module).
+def convergence(
+    dt_s: Sequence[float], error: Sequence[float], unit: str, rounding: float = AT_ROUNDING
+) -> Convergence:
+    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
 
     Raises
     ------
@@ -57,15 +59,15 @@ def convergence(dt_s: Sequence[float], error: Sequence[float], unit: str) -> Con
     """
     if len(dt_s) != 3 or len(error) != 3:
         raise ValueError(f"{len(error)} steps: a floor needs three")
-    trend, order, floor = _read(*error)
+    trend, order, floor = _read(*error, rounding)
     return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor)
 
 
-def _read(e1: float, e2: float, e3: float) -> tuple[Trend, float, float]:
+def _read(e1: float, e2: float, e3: float, rounding: float) -> tuple[Trend, float, float]:
     """Trend, order and floor of three errors, each step half the one before."""
     if not all(math.isfinite(e) for e in (e1, e2, e3)):
         return "diverges", math.nan, math.nan
-    if max(e2, e3) <= AT_ROUNDING:
+    if max(e2, e3) <= rounding:
         return "at rounding", math.nan, math.nan
     order = math.log2(e1 / e3) / 2 if e3 > 0.0 and e1 > 0.0 else math.nan
     if e3 > GROWS * e1:

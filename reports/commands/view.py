@@ -46,10 +46,6 @@ def has_screen() -> bool:
 
 def _open_viewer(scene: Scene) -> None:
     """MuJoCo's own viewer at the assembled state; returns when its window is closed."""
-    import mujoco  # type: ignore[import-untyped]  # MuJoCo ships no types
-    import mujoco.viewer  # type: ignore[import-untyped]  # as above
+    from sim.mujoco_viewer import show
 
-    model = mujoco.MjModel.from_xml_string(build(scene, solve(scene, np.zeros(1)).state()))
-    state = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, state, 0)
-    mujoco.viewer.launch(model, state)
+    show(build(scene, solve(scene, np.zeros(1)).state()))

@@ -29,6 +29,13 @@ def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) 
     assert len(seen.error) == 3
 
 
+def test_the_rounding_of_a_long_run_is_not_taken_for_a_floor(fourbar: Scene) -> None:
+    seen = check(Cell(fourbar, "mujoco", "tuned", 1e-4, 62832)).convergence
+    assert seen is not None
+    assert max(seen.error) < 1e-8
+    assert seen.trend in ("shrinks", "at rounding")
+
+
 @pytest.mark.parametrize("dt_s", [1e-3, 1e-4])
 def test_mujoco_as_shipped_has_a_floor_and_says_so(fourbar: Scene, dt_s: float) -> None:
     one = Cell(fourbar, "mujoco", "as-shipped", dt_s, round(0.63 / dt_s))
