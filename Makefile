@@ -4,7 +4,7 @@
 #   make test         lint, types and tests
 #   make slow         the long checks that `make test` leaves out
 #   make benchmarks   speed of the reference and of logging, as ratios
-#   make models       write the canonical MJCF files in models/mjcf/ anew
+#   make models       write the MJCF files in models/canonical/ anew
 #   make format       format the code
 
 PYTHON ?= python3
@@ -31,7 +31,9 @@ benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/logging.py
 
 models: $(VENV)/crankcheck
-	$(BIN)/python -m models.canonical
+	for scene in fourbar-lecture-1 slider-crank-central; do \
+		$(BIN)/crankcheck export $$scene -o models/canonical/$$scene.xml || exit; \
+	done
 
 format: $(VENV)/test
 	$(BIN)/ruff check --fix .

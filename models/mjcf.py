@@ -104,7 +104,13 @@ def _defaults(scene: Scene, writing: Writing) -> list[str]:
 
 def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """The bodies, children inside their parents, and the sites of the closing pins."""
-    lines = ["  <worldbody>", *_sites(scene, tree, GROUND, "    ")]
+    lines = [
+        "  <worldbody>",
+        "    <!-- Bodies stand assembled; ref lets hinges read as the angle against the parent. -->",
+    ]
+    if writing.servo_gain is None:
+        lines.append("    <!-- The crank's armature is a flywheel: it prescribes the speed. -->")
+    lines += _sites(scene, tree, GROUND, "    ")
     lines += _children(scene, tree, writing, GROUND, "    ")
     return [*lines, "  </worldbody>"]
 
@@ -177,7 +183,10 @@ def _equality(tree: Tree) -> list[str]:
         for c in tree.closures
     ]
     lines = [f"    <connect{_attributes(row)}/>" for row in rows]
-    return ["  <equality>", *lines, "  </equality>"] if lines else []
+    why = (
+        "    <!-- Each loop is closed at one pin, by the copies of the point on its two bodies. -->"
+    )
+    return ["  <equality>", why, *lines, "  </equality>"] if lines else []
 
 
 def _actuator(scene: Scene, writing: Writing) -> list[str]:

@@ -15,7 +15,10 @@ ALLOWED = {
     "sim": {"models", "sim"},
     "reports": {"models", "analytic", "sim", "reports"},
 }
-ENGINES = {"mujoco": {"mjcf", "mujoco_engine"}, "pymunk": {"space", "rail", "pymunk_engine"}}
+ENGINES = {
+    "mujoco": {"mujoco_engine", "mujoco_viewer"},
+    "pymunk": {"space", "rail", "pymunk_engine"},
+}
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 
 
