@@ -106,7 +106,7 @@ def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
     """The bodies, children inside their parents, and the sites of the closing pins."""
     lines = [
         "  <worldbody>",
-        "    <!-- Bodies stand assembled; ref lets hinges read as the angle against the parent. -->",
+        "    <!-- Bodies stand assembled; ref lets hinges read as angles against the parent. -->",
     ]
     if writing.servo_gain is None:
         lines.append("    <!-- The crank's armature is a flywheel: it prescribes the speed. -->")
