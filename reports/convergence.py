@@ -59,7 +59,8 @@ def convergence(
     """
     if len(dt_s) != 3 or len(error) != 3:
         raise ValueError(f"{len(error)} steps: a floor needs three")
-    trend, order, floor = _read(*error, rounding)
+    first, second, third = error
+    trend, order, floor = _read(first, second, third, rounding)
     return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor)
 
 

@@ -212,6 +212,17 @@ def test_an_engine_that_is_missing_shows_the_command_that_installs_it(
     assert "not installed: pip install mujoco" in crank("engines").output
 
 
+def test_view_with_a_screen_opens_the_assembled_model(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer = pytest.importorskip("sim.mujoco_viewer")
+    shown: list[str] = []
+    monkeypatch.setattr(viewer, "show", shown.append)
+    monkeypatch.setattr("reports.commands.view.has_screen", lambda: True)
+    assert crank("view", "tangent").exit_code == 0
+    assert "<key " in shown[0]
+
+
 def moves(frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]]) -> bool:
     return any(not np.array_equal(frames[0], frame) for frame in frames[1:])
 
