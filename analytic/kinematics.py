@@ -83,7 +83,8 @@ def solve(
         theta, omega, alpha = _law_at(law, t)
         error = None
         if bound:
-            age, peak = np.abs(t) * law.fastest_rad_s, law.peak_speed_rad_s
+            age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
+            peak = law.peak_speed_rad_s
             error = AngleError(
                 4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
                 4 * EPS * peak * (1.0 + age),

@@ -16,13 +16,16 @@ class Law(Protocol):
     """A smooth law of motion of the driver.
 
     ``period_s`` is what one "turn" of a run means for the law, and ``peak_speed_rad_s`` the
-    speed that errors of velocity are divided by; both are positive. ``offset_rad`` and
-    ``fastest_rad_s``, the constant part of the angle and the fastest circular frequency in the
-    law, are what the rounding of the law grows with.
+    speed that errors of velocity are divided by; both are positive. ``offset_rad``,
+    ``phase_rad`` and ``fastest_rad_s``, the constant parts of the angle and of the phase and the
+    fastest circular frequency in the law, are what the rounding of the law grows with.
     """
 
     @property
     def offset_rad(self) -> float: ...
+
+    @property
+    def phase_rad(self) -> float: ...
 
     @property
     def fastest_rad_s(self) -> float: ...
@@ -65,6 +68,10 @@ class ConstantSpeed:
     @property
     def offset_rad(self) -> float:
         return abs(self.start_rad)
+
+    @property
+    def phase_rad(self) -> float:
+        return 0.0
 
     @property
     def fastest_rad_s(self) -> float:
@@ -163,6 +170,10 @@ class FromRest:
     @property
     def offset_rad(self) -> float:
         return abs(self.start_rad)
+
+    @property
+    def phase_rad(self) -> float:
+        return 0.0
 
     @property
     def fastest_rad_s(self) -> float:

@@ -35,6 +35,8 @@ def law_at(law: Law, time_s: float) -> Jet:
     speed, rise = mpf(law.speed_rad_s), mpf(law.rise_s)
     if time_s >= law.rise_s:
         return (t - rise / 2) * speed + mpf(law.start_rad)
+    if time_s <= 0.0:
+        return Jet(law.start_rad)
     tau = t / rise
     full = 2 * mp.pi
     ramp = tau * tau / 2 + (jets.cos(tau * full) - 1) / full**2

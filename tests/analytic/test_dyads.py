@@ -116,7 +116,7 @@ def _assert_certain_off_toggle(found: Found, kind: str) -> None:
     Two lines that cross lose their crossing where their angle is rounding; the others fold, and
     lose their rates where the sine is the square root of rounding.
     """
-    strip = EPS * found.size
+    strip = EPS * (1.0 + found.size)
     edge = SURE * (strip if kind in ("PRP", "RPP") else np.sqrt(strip))
     assert np.isfinite(found.bound[found.sine > edge]).all()
     if kind in ("RRR", "RRP", "RPR"):

@@ -1,0 +1,169 @@
+"""Bounds along whole chains, against the whole mechanism in fifty digits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+
+from analytic.kinematics import solve
+from analytic.transform import moved
+from models.files import load_scene, shipped
+from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.motion import Motion
+from models.scene import GROUND, Driver, Point, Scene
+from tests.analytic.chain import Chain, Solved, coordinates
+from tests.analytic.jets import Jet
+from tests.strategies import FORMS, Designed, mechanisms
+
+Array = NDArray[np.float64]
+NOTHING = 1e-38
+"""What is left of an error of the oracle itself."""
+
+
+def shares(scene: Scene, time_s: Array) -> Array:
+    """Error over bound, (levels, everything that moves); a quantity that is exact counts as 0."""
+    motion = solve(scene, time_s)
+    chain = Chain(scene)
+    rows = []
+    for i, t in enumerate(time_s):
+        solved = chain.solve(float(t), coordinates(scene, motion, i))
+        rows.append(_shares_at(motion, solved, i))
+    return np.concatenate(rows, axis=1)
+
+
+def _shares_at(motion: Motion, solved: Solved, i: int) -> Array:
+    bound = motion.bound
+    assert bound is not None
+    assert solved.links.keys() == motion.links.keys() == bound.links.keys()
+    assert solved.points.keys() == motion.points.keys() == bound.points.keys()
+    assert solved.sliders.keys() == motion.sliders.keys() == bound.sliders.keys()
+    columns = []
+    for name, jet in solved.links.items():
+        errors = _apart(jet, vars(motion.links[name]), i, turning=True)
+        columns.append(_over(errors, vars(bound.links[name]), i))
+    for name, jet in solved.sliders.items():
+        errors = _apart(jet, vars(motion.sliders[name]), i)
+        columns.append(_over(errors, vars(bound.sliders[name]), i))
+    for name, place in solved.points.items():
+        found = vars(motion.points[name])
+        x = _apart(place.x, {k: v[:, 0] for k, v in found.items()}, i)
+        y = _apart(place.y, {k: v[:, 1] for k, v in found.items()}, i)
+        columns.append(
+            _over([math.hypot(*e) for e in zip(x, y, strict=True)], vars(bound.points[name]), i)
+        )
+    return np.array(columns).T
+
+
+def _apart(jet: Jet, found: dict[str, Array], i: int, *, turning: bool = False) -> list[float]:
+    """The errors at the three levels, but for the oracle's own; of angles modulo whole turns."""
+    exact = (jet.value, jet.rate, jet.second)
+    apart = [mpf(float(array[i])) - e for array, e in zip(found.values(), exact, strict=True)]
+    if turning:
+        apart[0] -= 2 * mp.pi * mp.nint(apart[0] / (2 * mp.pi))
+    return [float(abs(a)) if abs(a) > NOTHING else 0.0 for a in apart]
+
+
+def _over(errors: list[float], bounds: dict[str, Array], i: int) -> list[float]:
+    """Errors over bounds; 0 / 0 is 0, and a bound of 0 is broken by any error."""
+    limits = [float(array[i]) for array in bounds.values()]
+    assert not any(math.isnan(limit) for limit in limits)
+    return [e / b if b else (math.inf if e else 0.0) for e, b in zip(errors, limits, strict=True)]
+
+
+def random_times(scene: Scene, count: int, turns: float, seed: int = 1) -> Array:
+    span = turns * scene.driver.law.period_s
+    return np.sort(np.random.default_rng(seed).uniform(-0.1 * span, span, count))
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_error_stays_below_the_bound_in_every_scene(name: str) -> None:
+    scene = load_scene(name)
+    found = shares(scene, random_times(scene, 100, 1.0))
+    assert found.max() <= 1.0
+    assert found.max() > 1e-3, "a bound a thousand times the largest error says little"
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_error_stays_below_the_bound_after_ten_thousand_turns(name: str) -> None:
+    scene = load_scene(name)
+    assert shares(scene, random_times(scene, 25, 1e4)).max() <= 1.0
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_error_stays_below_the_bound_a_million_lengths_away(name: str) -> None:
+    scene = load_scene(name)
+    far = 1e6 * scene.longest_m
+    scene = moved(scene, (far, -0.7 * far))
+    found = shares(scene, random_times(scene, 25, 1.0))
+    assert found.max() <= 1.0
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        ConstantSpeed(0.3, -500.0),
+        ConstantSpeed(1e5, 1e-3),
+        FromRest(0.4, 25.0, 0.3),
+        FromRest(0.4, -3.0, 2.0),
+        Oscillating(0.2, 3.0, 7.0, 0.5),
+        Oscillating(-0.2, 0.01, 200.0, math.radians(36_000.0)),
+    ],
+    ids=str,
+)
+def test_error_stays_below_the_bound_under_every_law(
+    law: ConstantSpeed | FromRest | Oscillating,
+) -> None:
+    scene = load_scene("sixbar-watt")
+    scene = replace(scene, driver=Driver(scene.driver.link, law))
+    found = shares(scene, random_times(scene, 60, 2.0))
+    assert found.max() <= 1.0
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=6, deadline=None, derandomize=True, database=None)
+@given(data=st.data())
+def test_error_stays_below_the_bound_in_every_form_of_dyad(form: str, data: st.DataObject) -> None:
+    designed = data.draw(
+        mechanisms([form, *data.draw(st.lists(st.sampled_from(FORMS), max_size=1))])
+    )
+    _hold(designed)
+
+
+def _hold(designed: Designed) -> None:
+    scene = designed.scene
+    assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=5, deadline=None, derandomize=True, database=None)
+@given(data=st.data())
+def test_error_stays_below_the_bound_where_frames_lie_far_off(
+    form: str, data: st.DataObject
+) -> None:
+    """Lengths that are small differences of large local coordinates are rounded too."""
+    scene = with_far_frames(data.draw(mechanisms([form])).scene, (700.0, -3000.0))
+    assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
+
+
+def with_far_frames(scene: Scene, by: Point) -> Scene:
+    """The same mechanism, the origin of each link's frame moved far away from the link."""
+
+    def shift(p: Point) -> Point:
+        return (p[0] + by[0], p[1] + by[1])
+
+    links = {
+        name: replace(link, points={point: shift(p) for point, p in link.points.items()})
+        for name, link in scene.links.items()
+    }
+    sliders = {
+        name: s if s.on == GROUND else replace(s, through_m=shift(s.through_m))
+        for name, s in scene.sliders.items()
+    }
+    return replace(scene, links=links, sliders=sliders)
