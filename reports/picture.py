@@ -116,8 +116,10 @@ def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) ->
     for name, link in scene.links.items():
         corners = [motion.points[point].position[index] for point in link.points]
         _link(axes, corners, colours[name])
+    blocks = {slider.point for slider in scene.sliders.values()}
     for name, point in motion.points.items():
-        _pin(axes, name, point.position[index], name in scene.ground, size)
+        letter = (0.055 if name in blocks else 0.025) * size  # clear of the block
+        _pin(axes, name, point.position[index], name in scene.ground, size, letter)
     theta = math.degrees(motion.links[scene.driver.link].theta[index])
     axes.set_title(f"{scene.name}   {scene.driver.link} {theta:.0f} deg", fontsize=9, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
@@ -152,17 +154,15 @@ def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
     axes.plot(*places.T, color=colour, linewidth=4, solid_capstyle="round", zorder=3)
 
 
-def _pin(axes: Axes, name: str, place: Array, grounded: bool, size: float) -> None:
-    """A pin with its letter; one of the ground stands on a triangle."""
+def _pin(axes: Axes, name: str, place: Array, grounded: bool, size: float, letter: float) -> None:
+    """A pin with its letter aside; one of the ground stands on a triangle."""
     if grounded:
         foot = 0.035 * size
         corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
         axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
     axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
-    offset = 0.025 * size
-    axes.annotate(
-        name, (float(place[0]) + offset, float(place[1]) + offset), fontsize=8, color=INK, zorder=6
-    )
+    aside = (float(place[0]) + letter, float(place[1]) + letter)
+    axes.annotate(name, aside, fontsize=8, color=INK, zorder=6)
 
 
 def _slider(
