@@ -1,0 +1,104 @@
+"""The README is true: every command in it runs, and prints what stands below it.
+
+A block of ``console`` starts with ``$ command``; below it stands what the command prints. A line
+of ``...`` stands for any lines. Words and numbers must be the same, but for the rows of a verdict:
+their numbers, which processors may move a little, must agree to 10 %.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```console\n(.*?)```", README, flags=re.DOTALL)
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def commands() -> list[tuple[str, list[str], int]]:
+    """Each command with the lines that should follow, and the exit code stated by ``$ echo $?``."""
+    found: list[tuple[str, list[str], int]] = []
+    for block in BLOCKS:
+        for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+            command, *lines = part.rstrip("\n").split("\n")
+            if command == "echo $?":
+                last = found.pop()
+                found.append((last[0], last[1], int(lines[0])))
+            else:
+                found.append((command, lines, 0))
+    return found
+
+
+def same(shown: str, printed: str) -> bool:
+    """The same words, and numbers that agree."""
+    words, other = NUMBER.split(shown), NUMBER.split(printed)
+    if [" ".join(w.split()) for w in words] != [" ".join(w.split()) for w in other]:
+        return False
+    tolerance = 0.1 if shown.lstrip().startswith(("ok ", "OUT ")) else 0.0
+    pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
+    return all(a == b or math.isclose(float(a), float(b), rel_tol=tolerance) for a, b in pairs)
+
+
+def follows(shown: list[str], printed: list[str]) -> str:
+    """Empty where ``printed`` reads as ``shown``; else the first line that does not."""
+    at, free = 0, False
+    for line in shown:
+        if line.strip() == "...":
+            free = True
+            continue
+        ahead = range(at, len(printed)) if free else range(at, min(at + 1, len(printed)))
+        hit = next((i for i in ahead if same(line, printed[i])), None)
+        if hit is None:
+            near = printed[at] if at < len(printed) else "(end)"
+            return f"README says\n  {line}\nthe command prints\n  {near}"
+        at, free = hit + 1, False
+    return ""
+
+
+@pytest.mark.parametrize(
+    ("command", "shown", "code"), commands(), ids=[command for command, _, _ in commands()]
+)
+def test_command_prints_what_the_readme_shows(
+    command: str, shown: list[str], code: int, tmp_path: Path
+) -> None:
+    words = shlex.split(command)
+    if words[0] == "crankcheck":
+        words = [str(Path(sys.executable).with_name("crankcheck")), *words[1:]]
+    elif words[0] == "python":
+        words = [sys.executable, *words[1:]]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == code, done.stdout + done.stderr
+    printed = [line.rstrip() for line in done.stdout.splitlines()]
+    assert not follows([line.rstrip() for line in shown], printed)
+
+
+def test_readme_shows_commands() -> None:
+    assert len(commands()) >= 3
+
+
+def test_the_two_commands_stand_in_the_readme_and_in_the_makefile() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for target in ("verify", "test"):
+        assert f"make {target}" in README
+        assert re.search(rf"^{target}:", makefile, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("shown", "printed", "agree"),
+    [
+        ("rocker 4.676 rad", "rocker  4.676 rad", True),
+        ("rocker 4.676 rad", "rocker 4.677 rad", False),
+        ("ok rocker 4.676", "ok  rocker 4.700", True),
+        ("ok rocker 4.676", "ok  rocker 5.700", False),
+        ("rocker 1", "coupler 1", False),
+    ],
+)
+def test_comparison_sees_differences(shown: str, printed: str, agree: bool) -> None:
+    assert same(shown, printed) is agree
