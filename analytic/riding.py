@@ -7,6 +7,7 @@ Either of the two may be the known one, so the pair is first written as a line o
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +29,29 @@ from models.scene import Point, Scene
 
 def less(a: Point, b: Point) -> Point:
     return (a[0] - b[0], a[1] - b[1])
+
+
+def total(*points: Point) -> Point:
+    return (math.fsum(p[0] for p in points), math.fsum(p[1] for p in points))
+
+
+def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
+    """Rounding of a place worked out by turning constant vectors by up to ``angle`` [m].
+
+    ``onto`` is what they were added to; 0 where there was nothing to add.
+    """
+    length = sum(math.hypot(*v) for v in vectors)
+    return EPS * (4.0 * (1.0 + angle) * length + math.hypot(*onto)) if length else 0.0
+
+
+def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointError:
+    """The error of a point whose place on its body is uncertain by ``slack`` [m]."""
+    assert body.error is not None
+    rate = np.abs(body.omega) + body.error.omega
+    gain = np.abs(body.alpha) + body.error.alpha + rate * rate
+    return PointError(
+        error.position + slack, error.velocity + slack * rate, error.acceleration + slack * gain
+    )
 
 
 def known_at(structure: Structure, known: frozenset[str], pin: str) -> str:
@@ -65,6 +89,7 @@ class RidingLine:
     The line goes through ``base`` at ``angle`` in the known body's frame; the slider's
     displacement is ``sign`` times the coordinate on this line. The unknown body keeps the angle
     ``follow`` to the known one, and its point ``rider`` (in its own frame) is the one on the line.
+    ``slack`` bounds the rounding of ``base`` where that was worked out [m].
     """
 
     known: str
@@ -73,6 +98,7 @@ class RidingLine:
     sign: int
     follow: float
     rider: Point
+    slack: float = 0.0
 
     @staticmethod
     def of(scene: Scene, name: str, known: frozenset[str]) -> RidingLine:
@@ -88,10 +114,11 @@ class RidingLine:
 
     def through(self, local: Point) -> tuple[RidingLine, float]:
         """The parallel line of another point of the unknown body, and that point's lead on it."""
-        lead, aside = turned(less(local, self.rider), self.follow - self.angle)
-        shift = turned((0.0, aside), self.angle)
-        base = (self.base[0] + shift[0], self.base[1] + shift[1])
-        return replace(self, base=base, rider=local), lead
+        away = less(local, self.rider)
+        lead, aside = turned(away, self.follow - self.angle)
+        base = total(self.base, turned((0.0, aside), self.angle))
+        slack = rounding_of(abs(self.follow) + 2.0 * abs(self.angle), away, onto=base)
+        return replace(self, base=base, rider=local, slack=slack), lead
 
     def line(self, chunk: Chunk) -> MovingLine:
         """The line in motion."""
@@ -100,7 +127,10 @@ class RidingLine:
         error = body.error
         if error is not None:
             error = replace(error, theta=error.theta + 4 * EPS)
-        return MovingLine(body.point(self.base), along, body.omega, body.alpha, error)
+        point = body.point(self.base)
+        if self.slack and error is not None and point.error is not None:
+            point = replace(point, error=_loosened(point.error, self.slack, body))
+        return MovingLine(point, along, body.omega, body.alpha, error)
 
     def displacement(self, found: Sliding, lead: float) -> Sliding:
         """The slider's own displacement from the coordinate of a point that leads it."""
@@ -108,8 +138,8 @@ class RidingLine:
         speed = found.speed * self.sign if self.sign < 0 else found.speed
         acceleration = found.acceleration * self.sign if self.sign < 0 else found.acceleration
         error = found.error
-        if error is not None and lead:
-            rounding = 4 * EPS * (abs(lead) + np.abs(found.s))
+        if error is not None and self.slack:
+            rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + self.slack
             error = SlideError(error.displacement + rounding, error.speed, error.acceleration)
         return Sliding(s, speed, acceleration, error)
 

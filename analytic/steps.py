@@ -13,7 +13,16 @@ from analytic.chunk import Chunk
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.parts import Sliding, Turning
 from analytic.plane import EPS, Vec, direction
-from analytic.riding import RidingLine, following_body, known_at, less, riding_point, turning_body
+from analytic.riding import (
+    RidingLine,
+    following_body,
+    known_at,
+    less,
+    riding_point,
+    rounding_of,
+    total,
+    turning_body,
+)
 from analytic.structure import Group, Structure, sliding_body
 from models.joints import local_point, turned
 from models.scene import GROUND, Scene
@@ -101,7 +110,7 @@ class RRPStep:
         pin = riding_point(line, dyad.second)
         known = chunk.bodies[self.riding.known]
         chunk.bodies[g.second] = following_body(known, self.riding.follow, self.rider, pin)
-        chunk.sliders[g.outer2] = self.riding.displacement(dyad.second, self.lead)
+        chunk.sliders[g.outer2] = self.through.displacement(dyad.second, self.lead)
         chunk.keep(self.key, dyad)
 
 
@@ -125,24 +134,29 @@ class RPRStep:
         tip = local_point(scene, self.body, slider.point)
         reach = turned(less(tip, self.local1), slider.angle_rad)
         self.lead, self.offset = foot[0] - reach[0], foot[1] - reach[1]
+        self.slack = rounding_of(abs(slider.direction_rad) + abs(slider.angle_rad), foot, reach)
         self.back1, self.back2 = direction(-slider.angle_rad), direction(slider.direction_rad)
         self.branch = scene.branch.get(self.key, 1)
 
     def advance(self, chunk: Chunk) -> None:
         p1, p2 = chunk.point(self.hold1, self.pin1), chunk.point(self.hold2, self.pin2)
+        block = p1
+        if p1.error is not None and self.slack:
+            error = replace(p1.error, position=p1.error.position + self.slack)
+            block = replace(p1, error=error)
         dyad = rpr.solve(
-            p1, p2, self.offset, self.branch, certified=chunk.certified, stretch=chunk.stretch
+            block, p2, self.offset, self.branch, certified=chunk.certified, stretch=chunk.stretch
         )
         assert isinstance(dyad.first, Turning)
         assert isinstance(dyad.second, Sliding)
         chunk.bodies[self.body] = turning_body(dyad.first, self.back1, self.local1, p1)
         chunk.bodies[self.guide] = turning_body(dyad.first, self.back2, self.local2, p2)
         found = dyad.second
-        error = found.error
-        if error is not None and self.lead:
-            rounding = 4 * EPS * (abs(self.lead) + np.abs(found.s))
-            error = replace(error, displacement=error.displacement + rounding)
-        chunk.sliders[self.slider] = replace(found, s=found.s - self.lead, error=error)
+        slide = found.error
+        if slide is not None and self.slack:
+            rounding = 4 * EPS * (abs(self.lead) + np.abs(found.s)) + self.slack
+            slide = replace(slide, displacement=slide.displacement + rounding)
+        chunk.sliders[self.slider] = replace(found, s=found.s - self.lead, error=slide)
         chunk.keep(self.key, dyad)
 
 
@@ -168,7 +182,8 @@ class PRPStep:
             riding, pin = self.ridings[i], riding_point(lines[i], found)
             known = chunk.bodies[riding.known]
             chunk.bodies[body] = following_body(known, riding.follow, self.locals[i], pin)
-            chunk.sliders[slider] = riding.displacement(found, self.through[i][1])
+            line, lead = self.through[i]
+            chunk.sliders[slider] = line.displacement(found, lead)
         chunk.keep(self.key, dyad)
 
 
@@ -187,15 +202,16 @@ class RPPStep:
         self.follow = self.outer.follow + inner.follow
         offset = turned(less(inner.base, self.outer.rider), self.outer.follow)
         arm = turned(less(self.local, inner.rider), self.follow)
-        base = self.outer.base
-        self.base = (base[0] + offset[0] + arm[0], base[1] + offset[1] + arm[1])
+        base = total(self.outer.base, offset, arm)
+        slack = rounding_of(abs(self.outer.follow) + abs(self.follow), offset, arm, onto=base)
+        self.through = replace(self.outer, base=base, slack=slack)
         self.inner = inner
         self.between = direction(self.outer.follow + inner.angle - self.outer.angle)
 
     def advance(self, chunk: Chunk) -> None:
         g = self.group
         p1 = chunk.point(self.hold, g.outer1)
-        line = replace(self.outer, base=self.base).line(chunk)
+        line = self.through.line(chunk)
         dyad = rpp.solve(p1, line, self.between, certified=chunk.certified, stretch=chunk.stretch)
         assert isinstance(dyad.first, Sliding)
         assert isinstance(dyad.second, Sliding)
