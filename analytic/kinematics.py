@@ -128,7 +128,7 @@ def solve_driven(
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
     steps = prepare(scene, analyse(scene))
-    return ranges(scene, lambda angles: stretched(scene, steps, angles))
+    return ranges(lambda angles: stretched(scene, steps, angles))
 
 
 def stretched(scene: Scene, steps: list[Step], theta: Array) -> Chunk:
@@ -180,6 +180,7 @@ def _start(
     return Chunk(scene, certified, stretch, bodies, points={pivot: anchor})
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
 def _advance(
     scene: Scene,
     steps: list[Step],

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.chunk import Chunk
-from analytic.dyads.parts import CLOSED
 from analytic.plane import Array
 from models.scene import Scene
 
@@ -25,29 +24,29 @@ Range = tuple[float, float]
 Stretched = Callable[[Array], Chunk]
 
 
-def shortage(scene: Scene, stretched: Stretched, theta: Array) -> Array:
+def shortage(stretched: Stretched, theta: Array) -> Array:
     """By how much the mechanism fails to close at driver angles ``theta`` (T,) [m]; <= 0 closes."""
     chunk = stretched(theta)
     short = np.full(theta.shape, -np.inf)
     for value in chunk.shortage.values():
         short = np.maximum(short, np.nan_to_num(value, nan=np.inf))
-    return short - CLOSED * 4.0 * scene.longest_m
+    return short
 
 
-def ranges(scene: Scene, stretched: Stretched) -> list[Range]:
+def ranges(stretched: Stretched) -> list[Range]:
     """The reachable driver angles within a turn, as (from, to) [rad] in increasing order.
 
     [(-pi, pi)] where the driver turns fully; [] where the mechanism cannot be assembled at all.
     A range may run beyond pi where it holds that angle.
     """
     grid = np.linspace(-math.pi, math.pi, SCAN + 1)
-    closes = shortage(scene, stretched, grid) <= 0.0
+    closes = shortage(stretched, grid) <= 0.0
     if closes.all():
         return [(-math.pi, math.pi)]
     edges = np.flatnonzero(closes[1:] != closes[:-1])
     if not len(edges):
         return []
-    found = _bisect(scene, stretched, grid[edges], grid[edges + 1], closes[edges])
+    found = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges])
     opens = [float(a) for a, was in zip(found, closes[edges], strict=True) if not was]
     ends = [float(a) for a, was in zip(found, closes[edges], strict=True) if was]
     if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
@@ -55,23 +54,21 @@ def ranges(scene: Scene, stretched: Stretched) -> list[Range]:
     return list(zip(opens, ends, strict=True))
 
 
-def _bisect(
-    scene: Scene, stretched: Stretched, low: Array, high: Array, closes_low: NDArray[np.bool_]
-) -> Array:
+def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: NDArray[np.bool_]) -> Array:
     """The angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
         middle = 0.5 * (low + high)
-        same = (shortage(scene, stretched, middle) <= 0.0) == closes_low
+        same = (shortage(stretched, middle) <= 0.0) == closes_low
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return np.where(closes_low, low, high)
 
 
 def describe_reach(scene: Scene, stretched: Stretched) -> str:
     """The reachable range in words, for a message."""
-    found = ranges(scene, stretched)
+    found = ranges(stretched)
     if not found:
         grid = np.linspace(-math.pi, math.pi, SCAN + 1)
-        short = shortage(scene, stretched, grid)
+        short = shortage(stretched, grid)
         best = int(np.argmin(short))
         return (
             f"It cannot be assembled at any angle of {scene.driver.link}: it comes nearest at "

@@ -62,6 +62,11 @@ class Track:
     def put(self, span: slice, value: Real, rate: Real, second: Real) -> None:
         self.value[span], self.rate[span], self.second[span] = value, rate, second
 
+    def put_bounds(self, span: slice, *bounds: Real) -> None:
+        """Bounds, infinite where they come out of what is not certain (0 times infinity)."""
+        for array, bound in zip(self.arrays, bounds, strict=True):
+            np.copyto(array[span], np.where(np.isnan(bound), np.inf, bound))
+
     @property
     def arrays(self) -> tuple[Array, Array, Array]:
         return self.value, self.rate, self.second
@@ -110,6 +115,7 @@ class Result:
             self.point_bounds = {k: block.track() for k in wanted.points}
             self.slider_bounds = {k: block.track() for k in wanted.sliders}
 
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
     def write(self, span: slice, chunk: Chunk) -> None:
         """Store what was asked for of a solved chunk."""
         for key, row in self.sines.items():
@@ -123,7 +129,7 @@ class Result:
             track.put(span, found.s, found.speed, found.acceleration)
             if self.certified and found.error is not None:
                 e = found.error
-                self.slider_bounds[name].put(span, e.displacement, e.speed, e.acceleration)
+                self.slider_bounds[name].put_bounds(span, e.displacement, e.speed, e.acceleration)
 
     def _write_link(self, span: slice, name: str, body: BodyKinematics) -> None:
         track = self.links[name]
@@ -136,7 +142,7 @@ class Result:
         if self.certified and body.error is not None:
             e = body.error
             rounding = 2 * EPS * (np.abs(track.value[span]) + math.pi)
-            self.link_bounds[name].put(span, e.theta + rounding, e.omega, e.alpha)
+            self.link_bounds[name].put_bounds(span, e.theta + rounding, e.omega, e.alpha)
 
     def _write_point(self, span: slice, name: str, at: PointKinematics) -> None:
         track = self.points[name]
@@ -144,7 +150,7 @@ class Result:
             array[span, 0], array[span, 1] = vec.x, vec.y
         if self.certified and at.error is not None:
             e = at.error
-            self.point_bounds[name].put(span, e.position, e.velocity, e.acceleration)
+            self.point_bounds[name].put_bounds(span, e.position, e.velocity, e.acceleration)
 
     def motion(self) -> Motion:
         """The filled arrays as a motion."""

@@ -142,7 +142,7 @@ def closing_root(
     Returns
     -------
     tuple
-        The root, and the shortage where ``stretch``.
+        The root, and the shortage, less what is taken for rounding, where ``stretch``.
 
     Raises
     ------
@@ -150,7 +150,9 @@ def closing_root(
         Where the dyad is open by more than rounding.
     """
     if stretch:
-        return np.sqrt(np.maximum(square, 0.0)), shortage()[0]
+        # A little less is let pass than when solving, so that the ends of a range can be solved.
+        short, scale = shortage()
+        return np.sqrt(np.maximum(square, 0.0)), short - 0.5 * CLOSED * scale
     if np.min(square) < 0.0:
         short, scale = shortage()
         if np.any(short > CLOSED * scale):

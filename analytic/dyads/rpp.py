@@ -58,4 +58,4 @@ def solve(
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
     second = found.second
     block = replace(second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration)
-    return Dyad(found.first, block, found.sine)
+    return Dyad(found.first, block, found.sine, found.short_m)
