@@ -153,7 +153,9 @@ def _samples(values: Array) -> Array:
     values = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if values.ndim != 1 or len(values) == 0:
         raise CrankcheckError(f"samples of shape {values.shape}; give one dimension, at least one")
-    if not math.isfinite(values.sum()) and not np.isfinite(values).all():
+    with np.errstate(invalid="ignore", over="ignore"):
+        total = float(values.sum())  # finite sums are the quick way to see that all are
+    if not math.isfinite(total) and not np.isfinite(values).all():
         index = int(np.flatnonzero(~np.isfinite(values))[0])
         raise CrankcheckError(f"sample {index} is {values[index]}; samples are finite numbers")
     return values
