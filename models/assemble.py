@@ -76,10 +76,11 @@ def _faults_of_names(
     faults = []
     bodies = [GROUND, *table.links]
     everywhere = set(table.ground.points).union(*points.values())
-    if GROUND in table.links:
-        faults.append(
-            "links.ground: the ground has its own table [ground]; name the link otherwise"
-        )
+    faults += [
+        f"links.{name}: that name stands for what does not move; name the link otherwise"
+        for name in (GROUND, "world")
+        if name in table.links
+    ]
     faults += [
         f"sliders.{name}: a link has that name too; name the slider after its point"
         for name in table.sliders

@@ -29,6 +29,10 @@ class SceneError(CrankcheckError):
         self.faults = tuple(faults)
         super().__init__(f"{place}: " + "\n  ".join(("",) * (len(faults) > 1) + self.faults))
 
+    def __reduce__(self) -> tuple[type[SceneError], tuple[str, tuple[str, ...]]]:
+        """Rebuilt from its parts, in another process too."""
+        return type(self), (self.place, self.faults)
+
 
 class StructureError(CrankcheckError):
     """A mechanism whose mobility is not 1, or with a group that has no closed form."""

@@ -46,7 +46,9 @@ def load_scene(name_or_path: str) -> Scene:
         return read_scene(known[name_or_path])
     path = Path(name_or_path)
     try:
-        there = path.exists()
+        there = bool(name_or_path) and path.exists()
+    except PermissionError:
+        there = True  # its folder may not be searched; reading it says so
     except (OSError, ValueError):  # a name too long for the system, or with a null byte
         there = False
     if there:
@@ -85,7 +87,7 @@ def _read_text(path: Path) -> str:
         if len(raw) > MOST_BYTES:
             fault = f"{len(raw)} bytes; a scene file has at most {MOST_BYTES}"
             raise SceneError(str(path), [fault])
-        return raw.decode("utf-8")
+        return raw.decode("utf-8-sig")  # some editors put a byte order mark first
     except UnicodeDecodeError:
         raise SceneError(str(path), ["not UTF-8 text; save the file as UTF-8"]) from None
     except OSError as error:
@@ -145,7 +147,12 @@ def _line(
         cure = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
         return f"{key}: unknown key; {cure}"
     if kind == "string_pattern_mismatch":
-        message = "a name is a letter, then up to 39 letters, digits, - or _"
+        text = parts[-1] in ("source", "note")
+        message = (
+            "text without control characters"
+            if text
+            else "a name is a letter, then up to 39 letters, digits, - or _"
+        )
     if kind == "value_error":
         return f"{key or 'scene'}: {message.removeprefix('Value error, ')}"
     return f"{key}: found {_short(found)}; {message[0].lower()}{message[1:]}"

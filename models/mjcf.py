@@ -14,7 +14,7 @@ control is the angular acceleration of the crank.
 
 from __future__ import annotations
 
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
 from models.joints import bodies, local_point
@@ -201,7 +201,9 @@ def _actuator(scene: Scene, writing: Writing) -> list[str]:
         ]
     else:
         lines = [
-            "    <!-- control: angular acceleration of the crank [rad/s^2] -->",
+            "    <!-- The driver's law is not in this file: it comes as the control of each -->",
+            "    <!-- step, the angular acceleration of the crank [rad/s^2]. Without it the -->",
+            "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
             f"    <motor{_attributes(joint | {'gear': armature(scene, writing)})}/>",
         ]
     return ["  <actuator>", *lines, "  </actuator>"]
@@ -237,5 +239,5 @@ def _text(value: Value) -> str:
 
 
 def _comment(text: str) -> str:
-    """Text that may stand in an XML comment."""
-    return escape(text).replace("--", "- -")
+    """Text that may stand in an XML comment, where two hyphens would end it."""
+    return text.replace("--", "- -").replace("--", "- -")

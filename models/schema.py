@@ -7,10 +7,15 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
-Text = Annotated[str, StringConstraints(max_length=2000)]
-Number = Annotated[float, Field(allow_inf_nan=False, strict=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Text = Annotated[str, StringConstraints(max_length=2000, pattern=r"^[^\x00-\x08\x0b-\x1f\x7f]*$")]
+"""Text that is shown and written into other files: no control characters."""
+LARGEST = 1e15
+"""No number of a scene is larger, and no length or mass smaller than its inverse: squares of
+them, and products with rates, stay numbers."""
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
+Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Place = tuple[Number, Number]
 
 
@@ -52,8 +57,8 @@ class SliderTable(Table):
     point: Name | None = None
     link: Name | None = None
     through_m: Place = (0.0, 0.0)
-    direction_deg: Number = 0.0
-    angle_deg: Number = 0.0
+    direction_deg: Degrees = 0.0
+    angle_deg: Degrees = 0.0
     mass_kg: NonNegative | None = None
     inertia_kg_m2: NonNegative | None = None
 
@@ -70,16 +75,16 @@ class ConstantDriver(Table):
     link: Name
     law: Literal["constant"] = "constant"
     speed_rad_s: Number
-    start_deg: Number = 0.0
+    start_deg: Degrees = 0.0
 
 
 class OscillatingDriver(Table):
     link: Name
     law: Literal["oscillating"]
-    centre_deg: Number
-    amplitude_deg: Number
+    centre_deg: Degrees
+    amplitude_deg: Degrees
     frequency_rad_s: Number
-    phase_deg: Number = 0.0
+    phase_deg: Degrees = 0.0
 
 
 class FromRestDriver(Table):
@@ -87,14 +92,14 @@ class FromRestDriver(Table):
     law: Literal["from-rest"]
     speed_rad_s: Number
     rise_s: Positive
-    start_deg: Number = 0.0
+    start_deg: Degrees = 0.0
 
 
 class SceneTable(Table):
     """A whole scene file; its driver table is checked by `DRIVERS` after its law is known."""
 
     name: Name
-    source: Annotated[str, StringConstraints(min_length=1, max_length=2000)]
+    source: Annotated[Text, StringConstraints(min_length=1)]
     note: Text = ""
     ground: GroundTable
     links: dict[Name, LinkTable] = Field(min_length=1)

@@ -76,7 +76,8 @@ class Facts:
 
     ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
     quantities belong: a velocity logged with the positions of time t belongs to
-    t + velocity_shift * dt.
+    t + velocity_shift * dt. An engine that ``reports_accelerations`` gives numbers for all of
+    them; one that does not gives NaN for all.
     """
 
     version: str
@@ -87,6 +88,7 @@ class Facts:
     settings: Mapping[str, SettingValue]
     velocity_shift: float
     acceleration_shift: float
+    reports_accelerations: bool = True
 
 
 @dataclass(frozen=True)
@@ -169,7 +171,8 @@ class Run:
     ``gaps`` holds per pin or slider how far the bodies that share it have come apart (T,) [m].
     ``velocity_time_s`` and ``acceleration_time_s`` are the instants that the reported velocities
     and accelerations belong to. ``motion`` is None where the run never started; ``stopped_at_s``
-    is the last time that was reached.
+    is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
+    logged every ``every``-th: what the log is held to.
     """
 
     scene: str
@@ -188,3 +191,7 @@ class Run:
     stopped_at_s: float = 0.0
     warnings: tuple[str, ...] = ()
     cost: Cost | None = None
+    start_s: float = 0.0
+    steps: int = 0
+    every: int = 1
+    reports_accelerations: bool = True

@@ -113,6 +113,8 @@ class MujocoSession:
         if model.neq:
             held["solref_timeconst_s"] = float(model.eq_solref[0, 0])
             held["solref_dampratio"] = float(model.eq_solref[0, 1])
+            impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
+            held |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
         return Facts(
             version=ENGINE.version(),
             mass_kg={n: float(model.body(n).mass[0]) for n in names},

@@ -9,7 +9,7 @@ from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
 from sim.engine import Drive, Profile, Setting, SettingValue
-from sim.settings import check_choices
+from sim.settings import check_choices, check_ranges
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 """In MuJoCo's own order."""
@@ -20,6 +20,20 @@ CHOICES = {
     "islands": ("enable", "disable"),
     "contact": ("enable", "disable"),
 }
+
+RANGES = {
+    "iterations": (1, 1_000_000),
+    "tolerance": (0.0, 1.0),
+    "solref_timeconst_s": (1e-9, 1e9),
+    "solref_timeconst_steps": (0.0, 1e9),
+    "solref_dampratio": (1e-9, 1e9),
+    "solimp_dmin": (1e-4, 0.9999),
+    "solimp_dmax": (1e-4, 0.9999),
+    "solimp_width": (0.0, 1e9),
+    "flywheel_ratio": (1.0, 1e15),
+    "servo_gain": (1e-9, 1e15),
+}
+"""What MuJoCo takes; it clips impedances to these without a word."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -84,6 +98,7 @@ def writing(
 ) -> mjcf_options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     check_choices(settings, CHOICES)
+    check_ranges(settings, RANGES)
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     servo = None
     if drive == "servo":

@@ -2,13 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco  # type: ignore[import-untyped]  # ships no types
 import mujoco.viewer  # type: ignore[import-untyped]  # as above
+import numpy as np
+
+from models.laws import Law
 
 
-def show(xml: str) -> None:
-    """Open the model of an MJCF text at its first keyframe; returns when the window is closed."""
+def show(xml: str, law: Law) -> None:
+    """Open the model of an MJCF text at its first keyframe; returns when the window is closed.
+
+    Where the model has an actuator it is the motor of the crank, which gets the acceleration of
+    the law at every step.
+    """
     model = mujoco.MjModel.from_xml_string(xml)
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
-    mujoco.viewer.launch(model, state)
+    if model.nu:
+        mujoco.set_mjcb_control(driven(law))
+    try:
+        mujoco.viewer.launch(model, state)
+    finally:
+        mujoco.set_mjcb_control(None)
+
+
+def driven(law: Law) -> Any:
+    """The control callback that drives the crank by a law."""
+
+    def control(_model: Any, data: Any) -> None:
+        data.ctrl[0] = law.at(np.array([data.time]))[2][0]
+
+    return control

@@ -18,7 +18,7 @@ from models.scene import Point, Scene
 from models.space import SpaceModel, build
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
-from sim.pymunk_settings import AS_SHIPPED, TUNED, exact_lines
+from sim.pymunk_settings import AS_SHIPPED, TUNED, checked, exact_lines
 
 Array = NDArray[np.float64]
 FIELDS = (
@@ -71,6 +71,7 @@ class PymunkSession:
         dt_s: float,
         drive: Drive,
     ) -> None:
+        checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
         servo = drive == "servo"
@@ -102,7 +103,7 @@ class PymunkSession:
             if body.body_type == pymunk.Body.DYNAMIC
         }
         space = self._space
-        first = next(iter(space.constraints))
+        biases = {float(constraint.error_bias) for constraint in space.constraints}
         return Facts(
             version=ENGINE.version(),
             mass_kg={n: b.mass for n, b in free.items()},
@@ -114,10 +115,11 @@ class PymunkSession:
                 "timestep_s": self._dt,
                 "iterations": int(space.iterations),
                 "damping": float(space.damping),
-                "error_bias": float(first.error_bias),
+                **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,
+            reports_accelerations=False,
         )
 
     def step(self, steps: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
@@ -41,8 +42,10 @@ def engine(name: str) -> Engine:
         raise EngineError(f"engine {name!r}: unknown; {hint}")
     try:
         module = importlib.import_module(ENGINES[name])
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.split(".")[0] != name:
+    except (ImportError, AttributeError) as error:
+        # An AttributeError is what a half-removed package leaves of an engine.
+        at_fault = isinstance(error, AttributeError) or (error.name or name).split(".")[0] == name
+        if not at_fault:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return cast(Engine, module.ENGINE)
@@ -50,7 +53,7 @@ def engine(name: str) -> Engine:
 
 def install_command(name: str) -> str:
     """The command that installs an engine's package."""
-    return f"pip install {name}"
+    return f"{sys.executable} -m pip install {name}"
 
 
 def available() -> tuple[Availability, ...]:

@@ -70,7 +70,18 @@ def run(
     held = resolved(profile_of(chosen, profile), settings)
     _check_steps(scene, dt_s, steps, every)
     blank = Run(
-        scene.name, chosen.name, chosen.version(), profile, drive, dt_s, "ok", "", settings=held
+        scene.name,
+        chosen.name,
+        chosen.version(),
+        profile,
+        drive,
+        dt_s,
+        "ok",
+        "",
+        settings=held,
+        start_s=state.time_s,
+        steps=steps,
+        every=every,
     )
     try:
         session = chosen.open(scene, state, held, dt_s, drive)
@@ -199,6 +210,7 @@ def _recorded(
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
         acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
         stopped_at_s=float(poses.time_s[-1]),
+        reports_accelerations=facts.reports_accelerations,
         warnings=tuple(warnings),
         cost=Cost(wall, done, logged=True),
     )

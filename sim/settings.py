@@ -56,6 +56,17 @@ def check_choices(
             )
 
 
+def check_ranges(
+    settings: Mapping[str, SettingValue], ranges: Mapping[str, tuple[float, float]]
+) -> None:
+    """Refuse a number outside its range, both ends included. Raises SettingError."""
+    for name, (least, most) in ranges.items():
+        if not least <= float(settings[name]) <= most:
+            raise SettingError(
+                f"setting {name}: found {settings[name]!r}; it takes {least:g} to {most:g}"
+            )
+
+
 def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
     """The value as the type of the profile's own."""
     kind = type(model)

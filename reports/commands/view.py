@@ -48,4 +48,4 @@ def _open_viewer(scene: Scene) -> None:
     """MuJoCo's own viewer at the assembled state; returns when its window is closed."""
     from sim.mujoco_viewer import show
 
-    show(build(scene, solve(scene, np.zeros(1)).state()))
+    show(build(scene, solve(scene, np.zeros(1)).state()), scene.driver.law)

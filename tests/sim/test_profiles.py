@@ -1,0 +1,118 @@
+"""Profile as-shipped is what a bare engine does; settings out of range never reach an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+import pymunk
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene
+from sim.engine import Facts, SettingValue
+from sim.mujoco_engine import MujocoSession
+from sim.pymunk_engine import PymunkSession
+from sim.registry import engine
+from sim.settings import SettingError, resolved
+
+SCENE = load_scene("fourbar-lecture-1")
+START = solve(SCENE, np.zeros(1)).state()
+BARE = """
+<mujoco>
+  <worldbody>
+    <body name="a"><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>
+    <body name="b"><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>
+  </worldbody>
+  <equality><connect body1="a" body2="b" anchor="0 0 0"/></equality>
+</mujoco>
+"""
+
+
+def opened(
+    name: str, profile: str, settings: Mapping[str, SettingValue] | None = None
+) -> MujocoSession | PymunkSession:
+    chosen = engine(name)
+    held = resolved(chosen.profiles[profile], settings)
+    session = chosen.open(SCENE, START, held, 1e-3, "prescribed")
+    assert isinstance(session, MujocoSession | PymunkSession)
+    return session
+
+
+def facts(name: str, settings: Mapping[str, SettingValue]) -> Facts:
+    return opened(name, "tuned", settings).facts()
+
+
+def test_mujoco_as_shipped_differs_from_a_bare_model_by_the_drive_alone() -> None:
+    bare = mujoco.MjModel.from_xml_string(BARE)
+    session = opened("mujoco", "as-shipped")
+    assert isinstance(session, MujocoSession)
+    held = session._model
+    own = {"timestep", "gravity", "tolerance"}  # of the run, of the scene, over the flywheel
+    for name in (n for n in dir(bare.opt) if not n.startswith("_") and n not in own):
+        np.testing.assert_array_equal(getattr(held.opt, name), getattr(bare.opt, name), name)
+    ratio = session.facts().settings["flywheel_ratio"]
+    assert held.opt.tolerance * float(ratio) == pytest.approx(bare.opt.tolerance, rel=1e-12)
+    np.testing.assert_array_equal(held.eq_solref[0], bare.eq_solref[0])
+    np.testing.assert_array_equal(held.eq_solimp[0], bare.eq_solimp[0])
+
+
+def test_pymunk_as_shipped_is_a_bare_space() -> None:
+    bare, body = pymunk.Space(), pymunk.Body(1.0, 1.0)
+    joint = pymunk.PivotJoint(bare.static_body, body, (0.0, 0.0))
+    session = opened("pymunk", "as-shipped")
+    assert isinstance(session, PymunkSession)
+    for name in (
+        "iterations",
+        "damping",
+        "collision_bias",
+        "collision_slop",
+        "idle_speed_threshold",
+    ):
+        assert getattr(session._space, name) == getattr(bare, name), name
+    for held in session._space.constraints:
+        for name in ("error_bias", "max_bias", "max_force"):
+            assert getattr(held, name) == getattr(joint, name), name
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "value"),
+    [
+        ("mujoco", "integrator", "implicitfast"),
+        ("mujoco", "solver", "CG"),
+        ("mujoco", "iterations", 7),
+        ("mujoco", "solref_dampratio", 1.5),
+        ("mujoco", "solimp_dmin", 0.91),
+        ("mujoco", "solimp_dmax", 0.96),
+        ("mujoco", "solimp_width", 0.002),
+        ("pymunk", "iterations", 7),
+        ("pymunk", "damping", 0.75),
+        ("pymunk", "error_bias", 0.25),
+    ],
+)
+def test_a_setting_reaches_the_engine(name: str, setting: str, value: SettingValue) -> None:
+    assert facts(name, {setting: value}).settings[setting] == value
+    assert opened(name, "tuned").facts().settings[setting] != value
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "value"),
+    [
+        ("mujoco", "iterations", 0),
+        ("mujoco", "tolerance", -1.0),
+        ("mujoco", "solref_dampratio", 0.0),
+        ("mujoco", "solimp_dmin", 5.0),
+        ("mujoco", "flywheel_ratio", 0.0),
+        ("pymunk", "iterations", 0),
+        ("pymunk", "damping", -1.0),
+        ("pymunk", "error_bias", -1.0),
+        ("pymunk", "error_bias", float("nan")),
+        ("pymunk", "lines", "loose"),
+    ],
+)
+def test_a_value_that_an_engine_does_not_take_is_refused(
+    name: str, setting: str, value: SettingValue
+) -> None:
+    with pytest.raises(SettingError, match=f"setting {setting}: found"):
+        opened(name, "tuned", {setting: value})
