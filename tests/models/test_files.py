@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import pickle
 from pathlib import Path
 
 import pytest
@@ -160,6 +161,13 @@ FAULTS = {
     "bar to itself": ('bar = ["B", "C"]', 'bar = ["B", "B"]', "joins point B to itself"),
     "name with a path": ("crank =", '"../crank" =', "a name is a letter"),
     "name with markup": ('name = "good"', 'name = "<b>"', "a name is a letter"),
+    "text that reads as a number": ("length_m = 0.25", 'length_m = "0.25"', "links.coupler.length_m: found '0.25'"),
+    "truth for a number": ("length_m = 0.25", "length_m = true", "links.coupler.length_m: found True"),
+    "length beyond numbers": ("length_m = 0.25", "length_m = 1e300", "links.coupler.length_m: found 1e+300"),
+    "length below numbers": ("length_m = 0.25", "length_m = 1e-300", "links.coupler.length_m: found 1e-300"),
+    "angle without digits": ("start_deg = 90.0", "start_deg = 1e17", "driver.start_deg: found 1e+17"),
+    "control character": ('source = "a test"', 'source = "a \\u001b[31m test"', "text without control characters"),
+    "link named as what does not move": ("crank =", "world =", "links.world: that name stands for what does not move"),
     "no source": ('source = "a test"', "", "source: missing"),
     "broken TOML": ("[ground]", "[ground", "not valid TOML"),
 }  # fmt: skip
@@ -234,6 +242,18 @@ def test_file_that_is_not_text(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SceneError, match="not UTF-8"):
         read_scene(path)
+
+
+def test_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD, encoding="utf-8-sig")
+    assert read_scene(path).name == "good"
+
+
+def test_scene_error_crosses_processes() -> None:
+    error = SceneError("file.toml", ["a: wrong", "b: wrong"])
+    copied = pickle.loads(pickle.dumps(error))
+    assert (str(copied), copied.faults) == (str(error), error.faults)
 
 
 def test_file_that_is_too_large(tmp_path: Path) -> None:

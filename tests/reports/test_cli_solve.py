@@ -217,7 +217,7 @@ def test_view_with_a_screen_opens_the_assembled_model(
 ) -> None:
     viewer = pytest.importorskip("sim.mujoco_viewer")
     shown: list[str] = []
-    monkeypatch.setattr(viewer, "show", shown.append)
+    monkeypatch.setattr(viewer, "show", lambda xml, _law: shown.append(xml))
     monkeypatch.setattr("reports.commands.view.has_screen", lambda: True)
     assert crank("view", "tangent").exit_code == 0
     assert "<key " in shown[0]

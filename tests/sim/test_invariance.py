@@ -10,82 +10,15 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.transform import mirrored, moved, rotated, scaled
 from models.files import load_scene
-from models.joints import turned
 from models.laws import ConstantSpeed
-from models.scene import GROUND, Link, Point, Scene, Slider
+from models.scene import Scene
 from sim.registry import ENGINES
 from sim.run import run
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper")
 STEPS_PER_TURN = 400
-
-
-def with_ground(scene: Scene, place: Callable[[Point], Point], turn_rad: float = 0.0) -> Scene:
-    """The scene with every point and line of the ground moved."""
-    sliders = {
-        name: replace(s, through_m=place(s.through_m), direction_rad=s.direction_rad + turn_rad)
-        if s.on == GROUND
-        else s
-        for name, s in scene.sliders.items()
-    }
-    ground = {name: place(point) for name, point in scene.ground.items()}
-    driver = replace(scene.driver, law=scene.driver.law.turned(turn_rad))
-    return replace(scene, ground=ground, sliders=sliders, driver=driver)
-
-
-def with_all(
-    scene: Scene,
-    place: Callable[[Point], Point],
-    link: Callable[[Link], Link],
-    slider: Callable[[Slider], Slider],
-) -> Scene:
-    """The scene with every point in every frame changed, and every link and slider."""
-    links = {
-        name: replace(
-            link(each),
-            points={point: place(at) for point, at in each.points.items()},
-            centre_m=place(each.centre_m),
-        )
-        for name, each in scene.links.items()
-    }
-    sliders = {
-        name: replace(slider(each), through_m=place(each.through_m))
-        for name, each in scene.sliders.items()
-    }
-    ground = {name: place(point) for name, point in scene.ground.items()}
-    return replace(scene, ground=ground, links=links, sliders=sliders)
-
-
-def rotated(scene: Scene) -> Scene:
-    return with_ground(scene, lambda p: turned(p, 0.7), 0.7)
-
-
-def moved(scene: Scene) -> Scene:
-    return with_ground(scene, lambda p: (p[0] + 3.0, p[1] - 2.0))
-
-
-def mirrored(scene: Scene) -> Scene:
-    """In the x-axis: pins change sides, blocks do not change their direction along the line."""
-    flipped = with_all(
-        scene,
-        lambda p: (p[0], -p[1]),
-        lambda link: link,
-        lambda s: replace(s, direction_rad=-s.direction_rad, angle_rad=-s.angle_rad),
-    )
-    branch = {p: side if p in scene.sliders else -side for p, side in scene.branch.items()}
-    driver = replace(scene.driver, law=scene.driver.law.mirrored())
-    return replace(flipped, branch=branch, driver=driver)
-
-
-def scaled(scene: Scene, factor: float) -> Scene:
-    """All lengths times the factor, and the masses of rods with them."""
-    return with_all(
-        scene,
-        lambda p: (p[0] * factor, p[1] * factor),
-        lambda k: replace(k, mass_kg=k.mass_kg * factor, inertia_kg_m2=k.inertia_kg_m2 * factor**3),
-        lambda s: replace(s, mass_kg=s.mass_kg * factor, inertia_kg_m2=s.inertia_kg_m2 * factor**3),
-    )
 
 
 def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
@@ -95,8 +28,8 @@ def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
 
 
 CHANGES: dict[str, Callable[[Scene], Scene]] = {
-    "rotated": rotated,
-    "moved": moved,
+    "rotated": lambda scene: rotated(scene, 0.7),
+    "moved": lambda scene: moved(scene, (3.0, -2.0)),
     "mirrored": mirrored,
     "ten times as large": lambda scene: scaled(scene, 10.0),
     "a tenth as large": lambda scene: scaled(scene, 0.1),
