@@ -52,19 +52,17 @@ def solve(
     """
     det = -line1.along.cross(line2.along)
     jacobian = Jacobian(line1.along, -line2.along, det)
-    short = None
-    if stretch or np.min(np.abs(det)) == 0.0:
+    if not stretch and np.min(np.abs(det)) == 0.0:
         gap = np.abs((line2.point.p - line1.point.p).cross(line1.along))
-        short = np.where(det == 0.0, gap, -gap)
-        if not stretch:
-            raise OpenError(short)
+        raise OpenError(np.where(det == 0.0, gap, -gap))
     with np.errstate(divide="ignore", invalid="ignore"):
         s1, s2 = jacobian.solve(line2.point.p - line1.point.p)
         v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
         a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
     first, second = Sliding(s1, v1, a1, None), Sliding(s2, v2, a2, None)
     if not certified:
-        return Dyad(first, second, np.abs(det), short)
+        # Lines that are parallel at one angle cross on both sides of it.
+        return Dyad(first, second, np.abs(det), -np.abs(det) if stretch else None)
     e1, e2 = _errors(line1, line2, jacobian, first, second)
     return Dyad(Sliding(s1, v1, a1, e1), Sliding(s2, v2, a2, e2), np.abs(det))
 

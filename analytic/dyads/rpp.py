@@ -15,6 +15,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from analytic.dyads import prp
 from analytic.dyads.parts import Dyad, MovingLine, Sliding
 from analytic.plane import PointKinematics, Vec
@@ -58,4 +60,8 @@ def solve(
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
     second = found.second
     block = replace(second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration)
-    return Dyad(found.first, block, found.sine, found.short_m)
+    short = None
+    if stretch:  # parallel for good, as the angle between the lines is constant
+        gap = np.abs((p1.p - line.point.p).cross(line.along))
+        short = np.where(found.sine == 0.0, gap, -gap)
+    return Dyad(found.first, block, found.sine, short)

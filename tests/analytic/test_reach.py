@@ -1,0 +1,202 @@
+"""The driver's reachable range, held to the four-bar's closed form, and what names it."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from analytic.fourbar import FourBar
+from analytic.kinematics import reach, solve, solve_driven
+from models.errors import ReachError
+from models.files import load_scene, parse_scene, shipped
+from models.scene import Scene
+
+
+def fourbar(a: float, b: float, c: float, d: float, branch: int = 1) -> Scene:
+    text = f"""
+name = "four"
+source = "test"
+[ground]
+points = {{ A = [0.0, 0.0], D = [{d!r}, 0.0] }}
+[links]
+driver = {{ bar = ["A", "B"], length_m = {a!r} }}
+coupler = {{ bar = ["B", "C"], length_m = {b!r} }}
+rocker = {{ bar = ["D", "C"], length_m = {c!r} }}
+[driver]
+link = "driver"
+speed_rad_s = 1.0
+[branch]
+C = {branch}
+"""
+    return parse_scene(text, "test")
+
+
+def closed_form(bar: FourBar) -> list[tuple[float, float]]:
+    """The ranges that the closed form gives, as `reach` writes them."""
+    near, far = bar.driver_range_rad
+    if bar.driver_turns_fully:
+        return [(-math.pi, math.pi)]
+    if far >= math.pi - 1e-12:
+        return [(near, math.tau - near)]
+    if near <= 1e-12:
+        return [(-far, far)]
+    return [(-far, -near), (near, far)]
+
+
+@pytest.mark.parametrize(
+    "lengths",
+    [
+        (0.25, 0.1, 0.2, 0.3),  # double-rocker: one range to each side
+        (0.3, 0.5, 0.15, 0.3),  # about the far side: a range that holds pi
+        (0.3, 0.2, 0.3, 0.25),  # triple-rocker about the near side: a range that holds 0
+        (0.1, 0.25, 0.2, 0.3),  # crank
+    ],
+)
+def test_range_is_that_of_the_closed_form(lengths: tuple[float, float, float, float]) -> None:
+    found, wanted = reach(fourbar(*lengths)), closed_form(FourBar(*lengths))
+    assert np.shape(found) == np.shape(wanted)
+    assert np.allclose(found, wanted, rtol=0, atol=1e-7)
+
+
+def test_range_of_random_fourbars_is_that_of_the_closed_form() -> None:
+    rng, kinds = np.random.default_rng(3), set()
+    for _ in range(150):
+        lengths = tuple(float(x) for x in rng.uniform(0.1, 1.0, 4))
+        if max(lengths) > 0.95 * (sum(lengths) - max(lengths)):
+            continue
+        wanted = closed_form(FourBar(*lengths))
+        if len(wanted) == 1 and 0.0 < math.tau - (wanted[0][1] - wanted[0][0]) < 0.01:
+            continue  # narrower than the scan promises to see
+        if min(b - a for a, b in wanted) < 0.01:
+            continue
+        found = reach(fourbar(*lengths))
+        assert np.shape(found) == np.shape(wanted), lengths
+        # The square root at toggle turns rounding of the shortage into 1e-8 of the angle.
+        assert np.allclose(found, wanted, rtol=0, atol=1e-6), lengths
+        kinds.add((len(wanted), wanted[0][1] > math.pi, wanted[0][0] < 0.0))
+    assert len(kinds) >= 3, "full turns, two ranges, and ranges that hold 0 or pi"
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_driver_of_every_shipped_scene_stays_in_reach(name: str) -> None:
+    scene = load_scene(name)
+    theta = scene.driver.law.at(np.linspace(0.0, scene.driver.law.period_s, 500))[0]
+    turned = (theta + math.pi) % math.tau - math.pi
+    inside = [(low <= turned) & (turned <= high) for low, high in reach(scene)]
+    assert np.any(inside, axis=0).all()
+
+
+def test_ends_of_the_range_can_be_solved_and_what_is_beyond_cannot() -> None:
+    for lengths in ((0.25, 0.1, 0.2, 0.3), (0.3, 0.5, 0.15, 0.3), (0.3, 0.2, 0.3, 0.25)):
+        scene = fourbar(*lengths)
+        for low, high in reach(scene):
+            ends = np.array([low, 0.5 * (low + high), high])
+            motion = solve_driven(scene, ends, np.ones(3), np.zeros(3))
+            assert (motion.conditioning["C"][[0, 2]] < 1e-6).all()
+            for beyond in (low - 1e-9, high + 1e-9):
+                with pytest.raises(ReachError):
+                    solve_driven(scene, np.array([beyond]), np.ones(1), np.zeros(1))
+
+
+def test_error_names_the_angle_the_gap_and_the_range() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    with pytest.raises(ReachError) as raised:
+        solve_driven(scene, np.array([0.7, 1.6, 1.2]), np.ones(3), np.zeros(3))
+    said = str(raised.value)
+    worst = math.hypot(0.3 - 0.25 * math.cos(1.6), 0.25 * math.sin(1.6)) - 0.3
+    assert f"driver at {math.degrees(1.6):.6g} deg: the loop cannot close at C" in said
+    assert f"open by {worst:.3g} m" in said
+    near, far = (math.degrees(a) for a in FourBar(0.25, 0.1, 0.2, 0.3).driver_range_rad)
+    assert f"-{far:.6g} to -{near:.6g} deg and {near:.6g} to {far:.6g} deg" in said
+
+
+def test_loop_that_never_closes_says_by_how_much() -> None:
+    """Nearest with the crank towards D: 1 - 0.1 - (0.05 + 0.05) m are missing."""
+    with pytest.raises(ReachError, match=r"cannot be assembled at any angle of driver") as raised:
+        solve(fourbar(0.1, 0.05, 0.05, 1.0), np.zeros(1))
+    assert re.search(r"nearest at -?0 deg, open by 0\.8 m", str(raised.value))
+
+
+def test_range_that_holds_pi_is_named_as_one() -> None:
+    scene = fourbar(0.3, 0.5, 0.15, 0.3)
+    near = math.degrees(FourBar(0.3, 0.5, 0.15, 0.3).driver_range_rad[0])
+    with pytest.raises(ReachError, match=f"driver can stand at {near:.6g} to {360 - near:.6g} deg"):
+        solve(scene, np.zeros(1))
+
+
+def test_range_of_the_whole_chain_is_that_of_its_worst_dyad() -> None:
+    """The ram's rod is too short for the lever's arc about the middle of the stroke."""
+    text = load_scene("shaper")
+    short = fourbar_shaper(0.05)
+    assert reach(text) == [(-math.pi, math.pi)]
+    found = reach(short)
+    assert found
+    assert found != [(-math.pi, math.pi)]
+    for low, high in found:
+        inside = np.linspace(low, high, 50)
+        solve_driven(short, inside, np.ones(50), np.zeros(50))
+
+
+def fourbar_shaper(rod_m: float) -> Scene:
+    text = f"""
+name = "short-rod"
+source = "test"
+[ground]
+points = {{ A = [0.0, 0.3], C = [0.0, 0.0] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+lever = {{ bar = ["C", "E"], length_m = 0.6 }}
+rod = {{ bar = ["E", "F"], length_m = {rod_m} }}
+[sliders.B]
+on = "lever"
+[sliders.F]
+on = "ground"
+through_m = [0.0, 0.53]
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+"""
+    return parse_scene(text, "test")
+
+
+def test_parallel_lines_that_never_cross_are_said_to_be_open() -> None:
+    text = """
+name = "parallel"
+source = "test"
+[ground]
+points = { A = [0.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+yoke = { bar = ["Y", "T"], length_m = 0.3 }
+[sliders.Y]
+link = "yoke"
+on = "ground"
+through_m = [0.0, 0.4]
+[sliders.B]
+on = "yoke"
+direction_deg = 0.0
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+"""
+    with pytest.raises(
+        ReachError, match=r"cannot be assembled at any angle of crank.*open by 0\.3 m"
+    ):
+        solve(parse_scene(text, "test"), np.zeros(1))
+
+
+def test_crank_that_turns_fully_has_the_whole_turn() -> None:
+    for name in ("fourbar-lecture-1", "slider-crank-offset", "whitworth", "shaper", "sixbar-watt"):
+        assert reach(load_scene(name)) == [(-math.pi, math.pi)]
+
+
+def test_parallelogram_does_not_raise_at_its_change_points() -> None:
+    scene = fourbar(0.1, 0.3, 0.1, 0.3)
+    assert reach(scene) == [(-math.pi, math.pi)]
+    motion = solve_driven(
+        scene, np.array([0.0, math.pi, -math.pi, math.tau]), np.ones(4), np.zeros(4)
+    )
+    assert np.isfinite(motion.links["rocker"].theta).all()
