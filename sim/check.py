@@ -10,7 +10,7 @@ import numpy as np
 from models.errors import EngineError
 from models.joints import block_name, bodies
 from models.motion import State
-from models.poses import Frame, frames, mass_of
+from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import Scene
 from sim.drive import start_speed
 from sim.engine import BodyPose, Drive, Facts
@@ -47,6 +47,9 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
                 yield f"{body} has no mass_kg"
         elif not math.isclose(facts.mass_kg[body], mass, rel_tol=SAME):
             yield f"{body} has mass_kg {facts.mass_kg[body]:g}, not {mass:g}"
+        centre, wanted = facts.centre_m.get(body), centre_of(scene, body)
+        if centre is not None and math.dist(centre, wanted) > SAME * scene.longest_m:
+            yield f"{body} has centre_m {centre}, not {wanted}"
         held = facts.inertia_kg_m2.get(body, inertia)
         if not math.isclose(held, inertia, rel_tol=SAME):
             yield f"{body} has inertia_kg_m2 {held:g}, not {inertia:g}"

@@ -74,6 +74,7 @@ class Poses:
 class Facts:
     """The model as the engine holds it, read back before the first step.
 
+    Mass, inertia about the centre of mass, and that centre in the link's own frame, by body.
     ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
     quantities belong: a velocity logged with the positions of time t belongs to
     t + velocity_shift * dt. An engine that ``reports_accelerations`` gives numbers for all of
@@ -83,6 +84,7 @@ class Facts:
     version: str
     mass_kg: Mapping[str, float]
     inertia_kg_m2: Mapping[str, float]
+    centre_m: Mapping[str, Point]
     gravity_m_s2: Point
     start: Poses
     settings: Mapping[str, SettingValue]

@@ -33,8 +33,12 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     velocities lag, each level is worked out at its own instant: velocities with the positions of
     then, accelerations with the velocities of now.
     """
-    now = _at_now(poses)
-    then = _at_then(poses)
+    with np.errstate(all="ignore"):  # what has come apart may overflow; it is judged, not warned of
+        return _motion(scene, poses, _at_now(poses), _at_then(poses))
+
+
+def _motion(scene: Scene, poses: Poses, now: Poses, then: Poses) -> Motion:
+    """The motion from the poses at their own instants."""
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
     points, sliders = {}, {}
     for name, held in carriers(scene).items():
@@ -91,6 +95,12 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     distance of its point from the line, plus, for a body that must not turn against the line, the
     fault of its angle times the longest length of the scene.
     """
+    with np.errstate(all="ignore"):
+        return _gaps(scene, poses)
+
+
+def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
+    """The gaps by pin and by slider."""
     tracks = _tracks(scene, poses)
     found = {}
     for point, copies in tracks.items():

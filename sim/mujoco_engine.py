@@ -17,7 +17,7 @@ from models.joints import blocks
 from models.mjcf import build
 from models.mjcf_options import driver_joint, has_control
 from models.motion import State
-from models.scene import Scene
+from models.scene import Point, Scene
 from models.tree import Tree, plan
 from sim import drive as drives
 from sim.chain import body_poses
@@ -119,6 +119,7 @@ class MujocoSession:
             version=ENGINE.version(),
             mass_kg={n: float(model.body(n).mass[0]) for n in names},
             inertia_kg_m2={n: float(model.body(n).inertia[2]) for n in names},
+            centre_m={n: _pair(model.body(n).ipos) for n in names},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
             start=self.read(),
             settings=held,
@@ -241,6 +242,11 @@ class MujocoSession:
             yield
         finally:
             mujoco.set_mju_user_warning(before)
+
+
+def _pair(vector: Array) -> Point:
+    """The first two of a vector, in the plane."""
+    return float(vector[0]), float(vector[1])
 
 
 def _tree(scene: Scene, state: State, close: tuple[str, ...]) -> Tree:

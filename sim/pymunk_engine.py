@@ -108,6 +108,7 @@ class PymunkSession:
             version=ENGINE.version(),
             mass_kg={n: b.mass for n, b in free.items()},
             inertia_kg_m2={n: b.moment for n, b in free.items() if math.isfinite(b.moment)},
+            centre_m={n: _sum(self._model.centre[n], b.center_of_gravity) for n, b in free.items()},
             gravity_m_s2=(space.gravity[0], space.gravity[1]),
             start=self.read(),
             settings=dict(self._settings)
@@ -220,6 +221,11 @@ class PymunkSession:
             blocks={s.name: found[block_name(s)] for s in held.values()},
             lag_s=lag,
         )
+
+
+def _sum(a: Point, b: Point) -> Point:
+    """Sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1]
 
 
 def _rows(model: SpaceModel) -> dict[str, int]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from models.errors import EngineError
 from models.joints import blocks, bodies, sliding_angle
 from models.motion import Motion, State
-from models.poses import mass_of
+from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import (
     BodyPose,
@@ -89,6 +89,7 @@ class FakeSession:
                 version="1.0",
                 mass_kg={name: mass for name, (mass, _) in held.items()},
                 inertia_kg_m2={name: inertia for name, (_, inertia) in held.items()},
+                centre_m={name: centre_of(scene, name) for name in held},
                 gravity_m_s2=scene.gravity_m_s2,
                 start=start,
                 settings=dict(self._settings),

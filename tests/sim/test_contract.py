@@ -130,6 +130,10 @@ def test_two_sessions_side_by_side_do_not_disturb_each_other(adapter: Engine) ->
         (lambda f: replace(f, mass_kg={**f.mass_kg, "rocker": 7.0}), "rocker has mass_kg 7"),
         (lambda f: replace(f, mass_kg={}), "rocker has no mass_kg"),
         (
+            lambda f: replace(f, centre_m={**f.centre_m, "rocker": (0.1, 1e-6)}),
+            r"rocker has centre_m \(0.1, 1e-06\), not \(0.1, 0.0\)",
+        ),
+        (
             lambda f: replace(f, inertia_kg_m2={**f.inertia_kg_m2, "coupler": 7.0}),
             "coupler has inertia_kg_m2 7",
         ),
