@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from analytic.kinematics import solve
-from models.errors import EngineError
+from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
 from reports.compare import compare, places
@@ -18,6 +18,7 @@ from reports.convergence import AT_ROUNDING, Convergence, convergence
 from reports.errors import Error, Errors, Quantity, largest
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
+from reports.stamps import incomplete
 from reports.tolerance import Limit, limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
@@ -91,15 +92,22 @@ class Checked:
 
 def check(cell: Cell) -> Checked:
     """Run a cell at its step (and at half and a quarter of it), compare and judge it."""
-    state = solve(cell.scene, np.zeros(1)).state()
     try:
+        state = solve(cell.scene, np.zeros(1)).state()
         done = _run(cell, state, 1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error))
-    errors = compare(cell.scene, done)
+    except CrankcheckError as error:
+        return unfinished(cell, "crashed", f"no reference at the start: {error}")
+    try:
+        errors = compare(cell.scene, done)
+    except CrankcheckError as error:
+        return unfinished(cell, "crashed", f"the run has no reference to compare with: {error}")
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = _convergence(cell, state, errors) if cell.converge and errors else None
-    evidence = Evidence(done.status, done.reason, done.stopped_at_s, errors, in_force, seen)
+    evidence = Evidence(
+        done.status, done.reason, done.stopped_at_s, errors, in_force, seen, cell.gated
+    )
     return Checked(
         cell=cell,
         version=done.version,
@@ -143,17 +151,38 @@ def _convergence(cell: Cell, state: State, errors: Errors) -> Convergence | None
     worst = _worst_place(errors)
     if worst is None:
         return None
-    sizes = [worst.pure]
+    finer = [2**halving for halving in range(HALVINGS + 1)]
+    sizes, faults = [worst.pure], []
     drives = [row for row in errors.rows if row.quantity == "drive"]
-    for halving in range(1, HALVINGS + 1):
-        motion = _run(cell, state, 2**halving).motion
-        rows = places(cell.scene, motion) if motion is not None and motion.time_s.size else []
+    for parts in finer[1:]:
+        rows, fault = _finer(cell, state, parts)
         same = largest(row for row in rows if row.quantity == worst.quantity)
         sizes.append(same.pure if same else math.nan)
         drives += [row for row in rows if row.quantity == "drive"]
-    unit = "rad" if worst.unit == "rad" else "of the longest link"
-    steps = [cell.dt_s / 2**k for k in range(HALVINGS + 1)]
-    return convergence(steps, sizes, unit, _rounding(largest(drives)))
+        if fault:
+            faults.append(f"at dt {cell.dt_s / parts:.3g} s {fault}")
+    at_step = [replace(errors, step_rad=errors.step_rad / parts) for parts in finer]
+    return convergence(
+        [cell.dt_s / parts for parts in finer],
+        sizes,
+        "rad" if worst.unit == "rad" else "of the longest link",
+        _rounding(largest(drives)),
+        limit=[limits(cell.scene, e, cell.tolerance)[worst.tolerance].number for e in at_step],
+        faults=faults,
+    )
+
+
+def _finer(cell: Cell, state: State, parts: int) -> tuple[list[Error], str]:
+    """Errors of place of a finer run, and how it did not end well: "" where it did."""
+    try:
+        done = _run(cell, state, parts)
+        motion = done.motion
+        rows = places(cell.scene, motion) if motion is not None and motion.time_s.size else []
+    except CrankcheckError as error:
+        return [], f"there is no run: {error}"
+    if done.status != "ok":
+        return rows, f"the run ended {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
+    return rows, incomplete(done)
 
 
 def _rounding(drive: Error | None) -> float:

@@ -17,11 +17,13 @@ import numpy as np
 
 from analytic.kinematics import solve, solve_driven
 from models.errors import ReachError
+from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
 from reports.errors import Error, Errors, Kind, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
-from reports.tracks import QUANTITIES, Track, tracks
+from reports.stamps import incomplete
+from reports.tracks import QUANTITIES, Track, fitting, lacking, tracks
 from sim.engine import Run
 
 SETTLING = 40
@@ -46,7 +48,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
     scene : Scene
         The scene that was run.
     run : Run
-        Samples that are not finite give errors that are not finite.
+        Samples that are not finite, and bodies or pins of the scene that the log lacks, give
+        errors that are not finite.
 
     Returns
     -------
@@ -66,7 +69,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
             _drive(scene, motion, at),
             *(_row(track, at) for track in placed),
             *geometric,
-            *_gaps(scene, run, at),
+            *(_row(track, at) for track in _gaps(scene, run, at)),
             *reported,
             *_differenced(scene, placed, at),
         ),
@@ -75,6 +78,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         curvature=_curvature(scene, reference),
         conditioning=min((float(np.min(s)) for s in reference.conditioning.values()), default=1.0),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+        missing=(*lacking(motion, reference), *_without_gap(scene, run)),
+        incomplete=incomplete(run),
     )
 
 
@@ -129,14 +134,20 @@ def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
     """How far the driver is from where it was told to be."""
     name = scene.driver.link
     magnitude = float(np.max(np.abs(at.driver_rad)))
-    error = angle_error(motion.links[name].theta, at.driver_rad)
+    error = angle_error(_crank(scene, motion), at.driver_rad)
     bound = 2 * EPSILON * np.abs(at.driver_rad)
     return _row(Track("drive", "driver", name, error, bound, magnitude, 1.0, "rad"), at)
 
 
+def _crank(scene: Scene, motion: Motion) -> Array:
+    """The logged angle of the driver [rad], NaN where there is none."""
+    crank = motion.links.get(scene.driver.link)
+    return fitting(None if crank is None else crank.theta, motion.time_s)
+
+
 def _geometric(scene: Scene, motion: Motion, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
     """Errors against the reference at the logged crank angle, or a note that says why not."""
-    theta = motion.links[scene.driver.link].theta
+    theta = _crank(scene, motion)
     if not np.all(np.isfinite(theta)):
         return [], ("no geometric error: the logged crank angle is not finite",)
     still = np.zeros_like(theta)
@@ -148,12 +159,23 @@ def _geometric(scene: Scene, motion: Motion, at: _Instants) -> tuple[list[Error]
     return [_row(track, at, kind="geometric") for track in found], ()
 
 
-def _gaps(scene: Scene, run: Run, at: _Instants) -> Iterable[Error]:
-    """How far the bodies that share a pin or slider have come apart."""
-    for name, gap in run.gaps.items():
+def _gaps(scene: Scene, run: Run, at: _Instants) -> Iterable[Track]:
+    """How far the bodies that share a pin or slider have come apart; NaN where the run is silent
+    about one that the scene has."""
+    none = np.zeros_like(at.time_s)
+    for name in dict.fromkeys((*_shared(scene), *run.gaps)):
         kind: Literal["slider", "point"] = "slider" if name in scene.sliders else "point"
-        none = np.zeros_like(gap)
-        yield _row(Track("gap", kind, name, gap, none, 0.0, scene.longest_m, "m"), at)
+        gap = fitting(run.gaps.get(name), none)
+        yield Track("gap", kind, name, gap, none, 0.0, scene.longest_m, "m")
+
+
+def _shared(scene: Scene) -> tuple[str, ...]:
+    """The pins that two bodies or more share, and the sliders."""
+    return (*(pin.point for pin in joints(scene).pins), *scene.sliders)
+
+
+def _without_gap(scene: Scene, run: Run) -> list[str]:
+    return [f"gap of {name}" for name in dict.fromkeys(_shared(scene)) if name not in run.gaps]
 
 
 def _reported(
@@ -166,12 +188,14 @@ def _reported(
         time_s = motion.time_s if instants is None else instants
         known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
         at = _instants(scene, time_s)
-        for track in tracks(scene, motion, known, 1 if order == 1 else 2):
-            # An engine without accelerations gives NaN throughout; one among numbers is a fault.
-            if order == 2 and bool(np.all(np.isnan(track.error))):
-                missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
-            else:
-                rows += _rate_rows(track, at, "reported")
+        found = list(tracks(scene, motion, known, 1 if order == 1 else 2))
+        # Silence is no fault of an engine that reports no accelerations, if it is silent of all.
+        silent = order == 2 and not run.reports_accelerations
+        if silent and all(np.all(np.isnan(track.error)) for track in found):
+            missing += [f"{track.quantity} of {track.body_kind} {track.body}" for track in found]
+            continue
+        for track in found:
+            rows += _rate_rows(track, at, "reported")
     return rows, tuple(missing)
 
 

@@ -25,7 +25,9 @@ class Convergence:
     """The largest position-like error [``unit``] at each step, and what follows from it.
 
     ``order`` is the mean slope over the steps, NaN where there is none; ``floor`` the error that
-    remains for dt to 0, NaN where none is seen.
+    remains for dt to 0, NaN where none is seen. ``limit`` is the limit that holds at each step,
+    and ``faults`` says of the finer runs how they did not end well: both are empty where unknown.
+    Errors up to ``rounding`` are no step's.
     """
 
     dt_s: tuple[float, ...]
@@ -34,10 +36,23 @@ class Convergence:
     trend: Trend
     order: float
     floor: float
+    rounding: float = AT_ROUNDING
+    limit: tuple[float, ...] = ()
+    faults: tuple[str, ...] = ()
+
+    @property
+    def over(self) -> tuple[int, ...]:
+        """The finer steps whose error is over the limit of that step, rounding apart."""
+        pairs = list(zip(self.error, self.limit, strict=bool(self.limit)))[1:]
+        return tuple(
+            k for k, (error, limit) in enumerate(pairs, 1) if not error <= max(limit, self.rounding)
+        )
 
     @property
     def words(self) -> str:
         """A few words for a table."""
+        if self.faults:
+            return "finer run failed"
         if self.trend == "shrinks":
             return f"order {self.order:.1f}"
         if self.trend == "grows":
@@ -48,9 +63,15 @@ class Convergence:
 
 
 def convergence(
-    dt_s: Sequence[float], error: Sequence[float], unit: str, rounding: float = AT_ROUNDING
+    dt_s: Sequence[float],
+    error: Sequence[float],
+    unit: str,
+    rounding: float = AT_ROUNDING,
+    *,
+    limit: Sequence[float] = (),
+    faults: Sequence[str] = (),
 ) -> Convergence:
-    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
+    """Read three errors at dt, dt/2, dt/4 (see the module).
 
     Raises
     ------
@@ -61,7 +82,17 @@ def convergence(
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
-    return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor)
+    return Convergence(
+        dt_s=tuple(dt_s),
+        error=tuple(error),
+        unit=unit,
+        trend=trend,
+        order=order,
+        floor=floor,
+        rounding=rounding,
+        limit=tuple(limit),
+        faults=tuple(faults),
+    )
 
 
 def _read(e1: float, e2: float, e3: float, rounding: float) -> tuple[Trend, float, float]:

@@ -64,7 +64,9 @@ class Errors:
 
     ``curvature`` is the largest pure acceleration of the reference (at least 1) and
     ``conditioning`` its smallest sine of a transmission angle: both say how hard the scene is.
-    ``step_rad`` is the driver's peak speed times the time between two steps.
+    ``step_rad`` is the driver's peak speed times the time between two steps. ``missing`` names
+    what the scene has and the log has not; ``incomplete`` says what the time stamps lack of those
+    that were commanded, and is empty where they are whole.
     """
 
     rows: tuple[Error, ...]
@@ -73,6 +75,8 @@ class Errors:
     curvature: float
     conditioning: float
     step_rad: float
+    missing: tuple[str, ...] = ()
+    incomplete: str = ""
 
     def worst(
         self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"

@@ -1,4 +1,4 @@
-"""Error series: unwrap an angle, difference over time, and say how large and where."""
+"""Error series: of an angle, differenced over time, and how large it is and where."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def size(series: Array) -> Size:
 
 
 def angle_error(engine: Array, reference: Array) -> Array:
-    """Continuous difference of two angles [rad], less the whole turns that it starts with.
+    """Difference of two continuous angles [rad], less the whole turns that it starts with.
 
-    The engine may count turns from elsewhere; after the first sample a whole turn is an error.
+    The engine may count turns from elsewhere; after the first sample a whole turn is an error, at
+    one sample alone as well.
     """
-    if not np.all(np.isfinite(engine)):
-        return engine - reference  # unwrapping would smear one NaN over all later samples
-    error = np.unwrap(engine - reference)
-    return np.asarray(error - math.tau * np.round(error[0] / math.tau))
+    error = engine - reference
+    turns = np.round(error[:1] / math.tau)
+    return np.asarray(error - math.tau * np.nan_to_num(turns, nan=0.0, posinf=0.0, neginf=0.0))
 
 
 def length(vectors: Array) -> Array:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from reports.errors import BodyKind, Quantity
 from reports.series import Array, angle_error
 
 Order = Literal[0, 1, 2]
+Part = TypeVar("Part")
 QUANTITIES: dict[BodyKind, tuple[Quantity, Quantity, Quantity]] = {
     "link": ("angle", "velocity", "acceleration"),
     "slider": ("displacement", "velocity", "acceleration"),
@@ -43,8 +44,9 @@ class Track:
 def tracks(scene: Scene, motion: Motion, reference: Motion, order: Order) -> Iterator[Track]:
     """Tracks of every link, slider and moving point: the place itself (0), or a rate of it.
 
-    Points of the ground can not move and are left out, as is the driver's angle: it is the drive.
-    Where the engine gives no numbers at all for a rate the error is NaN throughout.
+    It is the reference that says which there are: what the engine's motion lacks, or has another
+    number of samples of, is an error that is NaN throughout. Points of the ground can not move and
+    are left out, as is the driver's angle: it is the drive.
     """
     speed = scene.driver.law.peak_speed_rad_s**order
     suffix = ("", "/s", "/s^2")[order]
@@ -59,7 +61,7 @@ def tracks(scene: Scene, motion: Motion, reference: Motion, order: Order) -> Ite
             body_kind=kind,
             body=body,
             error=angle_error(engine, right) if turns and order == 0 else engine - right,
-            bound=np.zeros_like(motion.time_s) if bound is None else bound,
+            bound=np.zeros(right.shape[0]) if bound is None else bound,
             magnitude=float(np.max(np.abs(right), initial=0.0)),
             scale=speed if turns else scene.longest_m * speed,
             unit=("rad" if turns else "m") + suffix,
@@ -71,15 +73,48 @@ def _pairs(
 ) -> Iterator[tuple[BodyKind, str, Array, Array, Array | None]]:
     """Body kind, body, the engine's series, the reference's, and the reference's bound."""
     known = reference.bound
-    for name, link in motion.links.items():
+    for name, link in reference.links.items():
         sure = None if known is None else _link(known.links[name], order)
-        yield "link", name, _link(link, order), _link(reference.links[name], order), sure
-    for name, slider in motion.sliders.items():
+        right = _link(link, order)
+        yield "link", name, _given(motion.links, name, _link, order, right), right, sure
+    for name, slider in reference.sliders.items():
         sure = None if known is None else _slider(known.sliders[name], order)
-        yield "slider", name, _slider(slider, order), _slider(reference.sliders[name], order), sure
-    for name, point in motion.points.items():
+        right = _slider(slider, order)
+        yield "slider", name, _given(motion.sliders, name, _slider, order, right), right, sure
+    for name, point in reference.points.items():
         sure = None if known is None else _point(known.points[name], order)
-        yield "point", name, _point(point, order), _point(reference.points[name], order), sure
+        right = _point(point, order)
+        yield "point", name, _given(motion.points, name, _point, order, right), right, sure
+
+
+def _given(
+    moved: Mapping[str, Part],
+    name: str,
+    part: Callable[[Part, Order], Array],
+    order: Order,
+    like: Array,
+) -> Array:
+    """The engine's series; NaN in the shape of ``like`` where it gave none of that shape."""
+    return fitting(part(moved[name], order) if name in moved else None, like)
+
+
+def fitting(series: Array | None, like: Array) -> Array:
+    """The series, or NaN throughout where there is none of the shape of ``like``."""
+    if series is None or series.shape != like.shape:
+        return np.full_like(like, np.nan)
+    return series
+
+
+def lacking(motion: Motion, reference: Motion) -> list[str]:
+    """The links, sliders and points of the reference that the engine's motion has not got."""
+    pairs: tuple[tuple[str, Mapping[str, object], Mapping[str, object]], ...] = (
+        ("link", motion.links, reference.links),
+        ("slider", motion.sliders, reference.sliders),
+        ("point", motion.points, reference.points),
+    )
+    return [
+        f"{kind} {name}" for kind, moved, wanted in pairs for name in wanted if name not in moved
+    ]
 
 
 def _link(motion: LinkMotion, order: Order) -> Array:

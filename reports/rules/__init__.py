@@ -6,6 +6,7 @@ from reports.rules.acceleration import AccelerationDifferenced, AccelerationRepo
 from reports.rules.angle import AngleWithin
 from reports.rules.base import Evidence, Finding, Rule
 from reports.rules.certainty import ReferenceCertain
+from reports.rules.complete import LogComplete
 from reports.rules.displacement import DisplacementWithin
 from reports.rules.drive import DriveWithin
 from reports.rules.finite import ValuesFinite
@@ -13,6 +14,7 @@ from reports.rules.gap import GapWithin
 from reports.rules.independence import TwoComputations
 from reports.rules.position import PositionWithin
 from reports.rules.shrinking import ErrorShrinks
+from reports.rules.start import StartWithin
 from reports.rules.status import StatusOk
 from reports.rules.velocity import VelocityDifferenced, VelocityReported
 
@@ -31,6 +33,8 @@ _ALL: tuple[Rule, ...] = (
     ErrorShrinks(),
     TwoComputations(),
     ReferenceCertain(),
+    LogComplete(),
+    StartWithin(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 

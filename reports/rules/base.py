@@ -18,7 +18,8 @@ Level = Literal["pass", "advice", "fail"]
 class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
-    ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for.
+    ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
+    cell that is not ``gated`` is shown only.
     """
 
     status: str
@@ -27,6 +28,7 @@ class Evidence:
     errors: Errors | None
     limits: Mapping[str, Limit]
     convergence: Convergence | None = None
+    gated: bool = True
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from reports.rules.base import Evidence, Finding, Level
 
 FINE = ("shrinks", "at rounding")
+BAD = ("grows", "diverges")
 
 
 class ErrorShrinks:
@@ -12,7 +13,8 @@ class ErrorShrinks:
     title = "convergence"
     explanation = (
         "An error that stays when the step is halved twice is no discretisation error: "
-        "the model converges to the wrong answer."
+        "the model converges to the wrong answer. Where the cell is gated an error that grows, or "
+        "that is over the limit of the finer step, fails, as does a finer run that breaks down."
     )
     cure = (
         "A shorter step does not help; change what the engine models "
@@ -27,6 +29,13 @@ class ErrorShrinks:
             f"{error:.2g} {seen.unit} at dt {dt:.3g} s"
             for dt, error in zip(seen.dt_s, seen.error, strict=True)
         )
-        level: Level = "pass" if seen.trend in FINE else "advice"
         words = seen.words + (f" {seen.unit}" if "floor" in seen.words else "")
-        return Finding(self.id, level, f"{words} ({steps})", seen.error[-1])
+        faults = [*seen.faults]
+        faults += [
+            f"over the limit of {seen.limit[k]:.2g} at dt {seen.dt_s[k]:.3g} s" for k in seen.over
+        ]
+        level: Level = "pass" if seen.trend in FINE and not faults else "advice"
+        if evidence.gated and (faults or seen.trend in BAD):
+            level = "fail"
+        text = "; ".join([f"{words} ({steps})", *faults])
+        return Finding(self.id, level, text, seen.error[-1])

@@ -1,0 +1,42 @@
+"""CC116: the rates of the first samples are within what taking up the pins explains."""
+
+from __future__ import annotations
+
+import math
+
+from reports.errors import Error
+from reports.rules.base import SCALES, Evidence, Finding, Level, place
+from reports.settling import allowance
+
+
+class StartWithin:
+    id = "CC116"
+    title = "start"
+    explanation = (
+        "An engine may take some samples to take up its pins; its rates may jump meanwhile by "
+        "half a step's acceleration, and no further."
+    )
+    cure = (
+        "Start the engine with the velocities of the instant that its own belong to, or shorten "
+        "the step."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        errors = evidence.errors
+        rows = [row for row in errors.rows if row.kind == "start"] if errors else []
+        if errors is None or not rows:
+            return None
+        limits = {
+            row.tolerance: evidence.limits[row.tolerance].number + allowance(row.tolerance, errors)
+            for row in rows
+        }
+
+        def share(row: Error) -> float:
+            part = row.pure / limits[row.tolerance]
+            return math.inf if math.isnan(part) else part
+
+        worst = max(rows, key=share)
+        limit = limits[worst.tolerance]
+        level: Level = "pass" if worst.pure <= limit else "fail"
+        text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {SCALES[worst.unit]}"
+        return Finding(self.id, level, text, worst.pure, limit)
