@@ -151,38 +151,49 @@ def _convergence(cell: Cell, state: State, errors: Errors) -> Convergence | None
     worst = _worst_place(errors)
     if worst is None:
         return None
-    finer = [2**halving for halving in range(HALVINGS + 1)]
-    sizes, faults = [worst.pure], []
-    drives = [row for row in errors.rows if row.quantity == "drive"]
-    for parts in finer[1:]:
-        rows, fault = _finer(cell, state, parts)
-        same = largest(row for row in rows if row.quantity == worst.quantity)
-        sizes.append(same.pure if same else math.nan)
-        drives += [row for row in rows if row.quantity == "drive"]
-        if fault:
-            faults.append(f"at dt {cell.dt_s / parts:.3g} s {fault}")
-    at_step = [replace(errors, step_rad=errors.step_rad / parts) for parts in finer]
+    parts = [2**halving for halving in range(HALVINGS + 1)]
+    finer = [_finer(cell, state, p) for p in parts[1:]]
+    same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
+    every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
+    rounding = _rounding(largest(row for row in every_row if row.quantity == "drive"))
     return convergence(
-        [cell.dt_s / parts for parts in finer],
-        sizes,
+        [cell.dt_s / p for p in parts],
+        [worst.pure, *(row.pure if row else math.nan for row in same)],
         "rad" if worst.unit == "rad" else "of the longest link",
-        _rounding(largest(drives)),
-        limit=[limits(cell.scene, e, cell.tolerance)[worst.tolerance].number for e in at_step],
-        faults=faults,
+        rounding,
+        faults=[fault for _, fault in finer if fault],
+        over=[
+            text
+            for p, (rows, _) in zip(parts[1:], finer, strict=True)
+            if (text := _over(cell, errors, p, rows, rounding))
+        ],
     )
 
 
 def _finer(cell: Cell, state: State, parts: int) -> tuple[list[Error], str]:
-    """Errors of place of a finer run, and how it did not end well: "" where it did."""
+    """Errors of place and gaps of a finer run, and how it did not end well: "" where it did."""
+    at = f"at dt {cell.dt_s / parts:.3g} s"
     try:
         done = _run(cell, state, parts)
-        motion = done.motion
-        rows = places(cell.scene, motion) if motion is not None and motion.time_s.size else []
+        rows = places(cell.scene, done)
     except CrankcheckError as error:
-        return [], f"there is no run: {error}"
+        return [], f"{at} there is nothing to compare: {error}"
     if done.status != "ok":
-        return rows, f"the run ended {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
-    return rows, incomplete(done)
+        return rows, f"{at} {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
+    short = incomplete(done)
+    return rows, f"{at} {short}" if short else ""
+
+
+def _over(cell: Cell, errors: Errors, parts: int, rows: list[Error], rounding: float) -> str:
+    """Which errors of a finer run are over the limits of its step, the worst of each quantity."""
+    in_force = limits(cell.scene, replace(errors, step_rad=errors.step_rad / parts), cell.tolerance)
+    worst = [largest(row for row in rows if row.quantity == name) for name in (*PLACES, "gap")]
+    texts = [
+        f"{row.quantity} of {row.body} {row.pure:.2g}, limit {in_force[row.tolerance].number:.2g}"
+        for row in worst
+        if row and not row.pure <= max(in_force[row.tolerance].number, rounding)
+    ]
+    return f"at dt {cell.dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
 
 
 def _rounding(drive: Error | None) -> float:

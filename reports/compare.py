@@ -83,12 +83,16 @@ def compare(scene: Scene, run: Run) -> Errors | None:
     )
 
 
-def places(scene: Scene, motion: Motion) -> list[Error]:
-    """Drive error and total errors of place alone, without the reference's bound."""
+def places(scene: Scene, run: Run) -> list[Error]:
+    """Drive error, total errors of place and gaps alone, without the reference's bound; none of a
+    run that logged nothing."""
+    motion = run.motion
+    if motion is None or motion.time_s.size == 0:
+        return []
     at = _instants(scene, motion.time_s)
     reference = solve(scene, motion.time_s, bound=False)
-    found = [_row(track, at) for track in tracks(scene, motion, reference, 0)]
-    return [_drive(scene, motion, at), *found]
+    found = (*tracks(scene, motion, reference, 0), *_gaps(scene, run, at))
+    return [_drive(scene, motion, at), *(_row(track, at) for track in found)]
 
 
 def _instants(scene: Scene, time_s: Array) -> _Instants:

@@ -25,9 +25,8 @@ class Convergence:
     """The largest position-like error [``unit``] at each step, and what follows from it.
 
     ``order`` is the mean slope over the steps, NaN where there is none; ``floor`` the error that
-    remains for dt to 0, NaN where none is seen. ``limit`` is the limit that holds at each step,
-    and ``faults`` says of the finer runs how they did not end well: both are empty where unknown.
-    Errors up to ``rounding`` are no step's.
+    remains for dt to 0, NaN where none is seen. Of the finer runs ``faults`` says how they did not
+    end well, and ``over`` which of their errors are over the limit of that step.
     """
 
     dt_s: tuple[float, ...]
@@ -36,17 +35,8 @@ class Convergence:
     trend: Trend
     order: float
     floor: float
-    rounding: float = AT_ROUNDING
-    limit: tuple[float, ...] = ()
     faults: tuple[str, ...] = ()
-
-    @property
-    def over(self) -> tuple[int, ...]:
-        """The finer steps whose error is over the limit of that step, rounding apart."""
-        pairs = list(zip(self.error, self.limit, strict=bool(self.limit)))[1:]
-        return tuple(
-            k for k, (error, limit) in enumerate(pairs, 1) if not error <= max(limit, self.rounding)
-        )
+    over: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -68,10 +58,10 @@ def convergence(
     unit: str,
     rounding: float = AT_ROUNDING,
     *,
-    limit: Sequence[float] = (),
     faults: Sequence[str] = (),
+    over: Sequence[str] = (),
 ) -> Convergence:
-    """Read three errors at dt, dt/2, dt/4 (see the module).
+    """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
 
     Raises
     ------
@@ -83,15 +73,7 @@ def convergence(
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
     return Convergence(
-        dt_s=tuple(dt_s),
-        error=tuple(error),
-        unit=unit,
-        trend=trend,
-        order=order,
-        floor=floor,
-        rounding=rounding,
-        limit=tuple(limit),
-        faults=tuple(faults),
+        tuple(dt_s), tuple(error), unit, trend, order, floor, tuple(faults), tuple(over)
     )
 
 

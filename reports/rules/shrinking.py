@@ -30,10 +30,7 @@ class ErrorShrinks:
             for dt, error in zip(seen.dt_s, seen.error, strict=True)
         )
         words = seen.words + (f" {seen.unit}" if "floor" in seen.words else "")
-        faults = [*seen.faults]
-        faults += [
-            f"over the limit of {seen.limit[k]:.2g} at dt {seen.dt_s[k]:.3g} s" for k in seen.over
-        ]
+        faults = [*seen.faults, *seen.over]
         level: Level = "pass" if seen.trend in FINE and not faults else "advice"
         if evidence.gated and (faults or seen.trend in BAD):
             level = "fail"
