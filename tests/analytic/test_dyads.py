@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from analytic.dyads import rrr
 from analytic.dyads.parts import OpenError, Sliding, Turning
-from analytic.plane import EPS, ZERO, PointKinematics, Vec, fixed_point
+from analytic.plane import EPS, ZERO, PointError, PointKinematics, Vec, fixed_point
 from tests.analytic.dyad_cases import BUNCH, KINDS, Bunch, Draw, Exact, Moved
 from tests.analytic.jets import Jet
 
@@ -24,12 +24,16 @@ SURE = 20.0
 
 @dataclass(frozen=True)
 class Found:
-    """Errors and bounds at the three levels, (N, 3), one row per unknown; what they belong to."""
+    """Errors and bounds at the three levels, (N, 3), one row per unknown; what they belong to.
+
+    ``said`` is the sine that the dyad itself gives.
+    """
 
     error: Array
     bound: Array
     unit: Array
     sine: Array
+    said: Array
     size: Array
 
     def complaint(self, level: int) -> str:
@@ -81,6 +85,7 @@ def _compare(bunch: Bunch, shift: Exact | Moved) -> Found:
         np.array(bounds),
         unit * bunch.rate ** np.arange(3),
         np.repeat(bunch.sine, 2),
+        np.repeat(np.broadcast_to(bunch.dyad.sine, (BUNCH,)), 2),
         np.repeat(bunch.size, 2),
     )
 
@@ -127,6 +132,10 @@ def _check(kind: str, count: int) -> None:
     found = _many(kind, count)
     _assert_bounded(found)
     _assert_certain_off_toggle(found, kind)
+    # Its square is a difference of lengths, or of angles.
+    power = 1 if kind in ("PRP", "RPP") else 2
+    off = np.abs(found.said**power - found.sine**power)
+    assert (off <= SURE * EPS * (1.0 + found.size)).all()
     # A line through its pin (RPR without offset) has no toggle, so there are fewer of those.
     assert (found.sine < 2e-3).mean() > 0.3, "half of the dyads are meant to stand near toggle"
 
@@ -193,3 +202,19 @@ def test_dyad_open_by_rounding_alone_closes_in_toggle() -> None:
     assert np.arctan2(dyad.first.turn.y, dyad.first.turn.x) == pytest.approx(0.0, abs=1e-7)
     assert (dyad.first.error.theta < 1e-6).all()
     assert np.isinf(dyad.first.error.omega).all()
+
+
+def test_what_hangs_on_an_uncertain_rate_is_uncertain_itself() -> None:
+    """Also where the rate is not a number, and its share is nothing times infinity."""
+    lost = PointError(1e-9, math.inf, math.inf)
+    for rate in (0.0, math.inf, math.nan):
+        still = Vec(np.full(3, rate), np.zeros(3))
+        at = PointKinematics(Vec(np.linspace(0.0, 0.1, 3), np.zeros(3)), still, still, lost)
+        with np.errstate(invalid="ignore"):
+            dyad = rrr.solve(at, fixed_point((0.5, 0.2)), 0.4, 0.3, 1, certified=True)
+        for unknown in (dyad.first, dyad.second):
+            assert isinstance(unknown, Turning)
+            assert unknown.error is not None
+            assert (unknown.error.theta < 1e-7).all()
+            assert np.isinf(unknown.error.omega).all()
+            assert np.isinf(unknown.error.alpha).all()

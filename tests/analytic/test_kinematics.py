@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene
+from tests.strategies import FORMS, mechanisms
 
 Array = NDArray[np.float64]
 
@@ -150,3 +154,27 @@ def test_angle_out_of_reach_raises() -> None:
         solve_driven(
             load_scene("fourbar-double-rocker"), np.array([math.pi / 2]), np.ones(1), np.zeros(1)
         )
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form[:3] in ("RRP", "RPR")])
+@settings(max_examples=15, deadline=None, derandomize=True, database=None)
+@given(data=st.data())
+def test_branch_of_a_slider_is_the_way_along_its_line(form: str, data: st.DataObject) -> None:
+    """Of the two assemblies, +1 is the one with the greater displacement, in every role."""
+    scene = data.draw(mechanisms([form])).scene
+    (name,) = scene.sliders
+    ahead, behind = (
+        solve(replace(scene, branch={name: side}), np.zeros(1)).sliders[name].displacement[0]
+        for side in (1, -1)
+    )
+    assert ahead > behind
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "fourbar-crossed", "sixbar-watt"])
+def test_branch_of_a_pin_is_its_side_of_the_outer_pins(name: str) -> None:
+    """+1: to the left of the line from the first outer pin to the second, links as in the file."""
+    scene = load_scene(name)
+    motion = solve(scene, np.linspace(0.0, 1.0, 50))
+    b, c, d = (motion.points[p].position for p in "BCD")
+    left = (d - b)[:, 0] * (c - b)[:, 1] - (d - b)[:, 1] * (c - b)[:, 0]
+    assert np.all(np.sign(left) == scene.branch["C"])
