@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,8 +18,10 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.compare import SETTLING, compare
 from reports.errors import Errors, Kind, Quantity, Source
+from reports.stamps import incomplete
 from reports.tolerance import limits
 from sim.engine import Poses, Run
+from sim.run import run as run_scene
 
 Array = NDArray[np.float64]
 Find = Callable[..., Errors]
@@ -204,10 +207,141 @@ def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
         name: replace(link, alpha=np.full_like(link.alpha, np.nan))
         for name, link in run.motion.links.items()
     }
-    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    points = {
+        name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
+        for name, point in run.motion.points.items()
+    }
+    silent = replace(run, motion=replace(run.motion, links=links, points=points))
+    errors = compare(fourbar, replace(silent, reports_accelerations=False))
     assert errors is not None
     assert "acceleration of link rocker" in errors.not_reported
     assert all(row.finite for row in errors.rows)
+    accused = compare(fourbar, silent)
+    assert accused is not None
+    assert accused.not_reported == ()
+    assert math.isnan(pure(accused, "acceleration"))
+
+
+def test_an_engine_without_accelerations_may_not_report_those_of_some_links_only(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    rocker = run.motion.links["rocker"]
+    links = {
+        **run.motion.links,
+        "rocker": replace(rocker, alpha=np.full_like(rocker.alpha, np.nan)),
+    }
+    some = replace(run, motion=replace(run.motion, links=links), reports_accelerations=False)
+    errors = compare(fourbar, some)
+    assert errors is not None
+    assert errors.not_reported == ()
+    assert math.isnan(pure(errors, "acceleration"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("links", "rocker"), ("links", "crank"), ("points", "C")]
+)
+def test_what_the_engine_leaves_out_is_missed(
+    fourbar: Scene, disturbed: Callable[..., Run], kind: str, name: str
+) -> None:
+    run = disturbed(fourbar)
+    kept = {n: part for n, part in vars(run.motion)[kind].items() if n != name}
+    motion = replace(run.motion, **{kind: kept})  # type: ignore[type-var]  # never None here
+    errors = compare(fourbar, replace(run, motion=motion))
+    assert errors is not None
+    assert errors.missing == (f"{kind[:-1]} {name}",)
+    assert any(row.body == name and not row.finite for row in errors.rows)
+
+
+@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper"])
+def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., Run]) -> None:
+    scene = load_scene(name)
+    run = disturbed(scene)
+    whole, silent = compare(scene, run), compare(scene, replace(run, gaps={}))
+    assert whole is not None
+    assert silent is not None
+    assert whole.missing == ()
+    assert set(silent.missing) == {f"gap of {joint}" for joint in run.gaps}
+    assert math.isnan(pure(silent, "gap"))
+
+
+def test_a_series_of_another_length_counts_as_none(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    rocker = run.motion.links["rocker"]
+    links = {**run.motion.links, "rocker": replace(rocker, theta=rocker.theta[:1])}
+    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    assert errors is not None
+    assert math.isnan(pure(errors, "angle"))
+
+
+def cut(run: Run, keep: slice) -> Run:
+    """The run with a part of its samples."""
+    assert run.motion is not None
+    moved = run.motion
+
+    def parts(bodies: Mapping[str, Any]) -> dict[str, Any]:
+        return {
+            name: replace(body, **{key: series[keep] for key, series in vars(body).items()})
+            for name, body in bodies.items()
+        }
+
+    motion = replace(
+        moved,
+        time_s=moved.time_s[keep],
+        links=parts(moved.links),
+        points=parts(moved.points),
+        sliders=parts(moved.sliders),
+    )
+    assert run.velocity_time_s is not None
+    assert run.acceleration_time_s is not None
+    return replace(
+        run,
+        motion=motion,
+        gaps={name: gap[keep] for name, gap in run.gaps.items()},
+        velocity_time_s=run.velocity_time_s[keep],
+        acceleration_time_s=run.acceleration_time_s[keep],
+    )
+
+
+@pytest.mark.parametrize(
+    "keep", [slice(50), slice(1), slice(720), slice(1, None), slice(0, None, 2)]
+)
+def test_a_log_that_lacks_commanded_samples_is_incomplete(
+    fourbar: Scene, disturbed: Callable[..., Run], keep: slice
+) -> None:
+    run = disturbed(fourbar)
+    whole, short = compare(fourbar, run), compare(fourbar, cut(run, keep))
+    assert whole is not None
+    assert short is not None
+    assert whole.incomplete == ""
+    assert "not the 721 of 720 steps logged every 1" in short.incomplete
+
+
+def test_time_stamps_off_the_commanded_grid_are_found(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    time_s = run.motion.time_s.copy()
+    time_s[7:] += 1e-9 * run.dt_s
+    errors = compare(fourbar, replace(run, motion=replace(run.motion, time_s=time_s)))
+    assert errors is not None
+    assert "sample 7 is stamped" in errors.incomplete
+    assert "714 of 721" in errors.incomplete
+
+
+@pytest.mark.parametrize(("steps", "every"), [(720, 1), (720, 7), (9000, 4)])
+def test_a_whole_log_is_complete_however_thinly_it_is_logged(
+    fourbar: Scene, fake_engine: ModuleType, steps: int, every: int
+) -> None:
+    state = solve(fourbar, np.array([0.3])).state()
+    engine = fake_engine.FakeEngine(exact=solve)
+    run = run_scene(fourbar, state, engine, dt_s=1e-3, steps=steps, every=every)
+    assert incomplete(run) == ""
 
 
 def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from models.scene import Scene
-from reports.convergence import convergence
+from reports.convergence import Convergence, convergence
 from reports.errors import Error, Errors, largest
 from reports.rules import RULES, judge
 from reports.rules.base import Evidence
@@ -51,11 +51,17 @@ ROWS = (
     row("velocity", "differenced"),
     row("acceleration", "differenced"),
 )
+START = (
+    replace(row("velocity"), kind="start"),
+    replace(row("velocity", "differenced"), kind="start"),
+    replace(row("acceleration"), kind="start"),
+    replace(row("acceleration", "differenced"), kind="start"),
+)
 HEALTHY = Evidence(
     status="ok",
     reason="",
     stopped_at_s=1.0,
-    errors=Errors(ROWS, (), (), 1.0, 0.8, 0.01),
+    errors=Errors((*ROWS, *START), (), (), 1.0, 0.8, 0.01),
     limits=LIMITS,
     convergence=convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad"),
 )
@@ -67,7 +73,7 @@ def with_row(new: Error) -> Evidence:
     rows = tuple(
         new if (old.quantity, old.source) == (new.quantity, new.source) else old for old in ROWS
     )
-    return replace(HEALTHY, errors=replace(HEALTHY.errors, rows=rows))
+    return replace(HEALTHY, errors=replace(HEALTHY.errors, rows=(*rows, *START)))
 
 
 def test_a_healthy_run_passes_every_rule() -> None:
@@ -151,6 +157,69 @@ def test_an_error_that_does_not_shrink_is_advice_that_names_the_floor() -> None:
     found = {f.rule: f for f in judge(replace(HEALTHY, convergence=flat))}
     assert found["CC110"].level == "advice"
     assert "does not shrink: floor 7.5e-04 rad" in found["CC110"].text
+
+
+@pytest.mark.parametrize("gated", [True, False])
+@pytest.mark.parametrize(
+    "seen",
+    [
+        convergence((4e-3, 2e-3, 1e-3), (1e-6, 2e-6, 4e-6), "rad"),
+        convergence((4e-3, 2e-3, 1e-3), (1e-6, math.nan, 1e-7), "rad"),
+        convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad", faults=["it diverged"]),
+        convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad", over=["angle too large"]),
+    ],
+    ids=["grows", "no number", "finer run ended badly", "over the finer limit"],
+)
+def test_finer_steps_that_do_worse_fail_where_the_cell_is_gated(
+    seen: Convergence, gated: bool
+) -> None:
+    found = {f.rule: f for f in judge(replace(HEALTHY, convergence=seen, gated=gated))}
+    assert found["CC110"].level == ("fail" if gated else "advice")
+    assert all(fault in found["CC110"].text for fault in (*seen.faults, *seen.over))
+
+
+def test_a_log_that_is_not_whole_fails_a_run_that_claims_to_be_well() -> None:
+    assert HEALTHY.errors is not None
+    errors = replace(HEALTHY.errors, incomplete="50 samples, not the 721")
+    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    assert (found["CC115"].level, found["CC115"].text) == ("fail", "50 samples, not the 721")
+    assert "CC115" not in {
+        f.rule for f in judge(replace(HEALTHY, errors=errors, status="diverged"))
+    }
+
+
+def test_a_run_that_is_well_and_logged_nothing_fails() -> None:
+    found = {f.rule: f.level for f in judge(Evidence("ok", "", 1.0, None, {}))}
+    assert found["CC115"] == "fail"
+
+
+def test_what_is_missing_from_the_log_is_named() -> None:
+    assert HEALTHY.errors is not None
+    errors = replace(HEALTHY.errors, missing=("link rocker", "gap of C"))
+    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    assert found["CC109"].level == "fail"
+    assert "link rocker, gap of C" in found["CC109"].text
+
+
+@pytest.mark.parametrize("index", range(len(START)))
+@pytest.mark.parametrize("size", [0.1, math.nan])
+def test_rates_of_the_first_samples_have_a_limit_of_their_own(index: int, size: float) -> None:
+    assert HEALTHY.errors is not None
+    size *= 20.0 if START[index].tolerance == "acceleration-differenced" else 1.0
+    wild = [replace(row, maximum=size) if row is START[index] else row for row in START]
+    errors = replace(HEALTHY.errors, rows=(*ROWS, *wild))
+    found = {f.rule: f for f in judge(replace(HEALTHY, errors=errors))}
+    assert found["CC116"].level == "fail"
+    assert START[index].tolerance in found["CC116"].text
+    assert {f.rule for f in found.values() if f.level == "fail"} <= {"CC116", "CC109"}
+
+
+def test_the_start_may_be_off_by_half_a_steps_acceleration() -> None:
+    assert HEALTHY.errors is not None
+    half_a_step = HEALTHY.errors.step_rad / 2
+    late = [replace(START[0], maximum=half_a_step), replace(START[3], maximum=0.5)]
+    errors = replace(HEALTHY.errors, rows=(*ROWS, *late))
+    assert {f.level for f in judge(replace(HEALTHY, errors=errors))} == {"pass"}
 
 
 def test_convergence_is_not_judged_where_it_was_not_asked_for() -> None:

@@ -1,4 +1,4 @@
-"""Error series: unwrapping, size, differencing."""
+"""Error series: whole turns, size, differencing."""
 
 from __future__ import annotations
 
@@ -23,10 +23,18 @@ def test_a_whole_turn_gained_slowly_on_the_way_is_an_error() -> None:
     assert size(angle_error(engine, reference)).final == pytest.approx(math.tau)
 
 
-def test_a_wrapped_angle_is_followed_past_the_seam() -> None:
+def test_a_wrapped_angle_is_an_error_of_whole_turns() -> None:
     reference = np.linspace(0.0, 20.0, 500)
     wrapped = np.remainder(reference + 1e-5 + math.pi, math.tau) - math.pi
-    assert size(angle_error(wrapped, reference)).maximum == pytest.approx(1e-5, rel=1e-6)
+    assert size(angle_error(wrapped, reference)).maximum == pytest.approx(3 * math.tau, rel=1e-5)
+
+
+@pytest.mark.parametrize("at", [0, 7, 19])
+def test_a_whole_turn_at_one_sample_alone_is_an_error(at: int) -> None:
+    reference = np.linspace(0.0, 1.0, 20)
+    engine = reference.copy()
+    engine[at] += math.tau
+    assert size(angle_error(engine, reference)).maximum == pytest.approx(math.tau)
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
