@@ -78,7 +78,9 @@ def travel(scene: Scene, output: str) -> Travel:
         same = np.sign(_rate(scene, output, middle)) == sign
         low = np.where(same, middle, low)
         high = np.where(same, high, middle)
-    places = _place(scene, output, np.concatenate([grid, low]))[-2:]
+    # Angles are continuous along the turn: a swing of more than half a turn is one, too.
+    order = np.argsort(np.concatenate([grid, low]))
+    places = _place(scene, output, np.concatenate([grid, low])[order])[np.argsort(order)[-2:]]
     first = 0 if places[0] < places[1] else 1
     at = low % math.tau
     return Travel(

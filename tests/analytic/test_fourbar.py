@@ -164,6 +164,20 @@ def test_limit_positions_are_where_the_output_rests() -> None:
         assert np.ptp(swept) <= found.stroke + 1e-12
 
 
+def test_swing_of_more_than_half_a_turn_is_counted_in_full() -> None:
+    scene = load_scene("sixbar-watt")
+    spans = {"rod": ("E", 0.2017), "lever": ("G", 0.2174)}
+    links = dict(scene.links)
+    for name, (start, length) in spans.items():
+        links[name] = replace(links[name], points={start: (0.0, 0.0), "F": (length, 0.0)})
+    ground = {**scene.ground, "G": (0.3195, 0.1468)}
+    scene = replace(scene, ground=ground, links=links, branch={"C": 1, "F": -1})
+    dense = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 40_001), bound=False)
+    swing = float(np.ptp(dense.links["lever"].theta))
+    assert swing > math.pi
+    assert travel(scene, "lever").stroke == pytest.approx(swing, abs=1e-6)
+
+
 def test_output_without_limits_is_refused() -> None:
     with pytest.raises(CrankcheckError, match="lever never turns back"):
         travel(load_scene("whitworth"), "lever")
