@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
+from models.errors import EngineError, ReachError
 from models.files import load_scene
 from models.scene import Scene
+from reports import cell as cells
 from reports import pool
 from reports.cell import Cell, check, unfinished
+from sim.engine import Run
+from sim.run import run
 
 STEPS = 360
 
@@ -80,6 +86,74 @@ def test_a_cell_that_has_no_run_is_a_row_with_a_reason(fourbar: Scene) -> None:
     found = unfinished(cell(fourbar), "crashed", "the engine ended its process")
     assert found.verdict == "out"
     assert "the engine ended its process" in found.failures[0].text
+
+
+def test_what_can_not_be_compared_is_a_row_with_a_reason(
+    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_reference(*_: object) -> None:
+        raise ReachError("the driver is out of reach")
+
+    monkeypatch.setattr(cells, "compare", no_reference)
+    found = check(cell(fourbar))
+    assert (found.verdict, found.status) == ("out", "crashed")
+    assert "the driver is out of reach" in found.failures[0].text
+
+
+def finer_run(change: Callable[[Run], Run]) -> Callable[..., Run]:
+    """As `run`, except that what comes of half the step is changed."""
+
+    def changed(*args: Any, **options: Any) -> Run:
+        done = run(*args, **options)
+        return change(done) if options["every"] == 2 else done
+
+    return changed
+
+
+def fails(_: Run) -> Run:
+    raise EngineError("no finer step")
+
+
+def cut(done: Run) -> Run:
+    assert done.motion is not None
+    return replace(done, motion=replace(done.motion, time_s=done.motion.time_s[:50]))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (fails, "no finer step"),
+        (lambda done: replace(done, status="diverged", reason="apart"), "diverged at t = "),
+        (lambda done: replace(done, motion=None), "nothing was logged"),
+        (lambda done: replace(done, gaps={}), "gap of A nan"),
+        (cut, "50 samples, not the 361"),
+    ],
+    ids=["raises", "diverged", "logged nothing", "without gaps", "short"],
+)
+def test_a_finer_run_that_does_not_end_well_fails_the_cell(
+    fourbar: Scene,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[Run], Run],
+    words: str,
+) -> None:
+    monkeypatch.setattr(cells, "run", finer_run(change))
+    found = check(cell(fourbar))
+    assert [f.rule for f in found.failures] == ["CC110"]
+    assert words in found.failures[0].text
+    shown = check(replace(cell(fourbar), gated=False))
+    assert "CC110" in {f.rule for f in shown.advice}
+
+
+def test_an_error_that_stays_is_over_the_limit_of_a_finer_step(fourbar: Scene) -> None:
+    seen = check(cell(fourbar)).convergence
+    assert seen is not None
+    level_s = fourbar.driver.law.period_s / 1440
+    floored = check(replace(cell(fourbar, profile="as-shipped"), dt_s=level_s))
+    assert floored.convergence is not None
+    assert seen.over == ()
+    assert "angle of " in floored.convergence.over[-1]
+    assert "CC110" in {f.rule for f in floored.failures}
+    assert "floor" in floored.convergence.words
 
 
 def test_a_pool_gives_the_same_errors_as_one_process_in_the_same_order(fourbar: Scene) -> None:
