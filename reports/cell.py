@@ -15,7 +15,7 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare import compare, places
 from reports.convergence import AT_ROUNDING, Convergence, convergence
-from reports.errors import Error, Errors, Quantity, largest
+from reports.errors import Departure, Error, Errors, Quantity, largest
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
 from reports.stamps import incomplete
@@ -103,16 +103,17 @@ def check(cell: Cell) -> Checked:
         errors = compare(cell.scene, done)
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"the run has no reference to compare with: {error}")
+    status, reason = done.status, done.reason
+    if status == "ok" and errors and errors.departure:
+        status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = _convergence(cell, state, errors) if cell.converge and errors else None
-    evidence = Evidence(
-        done.status, done.reason, done.stopped_at_s, errors, in_force, seen, cell.gated
-    )
+    evidence = Evidence(status, reason, done.stopped_at_s, errors, in_force, seen, cell.gated)
     return Checked(
         cell=cell,
         version=done.version,
-        status=done.status,
-        reason=done.reason,
+        status=status,
+        reason=reason,
         stopped_at_s=done.stopped_at_s,
         settings=dict(done.settings),
         errors=errors,
@@ -120,6 +121,14 @@ def check(cell: Cell) -> Checked:
         convergence=seen,
         findings=judge(evidence),
         warnings=done.warnings,
+    )
+
+
+def _left(departure: Departure) -> str:
+    """A departure in words."""
+    return (
+        f"{departure.link} left its branch at driver {math.degrees(departure.driver_rad):.1f} deg, "
+        f"t = {departure.time_s:.4g} s, and moves on in the other assembly of the closed loop"
     )
 
 

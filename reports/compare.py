@@ -20,10 +20,11 @@ from models.errors import ReachError
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
-from reports.errors import Error, Errors, Kind, Source
+from reports.branch import departure
+from reports.errors import Error, Errors, Kind, Quantity, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
 from reports.stamps import incomplete
-from reports.tracks import QUANTITIES, Track, fitting, lacking, tracks
+from reports.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
 from sim.engine import Run
 
 SETTLING = 40
@@ -80,6 +81,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=(*lacking(motion, reference), *_without_gap(scene, run)),
         incomplete=incomplete(run),
+        uncertain=_uncertain(scene, motion, reference),
+        departure=departure(scene, run, placed, at.driver_rad),
     )
 
 
@@ -228,12 +231,23 @@ def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[E
             yield from _rate_rows(differenced, inner, "differenced")
 
 
+def _uncertain(
+    scene: Scene, motion: Motion, reference: Motion
+) -> dict[tuple[Quantity, str], float]:
+    """The largest bound of the reference per quantity and body, as a pure number."""
+    return {
+        (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale
+        for order in ORDERS
+        for track in tracks(scene, motion, reference, order)
+    }
+
+
 def _curvature(scene: Scene, reference: Motion) -> float:
-    """The largest pure acceleration of the reference, at least 1."""
-    speed = scene.driver.law.peak_speed_rad_s
-    turning = [float(np.max(np.abs(link.alpha))) for link in reference.links.values()]
+    """The largest pure acceleration of the reference, at least 1, where it is a number."""
+    square = scene.driver.law.peak_speed_rad_s**2
+    turning = [link.alpha / square for link in reference.links.values()]
     moving = [
-        float(np.max(length(point.acceleration))) / scene.longest_m
-        for point in reference.points.values()
+        point.acceleration / (scene.longest_m * square) for point in reference.points.values()
     ]
-    return max([1.0, *(size / speed**2 for size in turning + moving)])
+    sizes = np.concatenate([length(series) for series in turning + moving])
+    return float(np.max(sizes, where=np.isfinite(sizes), initial=1.0))

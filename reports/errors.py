@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
@@ -59,6 +59,15 @@ class Error:
 
 
 @dataclass(frozen=True)
+class Departure:
+    """Where a run went over to the other assembly: link, time [s] and commanded driver angle."""
+
+    link: str
+    time_s: float
+    driver_rad: float
+
+
+@dataclass(frozen=True)
 class Errors:
     """All errors of one run.
 
@@ -66,7 +75,9 @@ class Errors:
     ``conditioning`` its smallest sine of a transmission angle: both say how hard the scene is.
     ``step_rad`` is the driver's peak speed times the time between two steps. ``missing`` names
     what the scene has and the log has not; ``incomplete`` says what the time stamps lack of those
-    that were commanded, and is empty where they are whole.
+    that were commanded, and is empty where they are whole. ``uncertain`` is what the reference
+    may be wrong by, per quantity and body over the whole run, as a pure number: the same for every
+    engine, whatever it reports. ``departure`` is None where the run stayed on its branch.
     """
 
     rows: tuple[Error, ...]
@@ -77,6 +88,8 @@ class Errors:
     step_rad: float
     missing: tuple[str, ...] = ()
     incomplete: str = ""
+    uncertain: Mapping[tuple[Quantity, str], float] = field(default_factory=dict)
+    departure: Departure | None = None
 
     def worst(
         self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"

@@ -3,13 +3,16 @@
 A default is a budget that follows from the step and from the scene, as the theory of the error
 says::
 
-    coefficient * step^order * curvature^power / conditioning
-        + share * curvature * step^s  +  floor  +  rounding / step^k
+    min(cap, coefficient * step^order * curvature^power / conditioning
+             + share * curvature * step^s)  +  floor  +  rounding / step^k
 
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration
 of the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity
 (s = 1), at every step; k is how often the quantity was differenced.
+
+``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
+budget grows without end, and an engine on the other branch must not pass.
 
 The coefficients are measured, at 90 to 1440 steps a turn on every shipped scene, and leave the
 worst engine of profile tuned a factor of two. A number given by the scene or on the command line
@@ -38,6 +41,7 @@ class Tolerance:
     """A default limit (see the module), and why it is what it is."""
 
     reason: str
+    cap: float = math.inf
     coefficient: float = 0.0
     order: int = 2
     power: float = 0.0
@@ -54,12 +58,14 @@ class Tolerance:
         if self.conditioned:
             budget /= max(errors.conditioning, 1e-12)
         budget += self.share * curvature * step**self.share_order
+        budget = min(float(budget), self.cap)
         return float(budget + self.floor + ROUNDING / step**self.differenced)
 
 
 PLACE = Tolerance(
     "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
     "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle.",
+    cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
     coefficient=1.0,
     power=1.0,
     conditioned=True,
@@ -67,6 +73,7 @@ PLACE = Tolerance(
 VELOCITY = Tolerance(
     "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
     "with the share of an acceleration that soft constraints keep open, over a step.",
+    cap=5e-2,  # a twentieth of the driver's speed; twice the worst at 90 steps a turn
     coefficient=3.0,
     power=1.5,
     conditioned=True,
@@ -76,6 +83,7 @@ VELOCITY = Tolerance(
 ACCELERATION = Tolerance(
     "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
     "engines with soft constraints keep a share of it open at every step.",
+    cap=0.5,  # twice the worst at 90 steps a turn, where second differences are coarse
     coefficient=10.0,
     power=2.0,
     conditioned=True,

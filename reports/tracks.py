@@ -14,6 +14,7 @@ from reports.errors import BodyKind, Quantity
 from reports.series import Array, angle_error
 
 Order = Literal[0, 1, 2]
+ORDERS: tuple[Order, ...] = (0, 1, 2)
 Part = TypeVar("Part")
 QUANTITIES: dict[BodyKind, tuple[Quantity, Quantity, Quantity]] = {
     "link": ("angle", "velocity", "acceleration"),

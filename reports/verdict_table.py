@@ -108,7 +108,8 @@ def _cells(one: Checked) -> list[Text | str]:
     ]
     seen = one.convergence.words.replace(": ", "\n") if one.convergence else ""
     if one.status != "ok":
-        seen = f"{one.status} at t = {one.stopped_at_s:.3g} s"
+        early = one.status != "branch-changed"  # such a run goes on to its end
+        seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
     return [*head, *(_number(error) for error in numbers), _share(one.findings), seen]
 
 

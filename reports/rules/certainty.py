@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
+from reports.errors import Errors
 from reports.rules.base import Evidence, Finding
 
 SHARE = 0.1
@@ -23,17 +25,24 @@ class ReferenceCertain:
         if evidence.errors is None:
             return None
         worst, name, limit = 0.0, "", 0.0
-        for row in evidence.errors.rows:
-            if row.kind != "total":
-                continue  # shown, held to no limit
-            key = row.tolerance
-            share = row.pure_bound / evidence.limits[key].number
+        for key, body, bound in _bounds(evidence.errors):
+            share = bound / evidence.limits[key].number
             share = math.inf if math.isnan(share) else share
             if share > worst:
-                worst, name, limit = share, f"{key} of {row.body}", evidence.limits[key].number
+                worst, name, limit = share, f"{key} of {body}", evidence.limits[key].number
         if worst <= SHARE:
             return Finding(
                 self.id, "pass", f"reference within {worst:.1e} of the limits", worst, SHARE
             )
         text = f"reference not certain: {name} is known to {worst * limit:.2g}, limit {limit:.2g}"
         return Finding(self.id, "fail", text, worst, SHARE)
+
+
+def _bounds(errors: Errors) -> Iterator[tuple[str, str, float]]:
+    """Tolerance, body and pure bound: of the reference at every sample, whatever the engine
+    reports, and of what the errors were worked out from."""
+    for (quantity, body), bound in errors.uncertain.items():
+        yield quantity, body, bound
+    for row in errors.rows:
+        if row.kind == "total":  # the others are shown, or held to limits of their own
+            yield row.tolerance, row.body, row.pure_bound

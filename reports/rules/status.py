@@ -18,5 +18,6 @@ class StatusOk:
         if evidence.status == "ok":
             return Finding(self.id, "pass", "the run came to its end")
         reason = f": {evidence.reason}" if evidence.reason else ""
-        at = f" at t = {evidence.stopped_at_s:.4g} s" if evidence.stopped_at_s > 0.0 else ""
+        early = evidence.stopped_at_s > 0.0 and evidence.status != "branch-changed"
+        at = f" at t = {evidence.stopped_at_s:.4g} s" if early else ""
         return Finding(self.id, "fail", f"{evidence.status}{at}{reason}")

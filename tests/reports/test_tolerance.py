@@ -32,6 +32,16 @@ def test_a_badly_conditioned_scene_gets_wider_angles_and_no_wider_gap(fourbar: S
     assert near["gap"].number == far["gap"].number
 
 
+def test_near_a_singular_position_no_default_grows_beyond_what_is_plainly_wrong(
+    fourbar: Scene,
+) -> None:
+    found = limits(fourbar, replace(ERRORS, conditioning=1e-9, curvature=1e9), {})
+    assert found["angle"].number == found["position"].number == pytest.approx(2e-2)
+    assert found["velocity"].number == pytest.approx(5e-2)
+    assert found["acceleration-differenced"].number == pytest.approx(0.5, rel=1e-3)
+    assert all(limit.number < 1.0 for limit in found.values())
+
+
 def test_no_default_falls_below_what_rounding_does(fourbar: Scene) -> None:
     tiny = limits(fourbar, replace(ERRORS, step_rad=1e-7), {})
     assert tiny["velocity"].number >= 1e-3 * 1e-7  # the share of an acceleration, over a step
