@@ -38,7 +38,8 @@ def motion_frame(motion: Motion) -> pd.DataFrame:
 
 
 def cleaned(motion: Motion) -> Motion:
-    """The motion with numbers that are 0 within their own bound as 0, to be read by people."""
+    """The motion to be read by people: numbers that are 0 within their own bound are 0, and those
+    without a bound, of which nothing is known, NaN."""
     if motion.bound is None:
         return motion
     links, points, sliders = motion.bound.links, motion.bound.points, motion.bound.sliders
@@ -55,5 +56,6 @@ def _cleaned(body: Body, bound: Body) -> Body:
     fields = {}
     for name, values in vars(body).items():
         limit = vars(bound)[name]
-        fields[name] = np.where(np.abs(values.T) <= limit, 0.0, values.T).T
+        shown = np.where(np.abs(values.T) <= limit, 0.0, values.T)
+        fields[name] = np.where(np.isfinite(limit), shown, np.nan).T
     return type(body)(**fields)

@@ -16,8 +16,8 @@ Columns = list[tuple[str, Array]]
 
 
 def digits(value: float) -> str:
-    """Eight significant digits, zeros at the end included."""
-    return f"{value + 0.0:#.8g}"
+    """Eight significant digits, zeros at the end included; a dash for what is not determined."""
+    return "-" if math.isnan(value) else f"{value + 0.0:#.8g}"
 
 
 def position_tables(motion: Motion) -> list[Table]:
@@ -82,7 +82,8 @@ def motion_tables(scene: Scene, motion: Motion) -> list[Table]:
         for title, _ in columns:
             table.add_column(title, justify="right", no_wrap=True)
         for index in range(motion.time_s.size):
-            table.add_row(*(f"{series[index]:.7g}" for _, series in columns))
+            numbers = (float(series[index]) for _, series in columns)
+            table.add_row(*("-" if math.isnan(x) else f"{x:.7g}" for x in numbers))
         tables.append(table)
     return tables
 

@@ -23,6 +23,7 @@ from reports.mechanism import facts
 from reports.motion_frame import cleaned, motion_frame
 from reports.motion_tables import certainty, motion_tables, position_tables
 from reports.provenance import crankcheck_version
+from reports.singular import singular_note
 from reports.writing import check_file, write
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
@@ -70,6 +71,8 @@ def run_solve(request: Request, console: Console) -> None:
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )
+    if note := singular_note(scene, motion):
+        console.print(note, style="yellow", highlight=False, markup=False)
 
 
 def heading(scene: Scene, structure: Structure) -> str:

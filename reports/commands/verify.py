@@ -22,6 +22,7 @@ from reports.frames import cell_frame, cell_row, error_frame
 from reports.junit import junit
 from reports.pool import check_all
 from reports.provenance import provenance
+from reports.singular import refuse_singular
 from reports.tolerance import parse
 from reports.verdict_table import show
 from reports.writing import check_file, check_folder, write
@@ -91,20 +92,24 @@ def plan(request: Request) -> list[Cell]:
     scenes = chosen_scenes(request.scenes)
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
+    steps = {scene.name: _step(request, scene) for scene in scenes}
+    for scene in scenes:
+        dt_s, count = steps[scene.name]
+        refuse_singular(scene, dt_s * count)
     return [
         Cell(
             scene=scene,
             engine=name,
             profile=profile,
             dt_s=dt_s,
-            steps=steps,
+            steps=count,
             gated=gated,
             drive=cast(Drive, request.drive),
             tolerance=tolerance,
             converge=request.converge,
         )
         for scene in scenes
-        for dt_s, steps in [_step(request, scene)]
+        for dt_s, count in [steps[scene.name]]
         for profile, gated in profiles
         for name in engines
     ]
