@@ -2,58 +2,85 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
 from models.errors import CrankcheckError
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from reports.stopping import Stopped, install
+from reports.terminal import UNWRITABLE, give_up_output, readable_everywhere, terminal
 
 app = typer.Typer(
     name="crankcheck",
     help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
-    epilog="Exit codes: 0 all within tolerance, 1 out of tolerance, 2 bad input or usage.",
+    epilog="Exit codes: 0 all within tolerance, 1 out of tolerance, 2 bad input or usage, 70 a "
+    "fault of crankcheck itself, 130 interrupted, 141 nobody reads the output, 143 terminated.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-TABLE_WIDTH = 100
-INTERRUPTED = 130
+BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
+TRACEBACK = "CRANKCHECK_TRACEBACK"
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
 
 
 def main() -> None:
     """The entry of the command `crankcheck`."""
-    app()
+    with guarded():
+        install()
+        if sys.stdout is None:
+            raise CrankcheckError("standard output is closed; send it to a file, or to /dev/null")
+        readable_everywhere()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
 
 
 @contextmanager
 def guarded() -> Iterator[None]:
-    """A user's mistake ends with its message and exit code 2, Ctrl-C with one line and 130."""
+    """Every end but a verdict: one line, and an exit code that tells whose fault it is."""
     try:
         yield
     except CrankcheckError as error:
-        typer.echo(f"crankcheck: {error}", err=True)
-        raise typer.Exit(2) from None
+        _end(BAD_INPUT, str(error))
+    except Stopped as stopped:
+        _end(stopped.code, stopped.word)
     except KeyboardInterrupt:
-        typer.echo("crankcheck: interrupted, nothing written", err=True)
-        raise typer.Exit(INTERRUPTED) from None
+        _end(INTERRUPTED, "interrupted")
+    except BrokenPipeError:
+        give_up_output()
+        raise SystemExit(BROKEN_PIPE) from None
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in UNWRITABLE and error.filename is None:
+            give_up_output()
+            _end(
+                BAD_INPUT, f"standard output can not be written: {error.strerror}; free some space"
+            )
+        if os.environ.get(TRACEBACK):
+            traceback.print_exc()
+        first = str(error).partition("\n")[0][:300]
+        _end(
+            INTERNAL,
+            f"internal error: {type(error).__name__}: {first}; please report it; "
+            f"--traceback or {TRACEBACK}=1 shows where it is",
+        )
 
 
-def _console(stderr: bool = False) -> Console:
-    """The terminal as wide as it is; a file or a pipe as wide as the tables need."""
-    from rich.console import Console
-
-    stream = sys.stderr if stderr else sys.stdout
-    return Console(stderr=stderr, width=None if stream.isatty() else TABLE_WIDTH)
+def _end(code: int, text: str) -> NoReturn:
+    """The last line, where it can be written, and the exit code."""
+    with contextlib.suppress(OSError):
+        typer.echo(f"crankcheck: {text}", err=True)
+    raise SystemExit(code) from None
 
 
 def _version(wanted: bool) -> None:
@@ -69,8 +96,13 @@ def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
     ] = False,
+    show_traceback: Annotated[
+        bool, typer.Option("--traceback", help="Show where an internal error is.")
+    ] = False,
 ) -> None:
     """Options of the command itself."""
+    if show_traceback:
+        os.environ[TRACEBACK] = "1"
 
 
 @app.command()
@@ -125,7 +157,7 @@ def verify(
             json=json,
             folder=output,
         )
-        code = command.verify(request, _console(), _console(stderr=True))
+        code = command.verify(request, terminal(), terminal(stderr=True))
     raise typer.Exit(code)
 
 
@@ -150,7 +182,7 @@ def solve(
         from reports.commands import solve as command
 
         request = command.Request(scene, at_deg, turns, steps_per_turn, output)
-        command.run_solve(request, _console())
+        command.run_solve(request, terminal())
 
 
 @app.command()
@@ -164,7 +196,7 @@ def export(
     with guarded():
         from reports.commands import listing
 
-        listing.export(scene, output, _console())
+        listing.export(scene, output, terminal())
 
 
 @app.command()
@@ -173,7 +205,7 @@ def scenes() -> None:
     with guarded():
         from reports.commands import listing
 
-        listing.scenes(_console())
+        listing.scenes(terminal())
 
 
 @app.command()
@@ -186,7 +218,7 @@ def engines(
     with guarded():
         from reports.commands import listing
 
-        listing.engines(_console(), settings)
+        listing.engines(terminal(), settings)
 
 
 @app.command()
@@ -201,7 +233,7 @@ def view(
     with guarded():
         from reports.commands import view as command
 
-        command.run_view(scene, output, _console())
+        command.run_view(scene, output, terminal())
 
 
 if __name__ == "__main__":

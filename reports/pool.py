@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 
 from reports.cell import Cell, Checked, check, unfinished
+from reports.stopping import Stopped, held_back, leave_to_parent
 
 FEW = 4
 """Up to so many cells are done in this process: a second one takes longer to start."""
@@ -45,12 +45,7 @@ def _processors() -> int:
 def _pool(jobs: int) -> ProcessPoolExecutor:
     # "spawn" on every system: a fork of a process with threads may hang.
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_leave_interrupts)
-
-
-def _leave_interrupts() -> None:
-    """Ctrl-C is the parent's to handle."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    return ProcessPoolExecutor(jobs, mp_context=context, initializer=leave_to_parent)
 
 
 def _parallel(
@@ -59,14 +54,19 @@ def _parallel(
     """What the pool finished, by index; less than all where a process died."""
     found: dict[int, Checked] = {}
     pool = _pool(min(jobs, len(cells)))
+    wait = True
     try:
-        waiting = {pool.submit(check, cell): index for index, cell in enumerate(cells)}
+        with held_back():  # submitting starts the workers
+            waiting = {pool.submit(check, cell): index for index, cell in enumerate(cells)}
         for future in as_completed(waiting):
             found[waiting[future]] = _tell(future.result(), done)
     except BrokenProcessPool:
         pass  # the caller does the rest one by one
+    except Stopped:
+        wait = False  # the workers are dead, and may have left a lock behind
+        raise
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown(wait=wait, cancel_futures=True)
     return found
 
 
@@ -74,7 +74,9 @@ def _alone(cell: Cell) -> Checked:
     """One cell in a process of its own."""
     with _pool(1) as pool:
         try:
-            return pool.submit(check, cell).result()
+            with held_back():
+                future = pool.submit(check, cell)
+            return future.result()
         except BrokenProcessPool:
             return unfinished(cell, "crashed", "the engine ended its process")
 

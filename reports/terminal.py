@@ -1,0 +1,43 @@
+"""Where output goes: a terminal as wide as it is, or a file or pipe that may be full or closed."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import sys
+
+from rich.console import Console
+
+TABLE_WIDTH = 100
+UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
+
+
+class Terminal(Console):
+    """A console that leaves a broken pipe to the command."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise BrokenPipeError, where rich would exit with 1: out of tolerance."""
+        raise BrokenPipeError(errno.EPIPE, "the reader of the output is gone")
+
+
+def terminal(stderr: bool = False) -> Terminal:
+    """The terminal as wide as it is; a file or a pipe as wide as the tables need."""
+    stream = sys.stderr if stderr else sys.stdout
+    wide = stream is not None and stream.isatty()
+    return Terminal(stderr=stderr, width=None if wide else TABLE_WIDTH)
+
+
+def readable_everywhere() -> None:
+    """Write what the encoding of the output can not hold (ASCII) as an escape."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None and hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def give_up_output() -> None:
+    """Send the rest of the output nowhere: what is still buffered could not be written either."""
+    with contextlib.suppress(OSError, ValueError):  # not a real file, in a test
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
