@@ -24,6 +24,7 @@ from sim.engine import Drive, Run, SettingValue
 from sim.run import run
 
 PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
+CLOSED: tuple[Quantity, ...] = (*PLACES, "gap")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding."""
@@ -194,14 +195,20 @@ def _finer(cell: Cell, state: State, parts: int) -> tuple[list[Error], str]:
 
 
 def _over(cell: Cell, errors: Errors, parts: int, rows: list[Error], rounding: float) -> str:
-    """Which errors of a finer run are over the limits of its step, the worst of each quantity."""
+    """Which errors of a finer run are over the limits of its step, the worst of each quantity.
+
+    What is over its limit at the full step fails its own rule, and is not told again.
+    """
+    before = limits(cell.scene, errors, cell.tolerance)
     in_force = limits(cell.scene, replace(errors, step_rad=errors.step_rad / parts), cell.tolerance)
-    worst = [largest(row for row in rows if row.quantity == name) for name in (*PLACES, "gap")]
-    texts = [
-        f"{row.quantity} of {row.body} {row.pure:.2g}, limit {in_force[row.tolerance].number:.2g}"
-        for row in worst
-        if row and not row.pure <= max(in_force[row.tolerance].number, rounding)
-    ]
+    texts = []
+    for name in CLOSED:
+        full, fine = errors.worst(name), largest(row for row in rows if row.quantity == name)
+        if full is None or fine is None or not full.pure <= before[name].number:
+            continue
+        limit = in_force[name].number
+        if not fine.pure <= max(limit, rounding):
+            texts.append(f"{name} of {fine.body} {fine.pure:.2g}, limit {limit:.2g}")
     return f"at dt {cell.dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
 
 

@@ -222,6 +222,14 @@ def test_the_start_may_be_off_by_half_a_steps_acceleration() -> None:
     assert {f.level for f in judge(replace(HEALTHY, errors=errors))} == {"pass"}
 
 
+def test_no_singular_position_excuses_a_start_without_end() -> None:
+    assert HEALTHY.errors is not None
+    late = [replace(START[0], maximum=0.06)]
+    errors = replace(HEALTHY.errors, rows=(*ROWS, *late), conditioning=1e-9)
+    found = {f.rule: f.level for f in judge(replace(HEALTHY, errors=errors))}
+    assert found["CC116"] == "fail"
+
+
 def test_convergence_is_not_judged_where_it_was_not_asked_for() -> None:
     assert "CC110" not in {f.rule for f in judge(replace(HEALTHY, convergence=None))}
 
