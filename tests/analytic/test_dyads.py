@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from analytic.dyads import rrr
 from analytic.dyads.parts import OpenError, Sliding, Turning
 from analytic.plane import EPS, ZERO, PointError, PointKinematics, Vec, fixed_point
-from tests.analytic.dyad_cases import BUNCH, KINDS, Bunch, Draw, Exact, Moved
+from tests.analytic.dyad_cases import KINDS, Bunch
+from tests.analytic.dyad_inputs import BUNCH, Draw, Exact, Moved
 from tests.analytic.jets import Jet
 
 Array = NDArray[np.float64]
