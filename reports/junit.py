@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree as Xml
 
 from reports.cell import Checked
 from reports.rules import RULES
 from reports.rules.base import Finding
-
-NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML 1.0 can not hold, escaped or not."""
+from reports.writing import clean
 
 
 def junit(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
@@ -28,7 +25,7 @@ def junit(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     )
     properties = Xml.SubElement(suite, "properties")
     for name, value in facts.items():
-        Xml.SubElement(properties, "property", name=_clean(name), value=_clean(value))
+        Xml.SubElement(properties, "property", name=clean(name), value=clean(value))
     for one in checked:
         _case(suite, one)
     root = Xml.Element("testsuites")
@@ -47,29 +44,24 @@ def _case(suite: Xml.Element, one: Checked) -> None:
     case = Xml.SubElement(
         suite,
         "testcase",
-        classname=_clean(f"crankcheck.{cell.engine}.{cell.profile}"),
-        name=_clean(cell.scene.name),
+        classname=clean(f"crankcheck.{cell.engine}.{cell.profile}"),
+        name=clean(cell.scene.name),
     )
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"
     if not cell.gated:
-        Xml.SubElement(case, "skipped", message=_clean(f"shown, not gated: {head}"))
+        Xml.SubElement(case, "skipped", message=clean(f"shown, not gated: {head}"))
     elif one.verdict == "unsupported":
-        Xml.SubElement(case, "error", message=_clean(head), type="unsupported").text = _clean(text)
+        Xml.SubElement(case, "error", message=clean(head), type="unsupported").text = clean(text)
     elif one.failures:
         rule = one.failures[0].rule
-        Xml.SubElement(case, "failure", message=_clean(head), type=rule).text = _clean(text)
+        Xml.SubElement(case, "failure", message=clean(head), type=rule).text = clean(text)
     notes = [_line(finding) for finding in one.advice]
     if notes:
-        Xml.SubElement(case, "system-out").text = _clean("\n".join(notes))
+        Xml.SubElement(case, "system-out").text = clean("\n".join(notes))
 
 
 def _line(finding: Finding) -> str:
     """A finding with its rule and cure."""
     rule = RULES[finding.rule]
     return f"{rule.id} {rule.title}: {finding.text}\n  cure: {rule.cure}"
-
-
-def _clean(text: str) -> str:
-    """The text with what XML can not hold replaced."""
-    return NOT_XML.sub("\ufffd", text)

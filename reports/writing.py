@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from models.errors import CrankcheckError
+
+NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML 1.0 can not hold, escaped or not."""
 
 
 def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
@@ -21,28 +26,59 @@ def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
-    if path.is_dir():
-        raise CrankcheckError(f"{option} {path}: a folder; name a file in it")
-    if path.exists():
-        if not os.access(path, os.W_OK):
-            raise CrankcheckError(f"{option} {path}: no right to write it; choose another file")
-        return
-    folder = path.parent
-    if not folder.is_dir():
-        raise CrankcheckError(f"{option} {path}: there is no folder {folder}; create it first")
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise CrankcheckError(f"{option} {path}: no right to write in {folder}; choose another")
+    with _looking_at(path, option):
+        if path.is_dir():
+            raise CrankcheckError(f"{option} {path}: a folder; name a file in it")
+        if path.exists():
+            if not os.access(path, os.W_OK):
+                raise CrankcheckError(f"{option} {path}: no right to write it; choose another file")
+            return
+        folder = path.parent
+        if not folder.is_dir():
+            raise CrankcheckError(f"{option} {path}: there is no folder {folder}; create it first")
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise CrankcheckError(f"{option} {path}: no right to write in {folder}; choose another")
 
 
-def check_folder(path: Path, option: str) -> None:
-    """Refuse a folder that could be neither written nor created. Raises CrankcheckError."""
-    nearest = path
-    while not nearest.exists() and nearest != nearest.parent:
-        nearest = nearest.parent
-    if not nearest.is_dir():
-        raise CrankcheckError(f"{option} {path}: {nearest} is a file; name a folder")
-    if not os.access(nearest, os.W_OK | os.X_OK):
-        raise CrankcheckError(f"{option} {path}: no right to write in {nearest}; choose another")
+def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
+    """Refuse a folder that could be neither written nor created, or whose ``files`` could not be
+    replaced. Raises CrankcheckError."""
+    with _looking_at(path, option):
+        nearest = path
+        while not nearest.exists() and nearest != nearest.parent:
+            nearest = nearest.parent
+        if not nearest.is_dir():
+            raise CrankcheckError(f"{option} {path}: {nearest} is a file; name a folder")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise CrankcheckError(
+                f"{option} {path}: no right to write in {nearest}; choose another"
+            )
+    for name in files if nearest == path else ():
+        check_file(path / name, option)
+
+
+def check_different(files: Iterable[tuple[str, Path]]) -> None:
+    """Refuse two outputs, as option and file, that are one file. Raises CrankcheckError."""
+    taken: dict[Path, str] = {}
+    for option, path in files:
+        with _looking_at(path, option):
+            real = path.resolve()
+            device = path.exists() and not path.is_file()  # /dev/stdout takes several
+        if real in taken and not device:
+            raise CrankcheckError(
+                f"{taken[real]} and {option}: both name {path}; give each a file of its own"
+            )
+        taken[real] = option
+
+
+@contextlib.contextmanager
+def _looking_at(path: Path, option: str) -> Iterator[None]:
+    """A path that may not even be looked at is a user's fault."""
+    try:
+        yield
+    except (OSError, RuntimeError) as error:  # RuntimeError: links that lead to each other
+        why = getattr(error, "strerror", None) or str(error)
+        raise CrankcheckError(f"{option} {path}: {why}; choose another place") from None
 
 
 def write(path: Path, content: bytes | str) -> None:
@@ -69,4 +105,11 @@ def write(path: Path, content: bytes | str) -> None:
                 aside.unlink(missing_ok=True)
     except OSError as error:
         why = error.strerror or str(error)
-        raise CrankcheckError(f"{path}: can not be written: {why}") from None
+        raise CrankcheckError(
+            f"{path}: can not be written: {why}; free some space there, or choose another place"
+        ) from None
+
+
+def clean(text: str) -> str:
+    """The text with the characters replaced that neither XML nor a workbook can hold."""
+    return NOT_XML.sub("\ufffd", text)

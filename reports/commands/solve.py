@@ -24,12 +24,14 @@ from reports.motion_frame import cleaned, motion_frame
 from reports.motion_tables import certainty, motion_tables, position_tables
 from reports.provenance import crankcheck_version
 from reports.singular import singular_note
-from reports.writing import check_file, write
+from reports.writing import check_file, clean, write
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
+ENDLESS = 10**15
+"""Steps beyond which a float does not count them."""
 SHEET_ROWS = 1_048_575
 
 
@@ -142,14 +144,17 @@ def _over(scene: Scene, request: Request) -> Motion:
         raise CrankcheckError(f"--turns {turns:g}: give a number above 0; 1 is one period")
     if steps < 1:
         raise CrankcheckError(f"--steps-per-turn {steps}: give at least 1")
-    samples = math.ceil(turns * steps * (1 - 1e-12)) + 1
     most = MOST_SAMPLES
     if request.output is not None and request.output.suffix.lower() == ".xlsx":
         most = SHEET_ROWS
-    if samples > most:
+    steps = min(steps, ENDLESS)
+    last = turns * steps * (1 - 1e-12)  # may be infinite
+    if not last <= most - 1:
         raise CrankcheckError(
-            f"--turns {turns:g} --steps-per-turn {steps}: {samples} samples; at most {most}"
+            f"--turns {turns:g} --steps-per-turn {steps}: {last + 1:.7g} samples; at most {most}: "
+            "take fewer turns, or fewer steps in a turn"
         )
+    samples = math.ceil(last) + 1
     step_s = scene.driver.law.period_s / steps
     return solve(scene, step_s * np.arange(samples, dtype=np.float64))
 
@@ -176,6 +181,7 @@ def _write(path: Path, scene: Scene, motion: Motion) -> None:
 def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str]) -> None:
     """A workbook: the motion, and where it comes from."""
     with pd.ExcelWriter(buffer, engine="openpyxl") as book:
-        frame.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
-        origin = pd.DataFrame({"what": list(facts), "value": list(facts.values())})
+        shown = frame.rename(columns=clean)
+        shown.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
+        origin = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})
         origin.to_excel(book, sheet_name="source", index=False)

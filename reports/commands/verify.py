@@ -18,6 +18,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.cell import Cell, Checked
 from reports.commands.names import chosen_engines, chosen_profiles, chosen_scenes
+from reports.compare import SETTLING
 from reports.frames import cell_frame, cell_row, error_frame
 from reports.junit import junit
 from reports.pool import check_all
@@ -25,15 +26,17 @@ from reports.provenance import provenance
 from reports.singular import refuse_singular
 from reports.tolerance import parse
 from reports.verdict_table import show
-from reports.writing import check_file, check_folder, write
+from reports.writing import check_different, check_file, check_folder, write
 from sim.engine import Drive
 from sim.registry import engine
 
-LEAST_STEPS = 8
+LEAST_STEPS_PER_TURN = 8
+LEAST_STEPS = 2 * SETTLING
+"""Measured: of the shipped scenes none fails for shortness alone in a run of so many steps."""
 MOST_STEPS = 300_000
 """All steps are logged: as many take about 1 GB with a six-bar."""
 STEPS_PER_TURN = 720.0
-TURNS = 2.0
+IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
 
 
 @dataclass(frozen=True)
@@ -70,8 +73,10 @@ def verify(request: Request, console: Console, progress: Console) -> int:
         task = bar.add_task("verifying", total=len(cells))
         checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
     facts = provenance({name: engine(name).version() for name in _engines(cells)})
-    _write(request, checked, facts)
-    show(console, checked, facts)
+    try:
+        _write(request, checked, facts)
+    finally:
+        show(console, checked, facts)  # a full disk costs the file, and not the verdict with it
     gated = [one for one in checked if one.cell.gated]
     missing = [one for one in gated if one.verdict == "unsupported"]
     for one in missing:
@@ -120,23 +125,30 @@ def _step(request: Request, scene: Scene) -> tuple[float, int]:
     period = scene.driver.law.period_s
     if request.dt_s is not None:
         _positive("--dt", request.dt_s, "seconds, such as 1e-3")
-        option, dt_s = f"--dt {request.dt_s:g}", request.dt_s
+        option, per_turn = f"--dt {request.dt_s:g}", period / request.dt_s
     else:
         per_turn = STEPS_PER_TURN if request.steps_per_turn is None else request.steps_per_turn
         _positive("--steps-per-turn", per_turn, "steps, such as 720")
-        option, dt_s = f"--steps-per-turn {per_turn:g}", period / per_turn
-    if period / dt_s < LEAST_STEPS * (1 - 1e-12):
+        option = f"--steps-per-turn {per_turn:g}"
+    if per_turn < LEAST_STEPS_PER_TURN * (1 - 1e-12):
         raise CrankcheckError(
-            f"{option}: {period / dt_s:.3g} steps in a turn of {scene.name} ({period:.4g} s); a "
-            f"turn needs at least {LEAST_STEPS}, so dt at most {period / LEAST_STEPS:.4g} s"
+            f"{option}: {per_turn:.3g} steps in a turn of {scene.name} ({period:.4g} s); a "
+            f"turn needs at least {LEAST_STEPS_PER_TURN}, so dt at most "
+            f"{period / LEAST_STEPS_PER_TURN:.4g} s"
         )
-    steps = math.ceil(request.turns * period / dt_s * (1 - 1e-12))
-    if steps > MOST_STEPS:
+    steps = request.turns * per_turn * (1 - 1e-12)  # may be infinite
+    if not steps <= MOST_STEPS:
         raise CrankcheckError(
-            f"{option} --turns {request.turns:g}: {steps} steps of {scene.name}; at most "
+            f"{option} --turns {request.turns:g}: {steps:.6g} steps of {scene.name}; at most "
             f"{MOST_STEPS} are logged; take a longer step or fewer turns"
         )
-    return dt_s, max(steps, 1)
+    if steps <= LEAST_STEPS - 1:
+        raise CrankcheckError(
+            f"{option} --turns {request.turns:g}: {math.ceil(steps)} steps of {scene.name}; an "
+            f"engine takes up its pins in the first {SETTLING}, so a run has at least "
+            f"{LEAST_STEPS}: take {LEAST_STEPS / per_turn:.3g} turns or more, or a shorter step"
+        )
+    return request.dt_s or period / per_turn, math.ceil(steps)
 
 
 def _positive(option: str, value: float, unit: str) -> None:
@@ -146,15 +158,14 @@ def _positive(option: str, value: float, unit: str) -> None:
 
 def _check_outputs(request: Request) -> None:
     """Refuse outputs that can not be written, before the run."""
-    for option, path in (
-        ("--junit", request.junit),
-        ("--csv", request.csv),
-        ("--json", request.json),
-    ):
-        if path is not None:
-            check_file(path, option)
+    named = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
+    files = [(option, path) for option, path in named.items() if path is not None]
+    for option, path in files:
+        check_file(path, option)
     if request.folder is not None:
-        check_folder(request.folder, "-o")
+        check_folder(request.folder, "-o", IN_FOLDER)
+        files += [("-o", request.folder / name) for name in IN_FOLDER]
+    check_different(files)
 
 
 def _engines(cells: Sequence[Cell]) -> list[str]:
@@ -164,18 +175,14 @@ def _engines(cells: Sequence[Cell]) -> list[str]:
 def _write(request: Request, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Every output that was asked for, each whole or not at all."""
     folder = request.folder
-    wanted = {
-        "verify.csv": request.csv,
-        "verify.json": request.json,
-        "verify.junit.xml": request.junit,
-    }
-    for name, path in wanted.items():
+    *texts, table = IN_FOLDER
+    for name, path in zip(texts, (request.csv, request.json, request.junit), strict=True):
         targets = [path] if path else []
         targets += [folder / name] if folder else []
         for target in targets:
             write(target, _content(name, checked, facts))
     if folder:
-        write(folder / "errors.parquet", _parquet(error_frame(checked)))
+        write(folder / table, _parquet(error_frame(checked)))
 
 
 def _content(name: str, checked: Sequence[Checked], facts: Mapping[str, str]) -> str:

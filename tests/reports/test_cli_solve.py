@@ -5,16 +5,19 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from PIL import Image
+from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from analytic.kinematics import solve
 from models.files import load_scene, shipped
+from models.scene import Scene
 from reports.cli import app
 
 Crank = Callable[..., Result]
@@ -105,6 +108,19 @@ def test_the_workbook_says_where_its_numbers_come_from(crank: Crank, tmp_path: P
     assert load_scene("tangent").source in origin["value"].tolist()
 
 
+def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
+    tmp_path: Path, fourbar: Scene
+) -> None:
+    from reports.commands.solve import Request, run_solve
+
+    path = tmp_path / "out.xlsx"
+    ringing = replace(fourbar, source="bell \x07")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.commands.solve.load_scene", lambda _: ringing)
+        run_solve(Request("bell", None, None, None, path), Console())
+    assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
+
+
 def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
     result = crank("solve", "tangent", "--at-deg", "0")
     (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
@@ -139,6 +155,11 @@ MISTAKES = {
     "too many samples": (
         ["solve", "tangent", "--steps-per-turn", "2000000"],
         ["2000001 samples", "at most 1000000"],
+    ),
+    "endless turns": (["solve", "tangent", "--turns", "1e300"], ["1.2e+301 samples", "fewer"]),
+    "endless steps": (
+        ["solve", "tangent", "--turns", "1e300", "--steps-per-turn", "1" + 310 * "0"],
+        ["samples; at most 1000000"],
     ),
     "unknown ending": (
         ["solve", "tangent", "-o", "out.txt"],

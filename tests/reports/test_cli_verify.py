@@ -149,6 +149,18 @@ def test_outputs_are_written_even_when_out_of_tolerance(crank: Crank, tmp_path: 
     assert "CC102" in pd.read_csv(path)["failed_rules"][0]
 
 
+def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
+    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: Path, target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    result = crank(*ONE, "--engine", "mujoco", "--csv", str(tmp_path / "cells.csv"))
+    assert "WITHIN TOLERANCE" in result.output
+    refused(result, "cells.csv: can not be written: No space left on device; free some space")
+
+
 MISTAKES = {
     "unknown scene": (["verify", "fourbar-lectur-1"], ["'fourbar-lectur-1'", "fourbar-lecture-1"]),
     "unknown engine": ([*ONE, "--engine", "mujco"], ["'mujco'", "did you mean mujoco"]),
@@ -166,6 +178,27 @@ MISTAKES = {
     ),
     "few steps": (["verify", "--steps-per-turn", "7.9"], ["--steps-per-turn 7.9", "at least 8"]),
     "tiny dt": (["verify", "fourbar-lecture-1", "--dt", "1e-9"], ["--dt 1e-09", "at most 300000"]),
+    "dt of almost nothing": (
+        ["verify", "fourbar-lecture-1", "--dt", "1e-320"],
+        ["steps of fourbar-lecture-1", "at most 300000"],
+    ),
+    "endless steps": (["verify", "--steps-per-turn", "1e308"], ["at most 300000 are logged"]),
+    "endless turns": (
+        ["verify", "fourbar-lecture-1", "--turns", "1e300"],
+        ["--turns 1e+300: 7.2e+302 steps", "fewer turns"],
+    ),
+    "short run": (
+        ["verify", "fourbar-lecture-1", "--turns", "0.1"],
+        ["--turns 0.1: 72 steps of fourbar-lecture-1", "at least 80", "take 0.111 turns or more"],
+    ),
+    "one file twice": (
+        [*ONE, "--csv", "x", "--json", "./x"],
+        ["--csv and --json: both name x", "a file of its own"],
+    ),
+    "one file by way of the folder": (
+        [*ONE, "-o", ".", "--csv", "verify.json"],
+        ["--csv and -o: both name verify.json"],
+    ),
     "dt and steps": ([*ONE, "--dt", "1e-3"], ["--dt and --steps-per-turn", "one of them"]),
     "no turns": (["verify", "fourbar-lecture-1", "--turns", "0"], ["--turns 0", "above 0"]),
     "infinite turns": (["verify", "fourbar-lecture-1", "--turns", "inf"], ["--turns inf"]),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError
-from reports.writing import check_file, check_folder, write
+from reports.writing import check_different, check_file, check_folder, write
 
 NOT_ROOT = pytest.mark.skipif(
     not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere"
@@ -86,6 +86,36 @@ def test_a_folder_below_a_file_is_refused(tmp_path: Path) -> None:
 def test_a_folder_that_has_to_be_made_is_fine_and_is_not_made_yet(tmp_path: Path) -> None:
     check_folder(tmp_path / "a" / "b", "-o")
     assert not (tmp_path / "a").exists()
+
+
+def test_a_place_that_may_not_be_looked_at_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def locked(self: Path, **_: object) -> object:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "stat", locked)
+    for check in (check_file, check_folder):
+        with pytest.raises(CrankcheckError, match=r"-o .*Permission denied; choose another place"):
+            check(tmp_path / "locked" / "out", "-o")
+
+
+def test_a_file_of_a_folder_that_may_not_be_replaced_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "cells.csv").touch()
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path).name != "cells.csv")
+    with pytest.raises(CrankcheckError, match=r"-o .*cells.csv: no right to write it"):
+        check_folder(tmp_path, "-o", ["cells.csv", "other.csv"])
+    check_folder(tmp_path, "-o", ["other.csv"])
+
+
+def test_one_file_for_two_outputs_is_refused_unless_it_is_a_device(tmp_path: Path) -> None:
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "out")
+    with pytest.raises(CrankcheckError, match="--csv and --json: both name"):
+        check_different([("--csv", tmp_path / "out"), ("--json", link)])
+    check_different([("--csv", Path("/dev/null")), ("--json", Path("/dev/null"))])
 
 
 @NOT_ROOT
