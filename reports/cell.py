@@ -109,7 +109,17 @@ def check(cell: Cell) -> Checked:
         status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = _convergence(cell, state, errors) if cell.converge and errors else None
-    evidence = Evidence(status, reason, done.stopped_at_s, errors, in_force, seen, cell.gated)
+    evidence = Evidence(
+        status=status,
+        reason=reason,
+        stopped_at_s=done.stopped_at_s,
+        errors=errors,
+        limits=in_force,
+        convergence=seen,
+        gated=cell.gated,
+        profile=cell.profile,
+        mass_ratio=_mass_ratio(cell.scene),
+    )
     return Checked(
         cell=cell,
         version=done.version,
@@ -123,6 +133,14 @@ def check(cell: Cell) -> Checked:
         findings=judge(evidence),
         warnings=done.warnings,
     )
+
+
+def _mass_ratio(scene: Scene) -> float:
+    """The mass of the heaviest body over that of the lightest that has one."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    given = [mass for mass in masses if mass > 0.0]
+    return max(given, default=1.0) / min(given, default=1.0)
 
 
 def _left(departure: Departure) -> str:

@@ -64,4 +64,6 @@ def _case(suite: Xml.Element, one: Checked) -> None:
 def _line(finding: Finding) -> str:
     """A finding with its rule and cure."""
     rule = RULES[finding.rule]
-    return f"{rule.id} {rule.title}: {finding.text}\n  cure: {rule.cure}"
+    return f"{rule.id} {rule.title}: {finding.text}" + (
+        f"\n  cure: {finding.cure}" if finding.cure else ""
+    )

@@ -42,10 +42,10 @@ def _failures(console: Console, failed: Sequence[Checked]) -> None:
         for finding in one.failures:
             rule = RULES[finding.rule]
             _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
-    broken = {finding.rule for one in failed for finding in one.failures}
-    for rule in RULES.values():
-        if rule.id in broken:
-            _hanging(console, f"{rule.id} cure: ", rule.cure, style="cyan")
+    cures = {(finding.rule, finding.cure) for one in failed for finding in one.failures}
+    for rule_id, cure in sorted(cures):
+        if cure:
+            _hanging(console, f"{rule_id} cure: ", cure, style="cyan")
     if failed:
         console.print()
 
@@ -161,7 +161,7 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
         others = f" (and {len(members) - 1} more scenes)" if len(members) > 1 else ""
         head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
         console.print(Text(f"{head}{finding.text}"))
-        console.print(Text(f"  {RULES[rule].cure}", "cyan"))
+        console.print(Text(f"  {finding.cure}", "cyan"))
     if groups:
         console.print()
 

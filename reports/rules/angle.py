@@ -13,7 +13,7 @@ class AngleWithin:
     )
     cure = (
         "Shorten the step (--steps-per-turn); where the error at the logged crank angle is "
-        "small, mend the drive; where it does not shrink with the step, use profile tuned."
+        "small, mend the drive."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -19,7 +19,7 @@ class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
     ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
-    cell that is not ``gated`` is shown only.
+    cell that is not ``gated`` is shown only. ``mass_ratio`` is the heaviest body over the lightest.
     """
 
     status: str
@@ -29,17 +29,23 @@ class Evidence:
     limits: Mapping[str, Limit]
     convergence: Convergence | None = None
     gated: bool = True
+    profile: str = ""
+    mass_ratio: float = 1.0
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What one rule says of one cell: in words, and as a number against its limit."""
+    """What one rule says of one cell: in words, and as a number against its limit.
+
+    ``cure`` is what would help this cell, "" where nothing has to.
+    """
 
     rule: str
     level: Level
     text: str
     number: float | None = None
     limit: float | None = None
+    cure: str = ""
 
 
 class Rule(Protocol):

@@ -9,7 +9,7 @@ class DisplacementWithin:
     id = "CC104"
     title = "displacement"
     explanation = "The displacement of every slider along its line against the closed form."
-    cure = "Shorten the step (--steps-per-turn), or use profile tuned."
+    cure = "Shorten the step (--steps-per-turn)."
 
     def check(self, evidence: Evidence) -> Finding | None:
         return within(self.id, evidence, "displacement", "displacement")

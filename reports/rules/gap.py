@@ -14,7 +14,7 @@ class GapWithin:
     )
     cure = (
         "Stiffen the joint (MuJoCo: solref, solimp; pymunk: iterations, error_bias), or "
-        "shorten the step; profile tuned does it."
+        "shorten the step."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -9,7 +9,7 @@ class PositionWithin:
     id = "CC113"
     title = "position"
     explanation = "The place of every named point against the closed form."
-    cure = "Shorten the step (--steps-per-turn), or use profile tuned."
+    cure = "Shorten the step (--steps-per-turn)."
 
     def check(self, evidence: Evidence) -> Finding | None:
         return within(self.id, evidence, "position", "position")

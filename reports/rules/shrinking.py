@@ -18,7 +18,7 @@ class ErrorShrinks:
     )
     cure = (
         "A shorter step does not help; change what the engine models "
-        "(MuJoCo: solref, solimp; pymunk: error_bias, iterations); profile tuned does it."
+        "(MuJoCo: solref, solimp; pymunk: error_bias, iterations)."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

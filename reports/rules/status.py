@@ -11,7 +11,8 @@ class StatusOk:
     explanation = "A run that stopped early, or never started, says nothing about the rest."
     cure = (
         "What is unsupported says itself what to change; a run that came apart needs a shorter "
-        "step (--steps-per-turn) or profile tuned."
+        "step (--steps-per-turn); one that left its branch needs lengths, or a range of the "
+        "driver, away from the singular position that it passes."
     )
 
     def check(self, evidence: Evidence) -> Finding | None:

@@ -230,6 +230,39 @@ def test_no_singular_position_excuses_a_start_without_end() -> None:
     assert found["CC116"] == "fail"
 
 
+FLAT = convergence((4e-3, 2e-3, 1e-3), (8e-4, 7.6e-4, 7.5e-4), "rad")
+
+
+@pytest.mark.parametrize(
+    ("profile", "mass_ratio", "said", "not_said"),
+    [
+        ("as-shipped", 1.0, "use profile tuned", "the mass of the lightest"),
+        ("as-shipped", 1e4, "use profile tuned", "the mass of the lightest"),
+        ("tuned", 1e4, "10000 times the mass of the lightest", "profile tuned"),
+        ("tuned", 10.0, "change what the engine models", "profile tuned"),
+    ],
+)
+def test_a_cure_does_not_send_a_cell_where_it_is(
+    profile: str, mass_ratio: float, said: str, not_said: str
+) -> None:
+    evidence = replace(HEALTHY, convergence=FLAT, profile=profile, mass_ratio=mass_ratio)
+    cure = next(f.cure for f in judge(evidence) if f.rule == "CC110")
+    assert said in cure
+    assert not_said not in cure
+
+
+def test_a_run_that_did_not_end_well_is_told_one_cure() -> None:
+    evidence = replace(with_row(row("angle", maximum=3.0)), status="diverged", profile="tuned")
+    cures = {f.rule: f.cure for f in judge(evidence) if f.level == "fail"}
+    assert cures["CC103"] == ""
+    assert "shorter step" in cures["CC101"]
+    assert "profile tuned" not in cures["CC101"]
+
+
+def test_only_what_fails_or_is_advised_has_a_cure() -> None:
+    assert {finding.cure for finding in judge(HEALTHY)} == {""}
+
+
 def test_convergence_is_not_judged_where_it_was_not_asked_for() -> None:
     assert "CC110" not in {f.rule for f in judge(replace(HEALTHY, convergence=None))}
 
