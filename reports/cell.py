@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -62,7 +63,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Checked:
-    """A cell with what came of it. The trajectories are left behind."""
+    """A cell with what came of it, and the time that it took [s]; the trajectories are gone."""
 
     cell: Cell
     version: str
@@ -75,6 +76,7 @@ class Checked:
     convergence: Convergence | None
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...] = ()
+    wall_s: float = 0.0
 
     @property
     def failures(self) -> tuple[Finding, ...]:
@@ -93,6 +95,13 @@ class Checked:
 
 def check(cell: Cell) -> Checked:
     """Run a cell at its step (and at half and a quarter of it), compare and judge it."""
+    began = time.perf_counter()
+    found = _checked(cell)
+    return replace(found, wall_s=time.perf_counter() - began)
+
+
+def _checked(cell: Cell) -> Checked:
+    """As `check`, but for the time."""
     try:
         state = solve(cell.scene, np.zeros(1)).state()
         done = _run(cell, state, 1)

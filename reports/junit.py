@@ -20,6 +20,7 @@ def junit(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
         tests=str(len(checked)),
         failures=str(sum(_fails(one) and one.verdict == "out" for one in checked)),
         errors=str(sum(_fails(one) and one.verdict == "unsupported" for one in checked)),
+        time=f"{sum(one.wall_s for one in checked):.3f}",
         skipped=str(sum(not one.cell.gated for one in checked)),
         timestamp=facts["made"].removesuffix("+00:00"),
     )
@@ -46,6 +47,7 @@ def _case(suite: Xml.Element, one: Checked) -> None:
         "testcase",
         classname=clean(f"crankcheck.{cell.engine}.{cell.profile}"),
         name=clean(cell.scene.name),
+        time=f"{one.wall_s:.3f}",
     )
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"

@@ -158,7 +158,7 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
             groups.setdefault(key, []).append((one, finding))
     for (rule, engine, profile), members in groups.items():
         one, finding = members[0]
-        others = f" (and {len(members) - 1} more scenes)" if len(members) > 1 else ""
+        others = f" (and {_count(len(members) - 1, 'more scene')})" if len(members) > 1 else ""
         head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
         console.print(Text(f"{head}{finding.text}"))
         console.print(Text(f"  {finding.cure}", "cyan"))
@@ -171,10 +171,17 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
     gated = [one for one in checked if one.cell.gated]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
-    what = f"{len(gated)} cells ({scenes} scenes x {engines} engines)"
+    counted = f"{_count(scenes, 'scene')} x {_count(engines, 'engine')}"
+    what = f"{_count(len(gated), 'cell')} ({counted})"
     if failed:
         return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
-    return Text(f"WITHIN TOLERANCE: all {what}", "bold green")
+    every = "all " if len(gated) > 1 else ""
+    return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
+
+
+def _count(number: int, thing: str) -> str:
+    """A number of things, in the singular or the plural."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
 
 
 def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
@@ -187,7 +194,7 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     lines = [
         "Largest errors against the closed form at the commanded time; L longest link, w driver's "
         "peak speed.",
-        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {_span(turns)} turns; "
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {_span(turns)} turn{'' if turns == [1.0] else 's'}; "
         + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
         + "- not reported.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

@@ -44,7 +44,7 @@ def refused(result: Result, *parts: str) -> None:
 def test_a_scene_within_tolerance_ends_with_0(crank: Crank) -> None:
     result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
     assert result.exit_code == 0
-    assert "WITHIN TOLERANCE: all 1 cells" in result.output
+    assert "WITHIN TOLERANCE: 1 cell (1 scene x 1 engine)" in result.output
     assert "mujoco 4" in " ".join(result.output.split())
 
 
@@ -53,7 +53,7 @@ def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
 ) -> None:
     result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned", "--tol", "angle=1e-12")
     assert result.exit_code == 1
-    assert "OUT OF TOLERANCE: 1 of 1 cells" in result.output
+    assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in result.output
     head, _, _ = result.output.partition("profile tuned")
     assert "CC103 angle" in head
     assert "limit 1e-12 rad (--tol)" in " ".join(head.split())
@@ -135,6 +135,9 @@ def test_junit_names_the_failure_and_skips_what_is_not_gated(crank: Crank, tmp_p
     result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
     assert result.exit_code == 1
     (suite,) = Xml.fromstring(path.read_text())
+    times = [float(case.get("time", "nan")) for case in suite.iter("testcase")]
+    assert all(0.0 < time < 60.0 for time in times)
+    assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
     failure = suite.find("testcase/failure")
     assert failure is not None
