@@ -12,6 +12,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.series import Array
 
+WIDE = 100
 Columns = list[tuple[str, Array]]
 
 
@@ -58,8 +59,9 @@ def certainty(motion: Motion) -> str:
     )
 
 
-def motion_tables(scene: Scene, motion: Motion) -> list[Table]:
-    """Links and sliders over time, two bodies to a table."""
+def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
+    """Links and sliders over time, as many bodies to a table as the terminal has room for."""
+    together = 2 if width >= WIDE else 1
     bodies: list[tuple[str, Columns]] = [
         (name, [("theta\nrad", m.theta), ("omega\nrad/s", m.omega), ("alpha\nrad/s^2", m.alpha)])
         for name, m in motion.links.items()
@@ -70,13 +72,13 @@ def motion_tables(scene: Scene, motion: Motion) -> list[Table]:
         bodies.append((f"slider {name}", [("place\nm", s.displacement), *rates]))
     driver = np.degrees(motion.links[scene.driver.link].theta)
     tables = []
-    for first in range(0, len(bodies), 2):
+    for first in range(0, len(bodies), together):
         table = Table(box=None, padding=(0, 2, 0, 0))
         columns: Columns = [
             ("\ntime\ns", motion.time_s),
             (f"{scene.driver.link}\ntheta\ndeg", driver),
         ]
-        for name, series in bodies[first : first + 2]:
+        for name, series in bodies[first : first + together]:
             owners = (name, "", "")
             columns += [(f"{o}\n{head}", v) for o, (head, v) in zip(owners, series, strict=True)]
         for title, _ in columns:

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.cell import Checked
-from reports.errors import Error, largest
+from reports.errors import Error, Errors, Quantity, largest
 from reports.rules import RULES
 from reports.rules.base import Finding
 
@@ -23,13 +23,26 @@ MARKS = {
 }
 
 
+ANGLE, GAP = "angle\nrad", "gap\n/ L"
+NUMBERS: dict[str, tuple[Quantity, ...]] = {
+    ANGLE: ("angle",),
+    "place\n/ L": ("displacement", "position"),
+    GAP: ("gap",),
+    "veloc.\n/ w": ("velocity",),
+    "accel.\n/ w^2": ("acceleration",),
+}
+"""The columns of numbers: head, and the quantities that it shows the worst of."""
+WIDE, STACKED = 100, 76
+"""Columns of a terminal that show every number; below which the engine stands under the scene."""
+
+
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
     """Print the whole verification."""
     failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
     _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
-        console.print(_table(profile, gated, chosen), "")
+        console.print(_table(profile, gated, chosen, console.width), "")
     _advice(console, checked)
     console.print(_summary(checked, failed))
     console.print(_footer(checked, facts), style="dim", highlight=False)
@@ -65,8 +78,16 @@ def _mark(one: Checked) -> Text:
     return mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
 
 
-def _table(profile: str, gated: bool, chosen: Sequence[Checked]) -> Table:
+def _heads(width: int) -> tuple[str, ...]:
+    """The numbers that a terminal of a width has room for; the others are in the files."""
+    if width >= WIDE:
+        return tuple(NUMBERS)
+    return (ANGLE, GAP) if width >= STACKED else (ANGLE,)
+
+
+def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
     """The cells of one profile, those out of tolerance first."""
+    heads, stacked = _heads(width), width < STACKED
     role = "gated" if gated else "shown, not gated"
     table = Table(
         title=f"profile {profile} ({role})",
@@ -77,40 +98,36 @@ def _table(profile: str, gated: bool, chosen: Sequence[Checked]) -> Table:
         collapse_padding=True,
     )
     table.add_column("")
-    table.add_column("scene", overflow="fold", min_width=22)
-    table.add_column("engine", no_wrap=True)
-    for head in ("angle\nrad", "place\n/ L", "gap\n/ L", "veloc.\n/ w", "accel.\n/ w^2"):
+    table.add_column("scene\nengine" if stacked else "scene", overflow="fold", min_width=22)
+    if not stacked:
+        table.add_column("engine", no_wrap=True)
+    for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
     table.add_column("most of\na limit", no_wrap=True)
-    table.add_column("when dt\nis halved", overflow="fold")
+    room = {"max_width": 14} if stacked else {"min_width": 15}
+    table.add_column("when dt\nis halved", overflow="fold", **room)
     for one in sorted(chosen, key=lambda one: one.verdict == "within"):
-        table.add_row(*_cells(one))
+        names = (one.cell.scene.name, one.cell.engine)
+        table.add_row(_mark(one), *(["\n".join(names)] if stacked else names), *_cells(one, heads))
     return table
 
 
-def _cells(one: Checked) -> list[Text | str]:
-    """One row."""
+def _cells(one: Checked, heads: Sequence[str]) -> list[Text | str]:
+    """One row, from its numbers on."""
     errors = one.errors
-    head: list[Text | str] = [_mark(one), one.cell.scene.name, one.cell.engine]
     if errors is None:
-        return [*head, *["-"] * 5, "", Text(f"{one.status}: {one.reason}", "red")]
-    place = largest(
-        row
-        for row in errors.rows
-        if row.quantity in ("displacement", "position") and row.kind == "total"
-    )
-    numbers = [
-        errors.worst("angle"),
-        place,
-        errors.worst("gap"),
-        errors.worst("velocity"),
-        errors.worst("acceleration"),
-    ]
+        return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
+    numbers = [_largest(errors, NUMBERS[head]) for head in heads]
     seen = one.convergence.words.replace(": ", "\n") if one.convergence else ""
     if one.status != "ok":
         early = one.status != "branch-changed"  # such a run goes on to its end
         seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
-    return [*head, *(_number(error) for error in numbers), _share(one.findings), seen]
+    return [*(_number(error) for error in numbers), _share(one.findings), seen]
+
+
+def _largest(errors: Errors, quantities: Sequence[Quantity]) -> Error | None:
+    """The worst of some quantities, as reported."""
+    return largest(worst for name in quantities if (worst := errors.worst(name)))
 
 
 def _number(error: Error | None) -> str:
@@ -191,10 +208,11 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     dts = sorted({one.cell.dt_s for one in checked})
     drives = [e for one in checked if one.errors and (e := one.errors.worst("drive"))]
     drive = largest(drives)
+    turned = f"{_span(turns)} turn" + ("" if turns == [1.0] else "s")
     lines = [
         "Largest errors against the closed form at the commanded time; L longest link, w driver's "
         "peak speed.",
-        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {_span(turns)} turn{'' if turns == [1.0] else 's'}; "
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
         + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
         + "- not reported.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

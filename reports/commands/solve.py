@@ -68,7 +68,7 @@ def run_solve(request: Request, console: Console) -> None:
             console.print(table, "")
         console.print(certainty(motion), style="dim", highlight=False)
     else:
-        for table in motion_tables(scene, cleaned(motion)):
+        for table in motion_tables(scene, cleaned(motion), console.width):
             console.print(table, "")
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
