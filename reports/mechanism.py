@@ -30,8 +30,10 @@ def facts(scene: Scene, structure: Structure) -> list[str]:
 
 def _grashof(bar: FourBar) -> str:
     low, high = bar.transmission_rad
+    rocks = bar.grashof_class == "crank-rocker" and bar.driver > bar.rocker
+    driven = " driven at its rocker" if rocks else ""
     return (
-        f"{bar.grashof_class} (s + l - p - q = {bar.excess_m:.6g} m), "
+        f"{bar.grashof_class}{driven} (s + l - p - q = {bar.excess_m:.6g} m), "
         f"transmission angle {_deg(low)} to {_deg(high)} deg"
     )
 

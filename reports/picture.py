@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from analytic.kinematics import solve
+from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.series import Array
@@ -95,8 +96,13 @@ def _legend(figure: Figure, scene: Scene) -> None:
 
 
 def _motion(scene: Scene, samples: int) -> Motion:
-    """One turn, both ends included."""
-    return solve(scene, np.linspace(0.0, scene.driver.law.period_s, samples), bound=False)
+    """One turn, both ends included; a driver that swings begins at an end of its swing, so that an
+    even number of equal parts of its period shows the other end as well."""
+    law = scene.driver.law
+    time_s = np.linspace(0.0, law.period_s, samples)
+    if isinstance(law, Oscillating):
+        time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
+    return solve(scene, time_s, bound=False)
 
 
 def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) -> None:

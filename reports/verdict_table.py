@@ -104,8 +104,8 @@ def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> 
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
     table.add_column("most of\na limit", no_wrap=True)
-    room = {"max_width": 14} if stacked else {"min_width": 15}
-    table.add_column("when dt\nis halved", overflow="fold", **room)
+    least, most = (None, 14) if stacked else (15, None)
+    table.add_column("when dt\nis halved", overflow="fold", min_width=least, max_width=most)
     for one in sorted(chosen, key=lambda one: one.verdict == "within"):
         names = (one.cell.scene.name, one.cell.engine)
         table.add_row(_mark(one), *(["\n".join(names)] if stacked else names), *_cells(one, heads))

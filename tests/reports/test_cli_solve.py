@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.axes import Axes
 from PIL import Image
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from analytic.kinematics import solve
 from models.files import load_scene, shipped
+from models.laws import Oscillating
 from models.scene import Scene
 from reports.cli import app
 
@@ -58,6 +60,24 @@ def test_the_heading_says_what_kind_of_mechanism_it_is(
 ) -> None:
     output = crank("solve", name).output
     assert all(part in output for part in parts), output
+
+
+def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
+    from analytic.structure import analyse
+    from reports.mechanism import facts
+
+    def scene(driver: float, rocker: float) -> Scene:
+        links = dict(fourbar.links)
+        for name, tip, length in (("crank", "B", driver), ("rocker", "C", rocker)):
+            bar = links[name]
+            (held,) = (point for point in bar.points if point != tip)
+            links[name] = replace(bar, points={held: (0.0, 0.0), tip: (length, 0.0)})
+        return replace(fourbar, links=links)
+
+    assert facts(scene(0.2, 0.1), analyse(fourbar))[0].startswith(
+        "crank-rocker driven at its rocker (s + l"
+    )
+    assert facts(scene(0.1, 0.2), analyse(fourbar))[0].startswith("crank-rocker (s + l")
 
 
 def test_numbers_that_are_0_within_their_bound_are_shown_as_0(crank: Crank) -> None:
@@ -280,3 +300,21 @@ def test_a_strip_shows_every_link_in_its_colour(name: str) -> None:
     for colour in picture.COLOURS[: len(scene.links)]:
         rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
         assert np.any(np.all(pixels == rgb, axis=1)), colour
+
+
+@pytest.mark.parametrize("name", ["tangent", "fourbar-double-rocker"])
+def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports import picture
+
+    titles: list[str] = []
+    monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
+    scene = load_scene(name)
+    law = scene.driver.law
+    assert isinstance(law, Oscillating)
+    picture.strip(scene)
+    shown = [float(title.split()[-2]) for title in titles]
+    for side in (-1.0, 1.0):
+        end = math.degrees(law.centre_rad + side * law.amplitude_rad)
+        assert min(abs(angle - end) for angle in shown) <= 0.5
