@@ -51,8 +51,6 @@ def mechanisms(draw: st.DrawFn, forms: Sequence[str] | None = None) -> Designed:
     """A crank with the dyads of the given forms in that order (None: one or two of any form)."""
     if forms is None:
         forms = draw(st.lists(st.sampled_from(FORMS), min_size=1, max_size=2))
-    if forms[0] == "PRP guide, guide":  # needs a second moving link
-        forms = ("RRR", *forms)
 
     def number(low: float, high: float) -> float:
         return draw(st.floats(low, high))
@@ -62,9 +60,14 @@ def mechanisms(draw: st.DrawFn, forms: Sequence[str] | None = None) -> Designed:
     crank = at.link(pivot)
     at.pin(pivot, GROUND, crank)
     at.pin(pivot + at.arm(0.3, 0.8), crank)
+    laid_out = []
     for form in forms:
+        if form == "PRP guide, guide" and set(at.frames) == {GROUND, crank}:
+            LAYOUTS["RRR"](at)  # both of its guides ride on moving links
+            laid_out.append("RRR")
         LAYOUTS[form](at)
-    return _designed(at, tuple(forms), crank, number(0.5, 20.0))
+        laid_out.append(form)
+    return _designed(at, tuple(laid_out), crank, number(0.5, 20.0))
 
 
 def _designed(at: Layout, forms: tuple[str, ...], crank: str, frequency: float) -> Designed:
