@@ -14,7 +14,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from models.errors import CrankcheckError
-from reports.stopping import Stopped, install
+from reports.stopping import Stopped, broken_pipe_ends, install, seen
 from reports.terminal import UNWRITABLE, give_up_output, readable_everywhere, terminal
 
 app = typer.Typer(
@@ -37,6 +37,7 @@ def main() -> None:
     """The entry of the command `crankcheck`."""
     with guarded():
         install()
+        broken_pipe_ends(at_once=True)
         if sys.stdout is None:
             raise CrankcheckError("standard output is closed; send it to a file, or to /dev/null")
         readable_everywhere()
@@ -77,7 +78,9 @@ def guarded() -> Iterator[None]:
 
 
 def _end(code: int, text: str) -> NoReturn:
-    """The last line, where it can be written, and the exit code."""
+    """The last line, where it can be written, and the exit code; a signal goes before all else."""
+    if stopped := seen():
+        code, text = stopped.code, stopped.word
     with contextlib.suppress(OSError):
         typer.echo(f"crankcheck: {text}", err=True)
     raise SystemExit(code) from None
@@ -101,6 +104,7 @@ def _options(
     ] = False,
 ) -> None:
     """Options of the command itself."""
+    broken_pipe_ends(at_once=False)
     if show_traceback:
         os.environ[TRACEBACK] = "1"
 

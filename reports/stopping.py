@@ -25,6 +25,15 @@ class Stopped(BaseException):
         super().__init__(self.word)
 
 
+_seen: list[Stopped] = []
+
+
+def seen() -> Stopped | None:
+    """The signal that came, also where the code that it interrupted made another error of it (an
+    import that is cut short is an ImportError)."""
+    return _seen[0] if _seen else None
+
+
 def install() -> None:
     """Turn the first signal into `Stopped`; one that is ignored already stays ignored (nohup)."""
     for number in SIGNALS:
@@ -41,7 +50,15 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     if "multiprocessing" in sys.modules:
         for worker in sys.modules["multiprocessing"].active_children():
             worker.kill()
-    raise Stopped(number)
+    _seen.append(Stopped(number))
+    raise _seen[0]
+
+
+def broken_pipe_ends(at_once: bool) -> None:
+    """Whether a pipe that nobody reads ends the process by itself (141), as it should while only
+    help is printed; with workers to talk to it is an error to be handled."""
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL if at_once else signal.SIG_IGN)
 
 
 @contextmanager

@@ -57,6 +57,43 @@ def test_a_reader_that_leaves_is_no_verdict() -> None:
 
 
 @POSIX
+def test_a_reader_of_the_help_that_leaves_is_no_verdict() -> None:
+    code, _, complaint = shell("(crankcheck --help; echo $? >&2) | true")
+    assert (code, complaint) == (0, "141\n")
+
+
+SWALLOWED = """
+import signal
+from models.errors import EngineError
+from reports import cli
+from reports.commands import listing
+
+def cut_short(*_):
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except BaseException:
+        raise EngineError("engine mujoco: not installed")
+
+listing.scenes = cut_short
+cli.sys.argv = ["crankcheck", "scenes"]
+cli.main()
+"""
+
+
+@POSIX
+def test_an_import_that_ctrl_c_cut_short_is_no_missing_engine() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SWALLOWED],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )
+    assert (done.returncode, done.stderr) == (130, "crankcheck: interrupted\n")
+
+
+@POSIX
 def test_a_terminal_of_ascii_shows_an_escape(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     text = (ROOT / "models/scenes/tangent.toml").read_text(encoding="utf-8")
