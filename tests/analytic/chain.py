@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpmath import mp, mpf
 
-from analytic.newton import Constraints
+from analytic.constraints import Constraints
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
