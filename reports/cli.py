@@ -195,12 +195,16 @@ def export(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write an .xml file.")
     ] = None,
+    close: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PIN", help="Close a loop at this pin; may be repeated."),
+    ] = None,
 ) -> None:
     """Write the scene as MJCF, assembled, with its state as the keyframe."""
     with guarded():
         from reports.commands import listing
 
-        listing.export(scene, output, terminal())
+        listing.export(scene, output, tuple(close or ()), terminal())
 
 
 @app.command()

@@ -231,7 +231,7 @@ def _sound(scene: Scene, log: Log) -> tuple[int, str]:
     if count == len(bad) and not log.diverged:
         return count, ""
     when = float(poses.time_s[min(count, len(bad) - 1)])
-    return max(count, 1), f"came apart at {when:.6g} s; take a smaller dt or another profile"
+    return max(count, 1), f"came apart at {when:.6g} s"
 
 
 def _first(poses: Poses, count: int, skip: int) -> Poses:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from analytic.kinematics import solve
 from analytic.structure import analyse
 from models.files import load_scene, shipped
 from models.mjcf import build
+from models.mjcf_options import exact
 from reports.commands.solve import describe_law
 from reports.writing import check_file, write
 from sim.registry import available, engine
@@ -48,12 +50,16 @@ def engines(console: Console, settings: bool) -> None:
             console.print(grid)
 
 
-def export(name: str, output: Path | None, console: Console) -> None:
-    """The MJCF of a scene, assembled at its start, into a file or to the terminal."""
+def export(name: str, output: Path | None, close: tuple[str, ...], console: Console) -> None:
+    """The MJCF of a scene, assembled at its start, into a file or to the terminal.
+
+    Loops are closed at the pins of ``close``, the others where `models.tree` says.
+    """
     if output is not None:
         check_file(output, "-o", (".xml",))
     scene = load_scene(name)
-    text = build(scene, solve(scene, np.zeros(1)).state())
+    start = solve(scene, np.zeros(1)).state()
+    text = build(scene, start, replace(exact(scene), close=close))
     if output is None:
         console.file.write(text)
         return

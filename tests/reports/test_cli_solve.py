@@ -187,6 +187,10 @@ MISTAKES = {
     ),
     "no folder": (["solve", "tangent", "-o", "no/out.csv"], ["there is no folder no"]),
     "export elsewhere": (["export", "tangent", "-o", "out.mjcf"], ["'.mjcf'", "use .xml"]),
+    "export closed nowhere": (
+        ["export", "fourbar-lecture-1", "--close", "Q"],
+        ["close = Q", "not a pin that can close a loop"],
+    ),
     "export of nothing": (["export", "tangen", "-o", "out.xml"], ["mean tangent"]),
     "picture of another kind": (["view", "tangent", "-o", "t.mp4"], ["'.mp4'", ".gif, .png"]),
 }
@@ -262,6 +266,13 @@ def test_view_with_a_screen_opens_the_assembled_model(
     monkeypatch.setattr("reports.commands.view.has_screen", lambda: True)
     assert crank("view", "tangent").exit_code == 0
     assert "<key " in shown[0]
+
+
+def test_export_closes_the_loop_where_it_is_told(crank: Crank) -> None:
+    assert 'site1="coupler.C"' in crank("export", "fourbar-lecture-1").output
+    told = crank("export", "fourbar-lecture-1", "--close", "B").output
+    assert 'site1="crank.B"' in told
+    assert 'site1="coupler.C"' not in told
 
 
 def moves(frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]]) -> bool:
