@@ -98,7 +98,9 @@ def _read_text(path: Path) -> str:
 def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     """The driver table under the model of its law."""
     if isinstance(raw, list):
-        faults.append(f"driver: found {len(raw)} drivers; a scene has one [driver] table")
+        faults.append(
+            f"driver: found a list of {len(raw)}; a scene has one driver, one [driver] table"
+        )
         return None
     if not isinstance(raw, Mapping):
         return None  # already a fault of SceneTable
@@ -124,6 +126,10 @@ def _validated(
             if fault["loc"][:1] == ("driver",) and isinstance(raw.get("driver"), list):
                 continue  # `_driver` says it better
             kind, message, found = fault["type"], fault["msg"], fault["input"]
+            for side, limit in fault.get("ctx", {}).items():
+                words = {"ge": "at least", "le": "at most"}
+                if side in words and isinstance(limit, float):
+                    message = f"use a number of {words[side]} {limit:g}"
             faults.append(_line(model, prefix, fault["loc"], kind, message, found))
         return None
 

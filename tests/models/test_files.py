@@ -81,7 +81,7 @@ FAULTS = {
         'link = "krank"',
         "driver.link: found krank; use one of crank",
     ),
-    "zero length": ("length_m = 0.25", "length_m = 0.0", "links.coupler.length_m: found 0.0"),
+    "zero length": ("length_m = 0.25", "length_m = 0.0", "links.coupler.length_m: found 0.0; use a number of at least 1e-15"),
     "negative length": ("length_m = 0.25", "length_m = -1.0", "links.coupler.length_m: found -1.0"),
     "coincident points": (
         'rocker = { bar = ["D", "C"], length_m = 0.2 }',
@@ -98,7 +98,7 @@ FAULTS = {
     "two drivers as tables": (
         "[driver]",
         '[[driver]]\nlink = "rocker"\nspeed_rad_s = 1.0\n[[driver]]',
-        "driver: found 2 drivers",
+        "driver: found a list of 2",
     ),
     "two drivers as a list": (
         'link = "crank"',
