@@ -174,7 +174,8 @@ class Run:
     ``velocity_time_s`` and ``acceleration_time_s`` are the instants that the reported velocities
     and accelerations belong to. ``motion`` is None where the run never started; ``stopped_at_s``
     is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
-    logged every ``every``-th: what the log is held to.
+    logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
+    that the run was given, and takes to be run again; ``settings`` what the engine then held.
     """
 
     scene: str
@@ -193,6 +194,7 @@ class Run:
     stopped_at_s: float = 0.0
     warnings: tuple[str, ...] = ()
     cost: Cost | None = None
+    asked: Mapping[str, SettingValue] = field(default_factory=dict)
     start_s: float = 0.0
     steps: int = 0
     every: int = 1

@@ -79,6 +79,7 @@ def run(
         "ok",
         "",
         settings=held,
+        asked=held,
         start_s=state.time_s,
         steps=steps,
         every=every,

@@ -217,6 +217,20 @@ def test_settings_are_overridden_one_by_one_and_stored_as_the_engine_holds_them(
     assert shipped.settings["iterations"] == 10
 
 
+@pytest.mark.parametrize("profile", ["as-shipped", "tuned"])
+@pytest.mark.parametrize("name", ENGINES)
+def test_what_was_asked_for_runs_again_to_the_same_end(name: str, profile: str) -> None:
+    first = ran(engine=name, profile=profile, settings={"iterations": 9})
+    again = ran(engine=name, profile="tuned", settings=first.asked)
+    assert again.asked == first.asked
+    assert again.settings == first.settings
+    assert first.motion is not None
+    assert again.motion is not None
+    np.testing.assert_array_equal(
+        first.motion.links["rocker"].theta, again.motion.links["rocker"].theta
+    )
+
+
 @pytest.mark.parametrize("name", ENGINES)
 def test_an_engine_that_is_not_installed_names_the_command(
     name: str, monkeypatch: pytest.MonkeyPatch
