@@ -28,11 +28,10 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
     Raises
     ------
     SceneError
-        Names that do not fit together, links without length, masses that cannot be derived.
+        Links without length, masses that cannot be derived.
     """
     faults: list[str] = []
     points = {name: _points(link) for name, link in table.links.items()}
-    faults += _faults_of_names(table, points, driver)
     faults += _faults_of_lengths(table, points)
     if faults:
         raise SceneError(place, faults)
@@ -67,56 +66,6 @@ def _points(link: LinkTable) -> dict[str, Point]:
     if link.bar is not None and link.length_m is not None:
         bar = {link.bar[0]: (0.0, 0.0), link.bar[1]: (link.length_m, 0.0)}
     return bar | dict(link.points)
-
-
-def _faults_of_names(
-    table: SceneTable, points: Mapping[str, Mapping[str, Point]], driver: DriverTable
-) -> list[str]:
-    """References to things that the scene does not have."""
-    faults = []
-    bodies = [GROUND, *table.links]
-    everywhere = set(table.ground.points).union(*points.values())
-    faults += [
-        f"links.{name}: that name stands for what does not move; name the link otherwise"
-        for name in (GROUND, "world")
-        if name in table.links
-    ]
-    faults += [
-        f"sliders.{name}: a link has that name too; name the slider after its point"
-        for name in table.sliders
-        if name in table.links
-    ]
-    for name, slider in table.sliders.items():
-        key = f"sliders.{name}"
-        point = slider.point or name
-        if slider.on not in bodies:
-            faults.append(f"{key}.on: found {slider.on}; use one of {', '.join(bodies)}")
-        if slider.link is not None and slider.link not in table.links:
-            faults.append(f"{key}.link: found {slider.link}; use one of {', '.join(table.links)}")
-        if slider.link is not None and slider.link == slider.on:
-            faults.append(f"{key}.on: link {slider.on} slides on itself; name another body")
-        owners = {slider.link: points.get(slider.link, {})} if slider.link else {}
-        if slider.link and slider.link in table.links and point not in owners[slider.link]:
-            have = ", ".join(points[slider.link])
-            faults.append(f"{key}.point: {slider.link} has no point {point}; it has {have}")
-        pinned = [n for n, s in table.sliders.items() if (s.point or n) == point and not s.link]
-        if not slider.link and point not in everywhere and len(pinned) < 2:
-            faults.append(
-                f"{key}.point: no body has a point {point}; set point to one of "
-                f"{', '.join(sorted(everywhere))}"
-            )
-    link = driver.link
-    if link not in table.links:
-        faults.append(f"driver.link: found {link}; use one of {', '.join(table.links)}")
-    elif not set(points[link]) & set(table.ground.points):
-        faults.append(
-            f"driver.link: {link} has no ground pin to turn about; give it a ground point"
-        )
-    choices = everywhere | set(table.sliders)
-    faults += [
-        f"branch.{n}: no pin or slider of that name" for n in table.branch if n not in choices
-    ]
-    return faults
 
 
 def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Point]]) -> list[str]:

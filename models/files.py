@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
 from models.errors import CrankcheckError, SceneError
+from models.names import faults_of_names
 from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
 
@@ -73,6 +74,7 @@ def parse_scene(text: str, place: str) -> Scene:
     faults: list[str] = []
     table = _validated(SceneTable, raw, "", faults)
     driver = _driver(raw.get("driver"), faults)
+    faults += faults_of_names(raw)
     if faults or table is None or driver is None:
         raise SceneError(place, faults)
     return scene_from_table(table, driver, place)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import pickle
+import re
 from pathlib import Path
 
 import pytest
@@ -185,11 +186,38 @@ def test_fault_is_named_with_its_place(fault: str) -> None:
 
 def test_all_faults_of_a_file_are_reported_at_once() -> None:
     text = GOOD.replace("length_m = 0.25", "length_m = -1").replace("start_deg", "start")
+    text = text.replace('link = "crank"', 'link = "krank"') + "[branch]\nZ = 1\n"
     with pytest.raises(SceneError) as error:
         parse_scene(text, "file.toml")
-    assert len(error.value.faults) == 2
+    assert len(error.value.faults) == 4
+    assert "driver.link: found krank; use one of crank" in str(error.value)
+    assert "branch.Z" in str(error.value)
     assert "links.coupler.length_m" in str(error.value)
     assert "driver.start: unknown key; did you mean start_deg" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        '[sliders.C]\non = ["ground"]\npoint = ["C"]',
+        "[sliders.C]\non = 1\nlink = {}",
+        "[branch]\n" + "x" * 10_000 + " = 1",
+        "[sliders]\nC = 3",
+        '[sliders.C]\non = "' + "x" * 10_000 + '"',
+    ],
+)
+def test_names_of_any_shape_are_faults_with_short_messages(table: str) -> None:
+    with pytest.raises(SceneError) as error:
+        parse_scene(f"{GOOD}\n{table}\n", "file.toml")
+    assert max(len(fault) for fault in error.value.faults) < 400
+
+
+@pytest.mark.parametrize("key", ["links", "ground", "driver", "branch", "sliders"])
+def test_table_that_is_none_is_a_fault(key: str) -> None:
+    text = re.sub(rf"\[{key}\].*?(?=\n\[|$)", "", GOOD, flags=re.DOTALL)
+    with pytest.raises(SceneError) as error:
+        parse_scene(f"{key} = 3\n{text}", "file.toml")
+    assert f"{key}: found 3" in str(error.value)
 
 
 def test_typing_error_in_a_name_suggests_the_near_ones() -> None:

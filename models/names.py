@@ -1,0 +1,108 @@
+"""References within a scene file to things that it does not have.
+
+Read from the raw tables, so that these faults are reported beside faults of number or type: what
+does not have the right shape is left out here, and is a fault of `models.schema`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from models.scene import GROUND
+
+
+def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
+    """One line per name that stands for nothing, or for two things."""
+    ground = set(_table(_table(raw, "ground"), "points"))
+    points = {name: _points(link) for name, link in _table(raw, "links").items()}
+    sliders = _table(raw, "sliders")
+    return [
+        *_links(points, sliders),
+        *_sliders(sliders, points, ground),
+        *_driver(_table(raw, "driver"), points, ground),
+        *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
+    ]
+
+
+def _cut(name: str) -> str:
+    """A name short enough for a message; a long one is a fault of its own."""
+    return name if len(name) <= 60 else name[:57] + "..."
+
+
+def _list(names: Iterable[str]) -> str:
+    """The first of the names, for a message."""
+    shown = [_cut(name) for name in names]
+    return ", ".join(shown[:12]) + (", ..." if len(shown) > 12 else "")
+
+
+def _table(raw: object, key: str) -> Mapping[str, Any]:
+    """The table under a key, empty where there is none."""
+    found = raw.get(key) if isinstance(raw, Mapping) else None
+    return found if isinstance(found, Mapping) else {}
+
+
+def _points(link: object) -> set[str]:
+    """The points that a link lists, by bar or by name."""
+    bar = link.get("bar") if isinstance(link, Mapping) else None
+    ends = bar if isinstance(bar, list) else []
+    return {end for end in ends if isinstance(end, str)} | set(_table(link, "points"))
+
+
+def _links(points: Mapping[str, set[str]], sliders: Mapping[str, Any]) -> Iterator[str]:
+    for name in (GROUND, "world"):
+        if name in points:
+            yield f"links.{name}: that name stands for what does not move; name the link otherwise"
+    for name in sliders:
+        if name in points:
+            yield f"sliders.{_cut(name)}: a link has that name too; name the slider after its point"
+
+
+def _sliders(
+    sliders: Mapping[str, Any], points: Mapping[str, set[str]], ground: set[str]
+) -> Iterator[str]:
+    """Sliders on, of, or at what is not there."""
+    everywhere = ground.union(*points.values())
+    blocks = [
+        slider.get("point", name)
+        for name, slider in sliders.items()
+        if isinstance(slider, Mapping) and "link" not in slider
+    ]
+    for name, slider in sliders.items():
+        if not isinstance(slider, Mapping):
+            continue
+        key, point = f"sliders.{_cut(name)}", slider.get("point", name)
+        if not isinstance(point, str):
+            continue
+        on, link = slider.get("on"), slider.get("link")
+        if isinstance(on, str) and on != GROUND and on not in points:
+            yield f"{key}.on: found {_cut(on)}; use one of {_list([GROUND, *points])}"
+        if isinstance(link, str) and link not in points:
+            yield f"{key}.link: found {_cut(link)}; use one of {_list(points)}"
+        elif isinstance(link, str) and link == on:
+            yield f"{key}.on: link {_cut(link)} slides on itself; name another body"
+        elif isinstance(link, str) and point not in points[link]:
+            have = _list(sorted(points[link]))
+            yield f"{key}.point: {_cut(link)} has no point {_cut(point)}; it has {have}"
+        elif link is None and point not in everywhere and blocks.count(point) < 2:
+            have = _list(sorted(everywhere))
+            yield f"{key}.point: no body has a point {_cut(point)}; set point to one of {have}"
+
+
+def _driver(
+    driver: Mapping[str, Any], points: Mapping[str, set[str]], ground: set[str]
+) -> Iterator[str]:
+    """A driver that is no link, or turns about nothing."""
+    link = driver.get("link")
+    if not isinstance(link, str):
+        return
+    if link not in points:
+        yield f"driver.link: found {_cut(link)}; use one of {_list(points)}"
+    elif not points[link] & ground:
+        yield f"driver.link: {_cut(link)} has no ground pin to turn about; give it a ground point"
+
+
+def _branch(branch: Mapping[str, Any], choices: set[str]) -> Iterator[str]:
+    for name in branch:
+        if name not in choices:
+            yield f"branch.{_cut(name)}: no pin or slider of that name"
