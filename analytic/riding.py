@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.chunk import Chunk
-from analytic.dyads.parts import MovingLine, SlideError, Sliding, Turning
+from analytic.dyads.parts import MovingLine, Sliding, Turning
 from analytic.plane import (
     EPS,
     BodyKinematics,
@@ -23,12 +23,8 @@ from analytic.plane import (
     direction,
 )
 from analytic.structure import Structure, sliding_body
-from models.joints import local_point, turned
+from models.joints import less, local_point, turned
 from models.scene import Point, Scene
-
-
-def less(a: Point, b: Point) -> Point:
-    return (a[0] - b[0], a[1] - b[1])
 
 
 def total(*points: Point) -> Point:
@@ -134,14 +130,19 @@ class RidingLine:
 
     def displacement(self, found: Sliding, lead: float) -> Sliding:
         """The slider's own displacement from the coordinate of a point that leads it."""
-        s = (found.s - lead) * self.sign if lead or self.sign < 0 else found.s
-        speed = found.speed * self.sign if self.sign < 0 else found.speed
-        acceleration = found.acceleration * self.sign if self.sign < 0 else found.acceleration
-        error = found.error
-        if error is not None and self.slack:
-            rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + self.slack
-            error = SlideError(error.displacement + rounding, error.speed, error.acceleration)
-        return Sliding(s, speed, acceleration, error)
+        own = without_lead(found, lead, self.slack)
+        if self.sign > 0:
+            return own
+        return replace(own, s=-own.s, speed=-own.speed, acceleration=-own.acceleration)
+
+
+def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
+    """The displacement behind a point that leads it; ``slack`` bounds the rounding of the lead."""
+    error = found.error
+    if error is not None and slack:
+        rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + slack
+        error = replace(error, displacement=error.displacement + rounding)
+    return replace(found, s=found.s - lead, error=error)
 
 
 def riding_point(line: MovingLine, found: Sliding) -> PointKinematics:

@@ -7,24 +7,22 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
-import numpy as np
-
 from analytic.chunk import Chunk
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.parts import Sliding, Turning
-from analytic.plane import EPS, Vec, direction
+from analytic.plane import Vec, direction
 from analytic.riding import (
     RidingLine,
     following_body,
     known_at,
-    less,
     riding_point,
     rounding_of,
     total,
     turning_body,
+    without_lead,
 )
 from analytic.structure import Group, Structure, sliding_body
-from models.joints import local_point, turned
+from models.joints import less, local_point, turned
 from models.scene import GROUND, Scene
 
 
@@ -151,12 +149,7 @@ class RPRStep:
         assert isinstance(dyad.second, Sliding)
         chunk.bodies[self.body] = turning_body(dyad.first, self.back1, self.local1, p1)
         chunk.bodies[self.guide] = turning_body(dyad.first, self.back2, self.local2, p2)
-        found = dyad.second
-        slide = found.error
-        if slide is not None and self.slack:
-            rounding = 4 * EPS * (abs(self.lead) + np.abs(found.s)) + self.slack
-            slide = replace(slide, displacement=slide.displacement + rounding)
-        chunk.sliders[self.slider] = replace(found, s=found.s - self.lead, error=slide)
+        chunk.sliders[self.slider] = without_lead(dyad.second, self.lead, self.slack)
         chunk.keep(self.key, dyad)
 
 

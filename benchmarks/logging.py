@@ -24,6 +24,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 
 from analytic.kinematics import solve
 from models.files import load_scene
+from reports.provenance import processor
 from sim.engine import Engine, Session
 from sim.registry import engine
 from sim.settings import resolved
@@ -119,16 +120,6 @@ def timed(session: Session, work: Callable[[Session], None]) -> float:
     began = time.perf_counter()
     work(session)
     return (time.perf_counter() - began) / STEPS * 1e6
-
-
-def processor() -> str:
-    """The processor's name, as far as the system tells."""
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        for line in info.read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
 
 
 if __name__ == "__main__":

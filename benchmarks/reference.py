@@ -20,12 +20,12 @@ import tracemalloc
 import warnings
 from collections.abc import Callable
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
 from analytic.kinematics import solve
 from models.files import load_scene
+from reports.provenance import processor
 
 POSITIONS = 100_000
 ROUNDS, CALLS = 8, 5
@@ -83,17 +83,6 @@ def memory_over_result() -> float:
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return peak / (6 * 8 * POSITIONS)
-
-
-def processor() -> str:
-    """The processor's name where the system tells it."""
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        lines = info.read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-        if names:
-            return names[0]
-    return platform.processor() or platform.machine()
 
 
 def main() -> int:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from models.errors import SceneError
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
-from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     DriverTable,
     FromRestDriver,
@@ -36,7 +36,7 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
     if faults:
         raise SceneError(place, faults)
     links = {name: _link(name, link, points[name], faults) for name, link in table.links.items()}
-    longest = max(_longest(p)[0] for p in points.values())
+    longest = max(span(p) for p in points.values())
     sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
     try:
         law = _law(driver)

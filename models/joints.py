@@ -113,3 +113,8 @@ def turned(vector: Point, angle_rad: float) -> Point:
     """The vector turned counter-clockwise by the angle."""
     c, s = math.cos(angle_rad), math.sin(angle_rad)
     return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
+
+
+def less(a: Point, b: Point) -> Point:
+    """The vector from ``b`` to ``a``."""
+    return a[0] - b[0], a[1] - b[1]

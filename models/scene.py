@@ -103,7 +103,7 @@ class Scene:
     @property
     def longest_m(self) -> float:
         """The longest distance between two points of one link: the scale that errors are over."""
-        return max(_span(link.points) for link in self.links.values())
+        return max(span(link.points) for link in self.links.values())
 
     @property
     def driver_pivot(self) -> str:
@@ -111,7 +111,7 @@ class Scene:
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
 
 
-def _span(points: Mapping[str, Point]) -> float:
+def span(points: Mapping[str, Point]) -> float:
     """The largest distance between two of the points [m]."""
     places = list(points.values())
     return max(

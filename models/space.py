@@ -23,6 +23,7 @@ from models.joints import (
     Slot,
     bodies,
     joints,
+    less,
     local_point,
     sliding_angle,
     turned,
@@ -30,7 +31,7 @@ from models.joints import (
 from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
 from models.rail import Rail
-from models.scene import GROUND, Point, Scene, Slider
+from models.scene import GROUND, Point, Scene, Slider, span
 
 
 @dataclass(frozen=True)
@@ -150,13 +151,13 @@ def _slide(
     guide, body = made[slider.on], made[rider]
     anchor = _anchor(scene, centre, rider, slider.point)
     along_line = turned((1.0, 0.0), slider.direction_rad)
-    start = _less(slider.through_m, centre[slider.on])
+    start = less(slider.through_m, centre[slider.on])
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
     found: list[pymunk.Constraint] = []
     if sound or not exact_lines:
-        ends = [_less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
+        ends = [less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
         found.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
     else:
         rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
@@ -173,12 +174,7 @@ def _firm(body: pymunk.Body) -> bool:
 
 def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
     """A point in the coordinates of the pymunk body."""
-    return _less(local_point(scene, body, point), centre[body])
-
-
-def _less(a: Point, b: Point) -> Point:
-    """Difference of two vectors."""
-    return a[0] - b[0], a[1] - b[1]
+    return less(local_point(scene, body, point), centre[body])
 
 
 def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -213,5 +209,4 @@ def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Poi
 
 def _reach(scene: Scene, body: str) -> float:
     """The largest distance between two points of a body [m]."""
-    places = list((scene.ground if body == GROUND else scene.links[body].points).values())
-    return max((math.dist(a, b) for a in places for b in places), default=0.0)
+    return span(scene.ground if body == GROUND else scene.links[body].points)
