@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
+
+# Nothing is drawn here: without this, importing MuJoCo loads a window library by way of a process
+# of its own, which takes longer than the rest and outlives a worker that is told to end.
+os.environ.setdefault("MUJOCO_GL", "disable")
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
