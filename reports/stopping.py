@@ -26,6 +26,8 @@ class Stopped(BaseException):
 
 
 _seen: list[Stopped] = []
+_waiting: list[int] | None = None
+"""The signals that came while they were held back; None while they are not."""
 
 
 def seen() -> Stopped | None:
@@ -42,6 +44,9 @@ def install() -> None:
 
 
 def _stop(number: int, _frame: FrameType | None) -> None:
+    if _waiting is not None:
+        _waiting.append(number)
+        return
     for each in SIGNALS:
         signal.signal(each, signal.SIG_IGN)
     end = threading.Timer(PATIENCE_S, os._exit, [128 + number])  # a lock may never be released
@@ -65,14 +70,19 @@ def broken_pipe_ends(at_once: bool) -> None:
 def held_back() -> Iterator[None]:
     """Signals wait until the end of the block; processes that are started in it are born deaf to
     them, until `leave_to_parent`."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    global _waiting  # noqa: PLW0603 - a signal handler has nothing else to look at
+    # The mask is for the processes; here another thread may take the signal all the same.
+    masks = hasattr(signal, "pthread_sigmask")  # not on Windows
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS) if masks else set()
+    _waiting = []
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        came, _waiting = _waiting, None
+        if masks:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if came:
+            _stop(came[0], None)
 
 
 def leave_to_parent() -> None:
