@@ -42,9 +42,14 @@ def load_scene(name_or_path: str) -> Scene:
     SceneError
         A file with faults, all of them in one message.
     """
+    return read_scene(find_scene(name_or_path))
+
+
+def find_scene(name_or_path: str) -> Path:
+    """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
     known = shipped()
     if name_or_path in known:
-        return read_scene(known[name_or_path])
+        return known[name_or_path]
     path = Path(name_or_path)
     try:
         there = bool(name_or_path) and path.exists()
@@ -53,7 +58,7 @@ def load_scene(name_or_path: str) -> Scene:
     except (OSError, ValueError):  # a name too long for the system, or with a null byte
         there = False
     if there:
-        return read_scene(path)
+        return path
     near = difflib.get_close_matches(path.stem[:200], known, n=3, cutoff=0.5)
     hint = f"Did you mean {' or '.join(near)}?" if near else "`crankcheck scenes` lists the names."
     shown = name_or_path if len(name_or_path) <= 80 else name_or_path[:77] + "..."
@@ -62,7 +67,7 @@ def load_scene(name_or_path: str) -> Scene:
 
 def read_scene(path: Path) -> Scene:
     """Read one scene file. Raises SceneError with every fault of the file."""
-    return parse_scene(_read_text(path), str(path))
+    return parse_scene(read_text(path), str(path))
 
 
 def parse_scene(text: str, place: str) -> Scene:
@@ -80,8 +85,8 @@ def parse_scene(text: str, place: str) -> Scene:
     return scene_from_table(table, driver, place)
 
 
-def _read_text(path: Path) -> str:
-    """The text of a scene file, or SceneError that says why it could not be read."""
+def read_text(path: Path) -> str:
+    """The text of a scene file. Raises SceneError that says why it could not be read."""
     if path.is_dir():
         raise SceneError(str(path), ["a directory; name a scene file in it (.toml)"])
     try:

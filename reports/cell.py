@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -14,29 +15,21 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
-from reports.compare import compare, places
-from reports.convergence import AT_ROUNDING, Convergence, convergence
-from reports.errors import Departure, Error, Errors, Quantity, largest
+from reports.compare import compare
+from reports.convergence import Convergence
+from reports.errors import Departure, Errors
+from reports.halving import followed
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
-from reports.stamps import incomplete
 from reports.tolerance import Limit, limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
-
-PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
-CLOSED: tuple[Quantity, ...] = (*PLACES, "gap")
-HALVINGS = 2
-EXACT_DRIVE = 1e-9
-"""A drive error [rad] up to which the crank is where it should be, but for rounding."""
-BEHIND_DRIVE = 5.0
-"""How far behind the rounding of the crank that of the other links may be."""
 
 
 @dataclass(frozen=True)
 class Cell:
     """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
-    shown and judged, and does not count for the exit code."""
+    shown and judged, and does not count for the exit code. ``settings`` override the profile."""
 
     scene: Scene
     engine: str
@@ -47,6 +40,7 @@ class Cell:
     drive: Drive = "prescribed"
     tolerance: Mapping[str, float] = field(default_factory=dict)
     converge: bool = True
+    settings: Mapping[str, SettingValue] = field(default_factory=dict)
 
     @property
     def turns(self) -> float:
@@ -95,29 +89,37 @@ class Checked:
 
 def check(cell: Cell) -> Checked:
     """Run a cell at its step (and at half and a quarter of it), compare and judge it."""
+    return examined(cell)[0]
+
+
+def examined(cell: Cell) -> tuple[Checked, Run | None]:
+    """As `check`, and the run at the full step, None where there is none."""
     began = time.perf_counter()
-    found = _checked(cell)
-    return replace(found, wall_s=time.perf_counter() - began)
+    found, done = _examined(cell)
+    return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _checked(cell: Cell) -> Checked:
-    """As `check`, but for the time."""
+def _examined(cell: Cell) -> tuple[Checked, Run | None]:
+    """As `examined`, but for the time."""
     try:
         state = solve(cell.scene, np.zeros(1)).state()
         done = _run(cell, state, 1)
     except EngineError as error:
-        return unfinished(cell, "unsupported", str(error))
+        return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
-        return unfinished(cell, "crashed", f"no reference at the start: {error}")
+        return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
     try:
         errors = compare(cell.scene, done)
     except CrankcheckError as error:
-        return unfinished(cell, "crashed", f"the run has no reference to compare with: {error}")
+        why = f"the run has no reference to compare with: {error}"
+        return unfinished(cell, "crashed", why), done
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
-    seen = _convergence(cell, state, errors) if cell.converge and errors else None
+    seen = None
+    if cell.converge and errors:
+        seen = followed(cell.scene, cell.dt_s, errors, cell.tolerance, partial(_run, cell, state))
     evidence = Evidence(
         status=status,
         reason=reason,
@@ -129,7 +131,7 @@ def _checked(cell: Cell) -> Checked:
         profile=cell.profile,
         mass_ratio=_mass_ratio(cell.scene),
     )
-    return Checked(
+    checked = Checked(
         cell=cell,
         version=done.version,
         status=status,
@@ -142,6 +144,7 @@ def _checked(cell: Cell) -> Checked:
         findings=judge(evidence),
         warnings=done.warnings,
     )
+    return checked, done
 
 
 def _mass_ratio(scene: Scene) -> float:
@@ -177,74 +180,5 @@ def _run(cell: Cell, state: State, finer: int) -> Run:
         steps=cell.steps * finer,
         every=finer,
         drive=cell.drive,
+        settings=cell.settings,
     )
-
-
-def _convergence(cell: Cell, state: State, errors: Errors) -> Convergence | None:
-    """The largest error of place at the step, its half and its quarter.
-
-    The quantity that is worst at the full step is followed, at the same instants throughout.
-    """
-    worst = _worst_place(errors)
-    if worst is None:
-        return None
-    parts = [2**halving for halving in range(HALVINGS + 1)]
-    finer = [_finer(cell, state, p) for p in parts[1:]]
-    same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
-    every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
-    rounding = _rounding(largest(row for row in every_row if row.quantity == "drive"))
-    return convergence(
-        [cell.dt_s / p for p in parts],
-        [worst.pure, *(row.pure if row else math.nan for row in same)],
-        "rad" if worst.unit == "rad" else "of the longest link",
-        rounding,
-        faults=[fault for _, fault in finer if fault],
-        over=[
-            text
-            for p, (rows, _) in zip(parts[1:], finer, strict=True)
-            if (text := _over(cell, errors, p, rows, rounding))
-        ],
-    )
-
-
-def _finer(cell: Cell, state: State, parts: int) -> tuple[list[Error], str]:
-    """Errors of place and gaps of a finer run, and how it did not end well: "" where it did."""
-    at = f"at dt {cell.dt_s / parts:.3g} s"
-    try:
-        done = _run(cell, state, parts)
-        rows = places(cell.scene, done)
-    except CrankcheckError as error:
-        return [], f"{at} there is nothing to compare: {error}"
-    if done.status != "ok":
-        return rows, f"{at} {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
-    short = incomplete(done)
-    return rows, f"{at} {short}" if short else ""
-
-
-def _over(cell: Cell, errors: Errors, parts: int, rows: list[Error], rounding: float) -> str:
-    """Which errors of a finer run are over the limits of its step, the worst of each quantity.
-
-    What is over its limit at the full step fails its own rule, and is not told again.
-    """
-    before = limits(cell.scene, errors, cell.tolerance)
-    in_force = limits(cell.scene, replace(errors, step_rad=errors.step_rad / parts), cell.tolerance)
-    texts = []
-    for name in CLOSED:
-        full, fine = errors.worst(name), largest(row for row in rows if row.quantity == name)
-        if full is None or fine is None or not full.pure <= before[name].number:
-            continue
-        limit = in_force[name].number
-        if not fine.pure <= max(limit, rounding):
-            texts.append(f"{name} of {fine.body} {fine.pure:.2g}, limit {limit:.2g}")
-    return f"at dt {cell.dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
-
-
-def _rounding(drive: Error | None) -> float:
-    """The error of place that rounding explains: a prescribed crank is off by nothing else."""
-    seen = drive.pure if drive is not None and drive.pure <= EXACT_DRIVE else 0.0
-    return max(AT_ROUNDING, BEHIND_DRIVE * seen)
-
-
-def _worst_place(errors: Errors) -> Error | None:
-    """The largest total error of angle, displacement or position, as pure numbers."""
-    return largest(row for row in errors.rows if row.quantity in PLACES and row.kind == "total")

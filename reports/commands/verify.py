@@ -15,14 +15,14 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.scene import Scene
 from reports.cell import Cell, Checked
 from reports.commands.names import chosen_engines, chosen_profiles, chosen_scenes
-from reports.compare import SETTLING
-from reports.frames import cell_frame, cell_row, error_frame
+from reports.commands.steps import counted
+from reports.frames import cell_frame, error_frame
 from reports.junit import junit
 from reports.pool import check_all
 from reports.provenance import provenance
+from reports.rows import cell_row
 from reports.singular import refuse_singular
 from reports.tolerance import parse
 from reports.verdict_table import show
@@ -30,12 +30,6 @@ from reports.writing import check_different, check_file, check_folder, write
 from sim.engine import Drive
 from sim.registry import engine
 
-LEAST_STEPS_PER_TURN = 8
-LEAST_STEPS = 2 * SETTLING
-"""Measured: of the shipped scenes none fails for shortness alone in a run of so many steps."""
-MOST_STEPS = 300_000
-"""All steps are logged: as many take about 1 GB with a six-bar."""
-STEPS_PER_TURN = 720.0
 IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
 
 
@@ -91,13 +85,15 @@ def plan(request: Request) -> list[Cell]:
     tolerance = parse(request.tolerance)
     if request.dt_s is not None and request.steps_per_turn is not None:
         raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
-    _positive("--turns", request.turns, "turns; 1 is one period of the driver")
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(f"--drive {request.drive!r}: unknown; use prescribed or servo")
     scenes = chosen_scenes(request.scenes)
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
-    steps = {scene.name: _step(request, scene) for scene in scenes}
+    steps = {
+        scene.name: counted(scene, request.dt_s, request.steps_per_turn, request.turns)
+        for scene in scenes
+    }
     for scene in scenes:
         dt_s, count = steps[scene.name]
         refuse_singular(scene, dt_s * count)
@@ -118,42 +114,6 @@ def plan(request: Request) -> list[Cell]:
         for profile, gated in profiles
         for name in engines
     ]
-
-
-def _step(request: Request, scene: Scene) -> tuple[float, int]:
-    """Step [s] and number of steps for a scene."""
-    period = scene.driver.law.period_s
-    if request.dt_s is not None:
-        _positive("--dt", request.dt_s, "seconds, such as 1e-3")
-        option, per_turn = f"--dt {request.dt_s:g}", period / request.dt_s
-    else:
-        per_turn = STEPS_PER_TURN if request.steps_per_turn is None else request.steps_per_turn
-        _positive("--steps-per-turn", per_turn, "steps, such as 720")
-        option = f"--steps-per-turn {per_turn:g}"
-    if per_turn < LEAST_STEPS_PER_TURN * (1 - 1e-12):
-        raise CrankcheckError(
-            f"{option}: {per_turn:.3g} steps in a turn of {scene.name} ({period:.4g} s); a "
-            f"turn needs at least {LEAST_STEPS_PER_TURN}, so dt at most "
-            f"{period / LEAST_STEPS_PER_TURN:.4g} s"
-        )
-    steps = request.turns * per_turn * (1 - 1e-12)  # may be infinite
-    if not steps <= MOST_STEPS:
-        raise CrankcheckError(
-            f"{option} --turns {request.turns:g}: {steps:.6g} steps of {scene.name}; at most "
-            f"{MOST_STEPS} are logged; take a longer step or fewer turns"
-        )
-    if steps <= LEAST_STEPS - 1:
-        raise CrankcheckError(
-            f"{option} --turns {request.turns:g}: {math.ceil(steps)} steps of {scene.name}; an "
-            f"engine takes up its pins in the first {SETTLING}, so a run has at least "
-            f"{LEAST_STEPS}: take {LEAST_STEPS / per_turn:.3g} turns or more, or a shorter step"
-        )
-    return request.dt_s or period / per_turn, math.ceil(steps)
-
-
-def _positive(option: str, value: float, unit: str) -> None:
-    if not (math.isfinite(value) and value > 0.0):
-        raise CrankcheckError(f"{option} {value:g}: give a number above 0, in {unit}")
 
 
 def _check_outputs(request: Request) -> None:

@@ -7,7 +7,8 @@ import pytest
 
 from models.scene import Scene
 from reports.cell import Cell, check, unfinished
-from reports.frames import ERROR_COLUMNS, cell_frame, error_frame
+from reports.frames import cell_frame, error_frame
+from reports.rows import ERROR_COLUMNS
 from reports.tolerance import DEFAULTS
 
 
