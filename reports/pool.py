@@ -25,7 +25,7 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
-    jobs = jobs or _processors()
+    jobs = jobs or processors()
     if jobs == 1 or len(cells) <= FEW:
         return [_tell(check(cell), done) for cell in cells]
     found = _parallel(cells, jobs, done)
@@ -35,7 +35,7 @@ def check_all(
     return [found[index] for index in range(len(cells))]
 
 
-def _processors() -> int:
+def processors() -> int:
     """How many processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

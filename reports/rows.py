@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 from reports.cell import Checked
 from reports.errors import BodyKind, Kind, Quantity, Source, largest
@@ -87,6 +88,7 @@ def cell_row(one: Checked) -> dict[str, object]:
         column = name.replace("-", "_")
         row[f"{column}_pure"] = worst.pure if worst else None
         row[f"{column}_limit_pure"] = one.limits[name].number if name in one.limits else None
+    row["place_pure"] = _worst(row["angle_pure"], row["displacement_pure"], row["position_pure"])
     seen = one.convergence
     row |= {
         "trend": seen.trend if seen else None,
@@ -97,6 +99,12 @@ def cell_row(one: Checked) -> dict[str, object]:
         "warnings": " | ".join(one.warnings),
     }
     return row
+
+
+def _worst(*pure: object) -> float | None:
+    """The largest of some pure errors; one that is not finite is larger than any."""
+    known = [each for each in pure if isinstance(each, float)]
+    return max(known, key=lambda each: each if math.isfinite(each) else math.inf, default=None)
 
 
 def identity(one: Checked) -> dict[str, object]:

@@ -1,0 +1,153 @@
+"""`crankcheck sweep`: run the grid of a study, keep every cell, then time them one by one."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.commands.names import chosen_engines
+from reports.provenance import provenance
+from reports.store.manifest import Manifest
+from reports.store.writer import Writer
+from reports.sweep.grid import Grid, grid
+from reports.sweep.isolation import Limits
+from reports.sweep.running import Done, Running
+from reports.sweep.study import Study, Value, Variant, load_study
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `sweep` was asked for, as given."""
+
+    folder: Path
+    study: Path | None = None
+    scenes: Sequence[str] = ()
+    engines: Sequence[str] = ()
+    profiles: Sequence[str] = ()
+    steps_per_turn: str | None = None
+    turns: float | None = None
+    settings: Sequence[str] = ()
+    limit_s: float = 60.0
+    memory_gb: float = 2.0
+    jobs: int = 0
+    dask: str | None = None
+    timing: bool = True
+    keep_trajectories: bool = False
+
+
+def sweep(request: Request, console: Console, progress: Console) -> int:
+    """Do what of the study is not done yet; returns the exit code, 0.
+
+    A cell that failed is a row with its status and reason, and no failure of the sweep.
+
+    Raises
+    ------
+    CrankcheckError
+        Anything about the request that can be told before running.
+    """
+    limits = _limits(request)
+    study = asked(request)
+    laid = grid(study)
+    facts = provenance({task.cell.engine: task.version for task in laid.tasks})
+    run = {
+        "command": ["crankcheck", *sys.argv[1:]],
+        "started": datetime.now(UTC).isoformat(timespec="seconds"),
+        "study": study.model_dump(exclude_defaults=True),
+        "provenance": facts,
+    }
+    with Writer(request.folder, Manifest(laid.texts, (run,))) as writer:
+        running = Running(writer, laid.tasks, limits, facts, progress)
+        done = running.errors(request.keep_trajectories, request.jobs, request.dask)
+        if request.timing:
+            done = running.timings(done)
+    _summary(console, request.folder, laid, done)
+    return 0
+
+
+def asked(request: Request) -> Study:
+    """The study of the file, or the shipped one, with what the command line says in its place."""
+    study = load_study(request.study)
+    engines = chosen_engines(request.engines)
+    variants = list(study.variants)
+    if request.profiles or (request.settings and request.study is None):
+        profiles = list(dict.fromkeys(request.profiles or ("tuned",)))
+        variants = [Variant(engine=e, profile=p) for p in profiles for e in engines]
+    variants = [variant for variant in variants if variant.engine in engines]
+    for name, overrides in _overrides(request.settings, engines).items():
+        variants = [
+            v.model_copy(update={"settings": {**v.settings, **overrides}})
+            if v.engine == name
+            else v
+            for v in variants
+        ]
+    if not variants:
+        raise CrankcheckError(
+            f"--engine {', '.join(request.engines)}: the study has no variant of it; add --profile"
+        )
+    return study.model_copy(
+        update={
+            "variants": variants,
+            "scenes": list(request.scenes) or study.scenes,
+            "steps_per_turn": _steps(request.steps_per_turn) or study.steps_per_turn,
+            "turns": study.turns if request.turns is None else request.turns,
+        }
+    )
+
+
+def _overrides(
+    texts: Sequence[str], engines: Sequence[str]
+) -> dict[str, dict[str, Value | list[Value]]]:
+    """`mujoco.iterations=2,10` and the like, by engine."""
+    found: dict[str, dict[str, Value | list[Value]]] = {}
+    for text in texts:
+        name, equals, values = text.partition("=")
+        owner, dot, setting = name.strip().partition(".")
+        if not (equals and dot and values.strip()):
+            raise CrankcheckError(
+                f"--set {text!r}: write it like --set mujoco.iterations=2,10: engine.setting=values"
+            )
+        if owner not in engines:
+            raise CrankcheckError(
+                f"--set {text!r}: {owner!r} is no engine of this sweep; it has {', '.join(engines)}"
+            )
+        several: list[Value] = [value.strip() for value in values.split(",")]
+        found.setdefault(owner, {})[setting.strip()] = several
+    return found
+
+
+def _steps(text: str | None) -> list[float]:
+    """`90,180,360` as numbers."""
+    try:
+        return [float(part) for part in text.split(",")] if text else []
+    except ValueError:
+        raise CrankcheckError(
+            f"--steps-per-turn {text!r}: write numbers with commas between, such as 90,180,360"
+        ) from None
+
+
+def _limits(request: Request) -> Limits:
+    if not (request.limit_s > 0.0 and request.memory_gb > 0.0):
+        raise CrankcheckError(
+            f"--limit-s {request.limit_s:g} --memory-gb {request.memory_gb:g}: both are above 0"
+        )
+    return Limits(request.limit_s, request.memory_gb)
+
+
+def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
+    """What was run now, what there is, and what to do with it."""
+    number = len(laid.tasks)
+    console.print(
+        f"{number} cells: {done.ran} run now, {number - done.ran} were there; "
+        f"{done.timed} timed now"
+    )
+    for status, reasons in sorted(done.failed.items()):
+        console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
+        for reason, _ in reasons.most_common(2):
+            console.print(f"    {reason}", markup=False, highlight=False)
+    console.print(f"stored in {folder}; next: crankcheck report {folder} -o report.html")

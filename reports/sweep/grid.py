@@ -1,0 +1,101 @@
+"""The cells of a study, each with the key that names its result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from models.files import find_scene, parse_scene, read_text, shipped
+from reports.cell import Cell
+from reports.commands.names import chosen_engines, chosen_scenes
+from reports.commands.steps import counted
+from reports.singular import refuse_singular
+from reports.store.key import cell_key, digest, line_key
+from reports.sweep.study import Study, Variant
+from sim.engine import SettingValue
+from sim.registry import engine
+from sim.settings import profile_of, resolved
+
+
+@dataclass(frozen=True)
+class Task:
+    """A cell with its names: ``key`` of its own, ``line`` of the cells that differ in step only.
+
+    ``settings`` is the complete set that the engine is asked for.
+    """
+
+    cell: Cell
+    key: str
+    line: str
+    variant: str
+    version: str
+    scene_digest: str
+    settings: Mapping[str, SettingValue]
+
+    @property
+    def label(self) -> str:
+        cell = self.cell
+        return f"{cell.scene.name}, {cell.engine} {self.variant}, {cell.steps_per_turn:g} a turn"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The tasks of a study, each key once, and the text of every scene by its name."""
+
+    tasks: tuple[Task, ...]
+    texts: Mapping[str, str]
+
+
+def grid(study: Study) -> Grid:
+    """Lay out a study.
+
+    Raises
+    ------
+    CrankcheckError
+        A scene, engine, profile, setting or step that can not be run.
+    """
+    scenes = chosen_scenes(study.scenes)
+    texts = _texts(study.scenes)
+    variants = [one for variant in study.variants for one in variant.each()]
+    versions = {
+        name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
+    }
+    complete = [(v, _complete(v)) for v in variants]
+    tasks: dict[str, Task] = {}
+    for scene in scenes:
+        name = digest(texts[scene.name])
+        steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
+        refuse_singular(scene, max(dt_s * count for dt_s, count in steps))
+        for variant, settings in complete:
+            for dt_s, count in steps:
+                cell = Cell(
+                    scene=scene,
+                    engine=variant.engine,
+                    profile=variant.profile,
+                    dt_s=dt_s,
+                    steps=count,
+                    gated=variant.profile == "tuned" and not variant.settings,
+                    drive=study.drive,
+                    converge=False,
+                    settings=variant.chosen,
+                )
+                version = versions[variant.engine]
+                line = line_key(cell, name, version, settings)
+                key = cell_key(line, cell)
+                tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
+    return Grid(tuple(tasks.values()), texts)
+
+
+def _complete(variant: Variant) -> dict[str, SettingValue]:
+    """All settings of a variant. Raises CrankcheckError for one that the engine lacks."""
+    return resolved(profile_of(engine(variant.engine), variant.profile), variant.chosen)
+
+
+def _texts(names: Sequence[str]) -> dict[str, str]:
+    """The text of each scene's file, by the scene's own name; of all shipped ones for none."""
+    found: dict[str, str] = {}
+    for given in names or shipped():
+        path = find_scene(given)
+        text = read_text(path)
+        found[parse_scene(text, str(path)).name] = text
+    return found

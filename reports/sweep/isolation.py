@@ -1,0 +1,124 @@
+"""Run cells in a process of their own, which is ended when it fails or takes too long."""
+
+from __future__ import annotations
+
+import contextlib
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import IO, Generic, TypeVar, cast
+
+from reports.sweep.child import receive, send
+
+Result = TypeVar("Result")
+LIMIT_S = 60.0
+MEMORY_GB = 2.0
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a cell may take: wall time [s] and memory beyond the imported packages [GB]."""
+
+    time_s: float = LIMIT_S
+    memory_gb: float = MEMORY_GB
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason."""
+
+    status: str
+    reason: str
+
+
+class Isolated(Generic[Result]):
+    """A child process that runs one job at a time; a new one takes the place of one that died.
+
+    Not to be shared by threads. `close` ends the child at once.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+        self._child: subprocess.Popen[bytes] | None = None
+        self.closed = False
+
+    def call(self, function: Callable[..., Result], *arguments: object) -> Result | Lost:
+        """What ``function`` returns, or how it was lost.
+
+        The function has to be importable by name, and the arguments to be pickled.
+        """
+        if self.closed:
+            return Lost("crashed", "the sweep was ended")
+        child = self._child = self._child or self._started()
+        jobs, answers = _pipes(child)
+        late = threading.Event()
+
+        def end() -> None:
+            late.set()
+            child.kill()
+
+        clock = threading.Timer(self.limits.time_s, end)
+        clock.daemon = True
+        clock.start()
+        try:
+            send(jobs, (function, arguments))
+            raw = receive(answers)
+        except OSError:
+            raw = b""
+        finally:
+            clock.cancel()
+        if not raw:
+            return self._lost(child, late.is_set())
+        how, value = pickle.loads(raw)
+        return cast(Result, value) if how == "done" else Lost(how, str(value))
+
+    def close(self) -> None:
+        """End the child, also in the middle of a job."""
+        self.closed = True
+        if self._child is not None:
+            self._child.kill()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        """A new child, in a session of its own: Ctrl-C at the terminal is not for it."""
+        child = subprocess.Popen(
+            [sys.executable, "-m", "reports.sweep.child", str(int(1e9 * self.limits.memory_gb))],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        receive(_pipes(child)[1])  # it is ready, or has ended: the first job will tell
+        return child
+
+    def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:
+        """Why a child gave no answer; the next job gets another."""
+        child.kill()
+        code = child.wait()
+        self._child = None
+        for pipe in _pipes(child):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        if late:
+            return Lost("timeout", f"no end within {self.limits.time_s:g} s")
+        return Lost("crashed", f"the engine ended its process ({_ending(code)})")
+
+
+def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
+    """Where jobs go in and answers come out."""
+    assert child.stdin is not None
+    assert child.stdout is not None
+    return child.stdin, child.stdout
+
+
+def _ending(code: int) -> str:
+    """An exit code in words."""
+    if code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"signal {signal.Signals(-code).name}"
+    except ValueError:
+        return f"signal {-code}"

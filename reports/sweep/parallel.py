@@ -1,0 +1,75 @@
+"""Error runs of many cells at a time, through joblib: here, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Generator, Sequence
+from typing import cast
+
+from joblib import Parallel, delayed, parallel_config  # type: ignore[import-untyped]  # no stubs
+
+from models.errors import CrankcheckError
+from reports.pool import processors
+from reports.sweep.grid import Task
+from reports.sweep.isolation import Isolated, Limits, Lost
+from reports.sweep.outcome import Outcome, measured
+
+_own = threading.local()
+_all: list[Isolated[Outcome]] = []
+Found = tuple[int, Outcome | Lost]
+
+
+def run_all(
+    tasks: Sequence[Task], limits: Limits, keep_motion: bool, jobs: int, dask: str | None
+) -> Generator[Found]:
+    """Run every task; yields index and outcome of each, in the order in which they end.
+
+    Each cell runs in a child process of the joblib worker that has it: a joblib worker here is a
+    thread that waits for its child, on a cluster a thread of a Dask worker.
+
+    Parameters
+    ----------
+    jobs : int
+        Cells at a time on this machine; 0 for one per processor.
+    dask : str or None
+        Address of the scheduler of a cluster to use in place of this machine.
+    """
+    work = (delayed(_one)(i, task, limits, keep_motion) for i, task in enumerate(tasks))
+    try:
+        with parallel_config(**_backend(jobs or processors(), dask)):
+            yield from Parallel(return_as="generator_unordered", batch_size=1)(work)
+    finally:
+        for isolated in _all:
+            isolated.close()
+        _all.clear()
+
+
+def _backend(jobs: int, dask: str | None) -> dict[str, object]:
+    """What joblib is told. Raises CrankcheckError where there is no cluster, or no Dask."""
+    if dask is None:
+        return {"backend": "threading", "n_jobs": jobs}
+    try:
+        from distributed import Client
+    except ImportError:
+        raise CrankcheckError(
+            "--dask: distributed is not installed; pip install 'crankcheck[dask]'"
+        ) from None
+    try:
+        client = Client(dask, timeout="10s")  # type: ignore[no-untyped-call]  # not annotated
+    except (OSError, ValueError) as error:
+        raise CrankcheckError(
+            f"--dask {dask}: no scheduler answers there ({error}); start one with `dask scheduler` "
+            "and workers with `dask worker ADDRESS`"
+        ) from None
+    if not client.scheduler_info()["workers"]:
+        raise CrankcheckError(f"--dask {dask}: no workers; start some with `dask worker {dask}`")
+    return {"backend": "dask", "n_jobs": -1}
+
+
+def _one(index: int, task: Task, limits: Limits, keep_motion: bool) -> Found:
+    """One cell in the child process of this thread."""
+    isolated = cast("Isolated[Outcome] | None", getattr(_own, "isolated", None))
+    if isolated is None or isolated.closed or isolated.limits != limits:
+        isolated = _own.isolated = Isolated(limits)
+        _all.append(isolated)
+    return index, isolated.call(measured, task.cell, keep_motion)

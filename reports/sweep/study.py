@@ -1,0 +1,113 @@
+"""A study: the grid of scenes, engine settings and steps that a sweep runs, from TOML or YAML.
+
+::
+
+    scenes = ["fourbar-lecture-1", "my-scene.toml"]   # all shipped ones if left out
+    steps_per_turn = [90, 180, 360, 720]
+    turns = 2
+
+    [[variants]]
+    name = "stiff"                     # how tables and legends call it
+    engine = "mujoco"
+    profile = "as-shipped"             # the settings it starts from
+    settings = { solref_timeconst_steps = [2, 4], solimp_dmin = 0.9999 }
+
+A list of values makes a variant for each of them, or for each combination of several lists.
+"""
+
+from __future__ import annotations
+
+import itertools
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from models.errors import CrankcheckError
+from models.files import read_text
+from sim.engine import SettingValue
+
+DEFAULT = Path(__file__).parent / "studies" / "default.toml"
+Value = float | int | str
+Name = Annotated[str, Field(min_length=1, max_length=80)]
+
+
+class Variant(BaseModel):
+    """An engine with settings: a profile, and what of it is overridden, by one value or several."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    engine: Name
+    profile: Name
+    name: str = Field(default="", max_length=80)
+    reason: str = ""
+    settings: dict[str, Value | list[Value]] = Field(default_factory=dict)
+
+    def each(self) -> list[Variant]:
+        """One variant per combination of the listed values, named after them."""
+        lists = {k: v if isinstance(v, list) else [v] for k, v in self.settings.items()}
+        several = [name for name, values in lists.items() if len(values) > 1]
+        found = []
+        for values in itertools.product(*lists.values()):
+            chosen = dict(zip(lists, values, strict=True))
+            named = several if self.name else list(chosen)
+            parts = [self.name or self.profile, *(f"{k}={_short(chosen[k])}" for k in named)]
+            found.append(
+                self.model_copy(update={"name": ", ".join(parts), "settings": dict(chosen)})
+            )
+        return found
+
+    @property
+    def chosen(self) -> dict[str, SettingValue]:
+        """The overrides of a variant with one value each."""
+        return {k: v for k, v in self.settings.items() if not isinstance(v, list)}
+
+
+class Study(BaseModel):
+    """What a sweep runs, and how."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    scenes: list[Name] = Field(default_factory=list)
+    variants: list[Variant] = Field(min_length=1)
+    steps_per_turn: list[float] = Field(min_length=1)
+    turns: float = 2.0
+    drive: Literal["prescribed", "servo"] = "prescribed"
+
+
+def load_study(path: Path | None) -> Study:
+    """The study of a file, by its ending, or the shipped one for None.
+
+    Raises
+    ------
+    CrankcheckError
+        Not to be read, neither TOML nor YAML, or with keys and values that a study has not.
+    """
+    path = path or DEFAULT
+    kind = path.suffix.lower()
+    if kind not in (".toml", ".yaml", ".yml"):
+        raise CrankcheckError(
+            f"study {path}: found {kind or 'no ending'}; use .toml, .yaml or .yml"
+        )
+    text = read_text(path)
+    try:
+        raw = tomllib.loads(text) if kind == ".toml" else yaml.safe_load(text)
+    except (tomllib.TOMLDecodeError, yaml.YAMLError, RecursionError) as error:
+        what = "TOML" if kind == ".toml" else "YAML"
+        first = " ".join(str(error).split())[:300]
+        raise CrankcheckError(f"study {path}: not valid {what}: {first}") from None
+    try:
+        return Study.model_validate(raw)
+    except ValidationError as error:
+        faults = "\n  ".join(
+            f"{'.'.join(str(part) for part in fault['loc']) or 'study'}: {fault['msg']}"
+            for fault in error.errors()
+        )
+        raise CrankcheckError(f"study {path}:\n  {faults}") from None
+
+
+def _short(value: object) -> str:
+    """A value as short as it can be told."""
+    return f"{value:g}" if isinstance(value, float) else str(value)
