@@ -1,0 +1,83 @@
+"""What a step costs, how well that is known, and the time that a target error takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from reports.choice.lines import Line
+from reports.choice.machines import comparable
+from reports.fits.reach import interpolate
+from reports.store.reader import Stored
+
+SHARE = 0.95
+"""The share of A/A pairs whose halves differ by no more than the noise."""
+
+
+def pairs(stored: Stored) -> pd.Series[float]:
+    """|a - b| / min(a, b) of the A/A pair of every timed cell: nothing differs but the moment."""
+    cells = comparable(stored.cells)
+    a, b = cells["us_per_step_a"], cells["us_per_step_b"]
+    both = a.notna() & b.notna()
+    return (a[both] - b[both]).abs() / np.minimum(a[both], b[both])
+
+
+def noise(stored: Stored) -> float:
+    """The relative difference up to which two costs are called equal; NaN where nothing was timed.
+
+    95 of 100 pairs of repeats of the same thing differ by less.
+    """
+    found = pairs(stored)
+    return float(found.quantile(SHARE)) if len(found) else math.nan
+
+
+def equal(a: float, b: float, within: float) -> bool:
+    """Whether two costs differ by no more than the noise ``within``."""
+    return a == b or abs(a - b) <= within * min(a, b)
+
+
+@dataclass(frozen=True)
+class Reached:
+    """A target error reached on a line: steps a turn, and time per simulated turn [s].
+
+    ``s_per_turn`` is NaN where the cells were not timed. Where the coarsest step that ended well
+    reaches the target already, it stands for itself: a coarser one may do, but was not run.
+    """
+
+    steps_per_turn: float
+    s_per_turn: float
+    how: Literal["along the fit", "at the coarsest step"]
+
+
+def reached(line: Line, target: float) -> Reached | None:
+    """Where a line comes to an error of at most ``target`` and stays below it; None: nowhere."""
+    dt_s = line.fit.dt_for(target)
+    if dt_s is not None:
+        return Reached(line.period_s / dt_s, _cost(line, dt_s), "along the fit")
+    runs = line.fit.runs
+    if runs and all(error <= target for _, error in runs):
+        coarsest = runs[-1][0]
+        return Reached(line.period_s / coarsest, _cost(line, coarsest), "at the coarsest step")
+    return None
+
+
+def time_to(line: Line, target: float) -> float | None:
+    """Time per simulated turn [s] that an error of ``target`` takes (see `reached`).
+
+    Interpolated along the fit, never extrapolated; None where the line does not reach the target,
+    or was not timed.
+    """
+    found = reached(line, target)
+    return None if found is None or math.isnan(found.s_per_turn) else found.s_per_turn
+
+
+def _cost(line: Line, dt_s: float) -> float:
+    """Time per turn [s] at a step, between the measured ones; NaN where those were not timed."""
+    timed = line.cells.dropna(subset=["s_per_turn"])
+    costs = [float(cost) for cost in timed["s_per_turn"]]
+    found = interpolate([float(dt) for dt in timed["dt_s"]], costs, dt_s)
+    return math.nan if found is None else found

@@ -1,0 +1,110 @@
+"""The cells of a store as lines: a scene in one engine with one set of settings, at every step."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import cast
+
+import pandas as pd
+
+from reports.choice.machines import comparable
+from reports.convergence import AT_ROUNDING
+from reports.fits.line import LineFit, fit_line
+from reports.halving import BEHIND_DRIVE, EXACT_DRIVE
+from reports.store.reader import Stored
+from sim.engine import Drive, SettingValue
+
+
+@dataclass(frozen=True)
+class Line:
+    """Cells that differ in their step only.
+
+    ``cells`` are rows of the store, from the coarse to the fine step; ``settings`` are those that
+    were asked for. ``fit`` and ``words`` speak of one quantity.
+    """
+
+    scene: str
+    engine: str
+    variant: str
+    version: str
+    profile: str
+    drive: Drive
+    line: str
+    settings: Mapping[str, SettingValue]
+    cells: pd.DataFrame = field(repr=False, compare=False)
+    fit: LineFit
+    words: str
+
+    @property
+    def period_s(self) -> float:
+        """The period of the driver [s]."""
+        first = self.cells.iloc[0]
+        return float(first["dt_s"] * first["steps_per_turn"])
+
+
+def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
+    """The lines of a store, by scene and variant in the order of its study.
+
+    ``quantity`` is the column of ``stored.cells`` that is fitted. Where a store holds several
+    lines of one scene, engine, variant and drive (of another version of the engine, with other
+    settings under the same name, over other turns), only the newest is given: the highest version,
+    and of that the one that was written last. Times are those of one processor (see `machines`).
+    """
+    cells = comparable(stored.cells)
+    chosen = _newest(cells)
+    return tuple(
+        _line(rows.sort_values("dt_s", ascending=False).reset_index(drop=True), quantity)
+        for key, rows in cells.groupby("line", sort=False)
+        if key in chosen
+    )
+
+
+def _newest(cells: pd.DataFrame) -> set[str]:
+    """The names of the lines that no newer one replaces."""
+    names = ["scene", "engine", "variant", "drive"]
+    found: dict[tuple[str, ...], tuple[tuple[tuple[int, ...], int], str]] = {}
+    for at, row in enumerate(cells[[*names, "version", "line"]].itertuples(index=False)):
+        *which, version, line = (str(value) for value in row)
+        age = (numbers(version), at)
+        if tuple(which) not in found or age > found[tuple(which)][0]:
+            found[tuple(which)] = (age, line)
+    return {line for _, line in found.values()}
+
+
+def numbers(version: str) -> tuple[int, ...]:
+    """A version as numbers, which compare as versions do."""
+    return tuple(int(part) for part in re.findall(r"\d+", version))
+
+
+def _line(rows: pd.DataFrame, quantity: str) -> Line:
+    """One line of its rows."""
+    first = rows.iloc[0]
+    fit = fit_line(
+        [float(dt) for dt in rows["dt_s"]],
+        [float(error) for error in rows[quantity]],
+        rounding=_rounding(rows),
+        statuses=[str(status) for status in rows["status"]],
+    )
+    return Line(
+        scene=str(first["scene"]),
+        engine=str(first["engine"]),
+        variant=str(first["variant"]),
+        version=str(first["version"]),
+        profile=str(first["profile"]),
+        drive=cast(Drive, str(first["drive"])),
+        line=str(first["line"]),
+        settings=json.loads(str(first["asked"])),
+        cells=rows,
+        fit=fit,
+        words=fit.kind,
+    )
+
+
+def _rounding(rows: pd.DataFrame) -> float:
+    """The pure error that rounding explains: that of the crank, and what the others are behind."""
+    drive = max((e for e in rows["drive_pure"] if e <= EXACT_DRIVE), default=0.0)
+    return max(AT_ROUNDING, BEHIND_DRIVE * float(drive) if math.isfinite(drive) else 0.0)
