@@ -17,6 +17,7 @@ from reports.store.manifest import Manifest
 from reports.store.writer import Writer
 from reports.sweep.grid import Grid, grid
 from reports.sweep.isolation import Limits
+from reports.sweep.parallel import backend
 from reports.sweep.running import Done, Running
 from reports.sweep.study import Study, Value, Variant, load_study
 
@@ -54,6 +55,7 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
     limits = _limits(request)
     study = asked(request)
     laid = grid(study)
+    where = backend(request.jobs, request.dask)
     facts = provenance({task.cell.engine: task.version for task in laid.tasks})
     run = {
         "command": ["crankcheck", *sys.argv[1:]],
@@ -63,7 +65,7 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
     }
     with Writer(request.folder, Manifest(laid.texts, (run,))) as writer:
         running = Running(writer, laid.tasks, limits, facts, progress)
-        done = running.errors(request.keep_trajectories, request.jobs, request.dask)
+        done = running.errors(request.keep_trajectories, where)
         if request.timing:
             done = running.timings(done)
     _summary(console, request.folder, laid, done)

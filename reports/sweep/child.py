@@ -18,7 +18,11 @@ from pathlib import Path
 from typing import IO
 
 Job = tuple[Callable[..., object], tuple[object, ...]]
-Answer = tuple[str, object]
+Answer = tuple[str, object, bool]
+"""How a job ended (``done``, ``crashed``), its result or reason, and whether another child should
+do the next, as this one has much memory that it did not give back."""
+WORN = 0.5
+"""The share of its memory that a child may have kept from job to job."""
 
 
 def main(memory_bytes: int) -> None:
@@ -30,11 +34,13 @@ def main(memory_bytes: int) -> None:
     jobs: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, jobs), daemon=True).start()
     importlib.import_module("reports.sweep.outcome")  # no part of any cell's time or memory
-    _limit(memory_bytes)
-    send(answers, ("ready", None))
+    at_first = _taken()
+    _limit(at_first + memory_bytes)
+    send(answers, ("ready", None, False))
     while True:
         function, arguments = pickle.loads(jobs.get())
-        send(answers, _done(function, arguments, memory_bytes))
+        how, value = _done(function, arguments, memory_bytes)
+        send(answers, (how, value, _taken() - at_first > WORN * memory_bytes))
 
 
 def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
@@ -46,8 +52,8 @@ def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
 
 def _done(
     function: Callable[..., object], arguments: tuple[object, ...], memory_bytes: int
-) -> Answer:
-    """The answer to one job."""
+) -> tuple[str, object]:
+    """How one job ended, and its result or the reason."""
     try:
         return "done", function(*arguments)
     except MemoryError:
@@ -56,14 +62,21 @@ def _done(
         return "crashed", f"{type(error).__name__}: {error}"
 
 
-def _limit(memory_bytes: int) -> None:
-    """Let the process take ``memory_bytes`` beyond what it has, where the system can limit it."""
+def _taken() -> int:
+    """The memory that this process has asked for [bytes]; 0 where the system does not say."""
+    try:
+        pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[0]
+    except OSError:
+        return 0
+    return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _limit(most_bytes: int) -> None:
+    """Let the process have no more memory than that, where the system can hold it to it."""
     with contextlib.suppress(ImportError, OSError, ValueError, AttributeError):
         import resource
 
-        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-        most = pages * os.sysconf("SC_PAGE_SIZE") + memory_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+        resource.setrlimit(resource.RLIMIT_AS, (most_bytes, most_bytes))
 
 
 def send(stream: IO[bytes], value: object) -> None:

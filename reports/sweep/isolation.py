@@ -45,15 +45,23 @@ class Isolated(Generic[Result]):
         self.limits = limits
         self._child: subprocess.Popen[bytes] | None = None
         self.closed = False
+        self._at_work = threading.Lock()
 
     def call(self, function: Callable[..., Result], *arguments: object) -> Result | Lost:
         """What ``function`` returns, or how it was lost.
 
         The function has to be importable by name, and the arguments to be pickled.
         """
+        with self._at_work:
+            return self._called(function, arguments)
+
+    def _called(
+        self, function: Callable[..., Result], arguments: tuple[object, ...]
+    ) -> Result | Lost:
+        """As `call`, with the child for itself."""
         if self.closed:
             return Lost("crashed", "the sweep was ended")
-        child = self._child = self._child or self._started()
+        child = self._child or self._started()
         jobs, answers = _pipes(child)
         late = threading.Event()
 
@@ -73,18 +81,23 @@ class Isolated(Generic[Result]):
             clock.cancel()
         if not raw:
             return self._lost(child, late.is_set())
-        how, value = pickle.loads(raw)
+        how, value, worn = pickle.loads(raw)
+        if worn:
+            self._end(child)
         return cast(Result, value) if how == "done" else Lost(how, str(value))
 
     def close(self) -> None:
-        """End the child, also in the middle of a job."""
+        """End the child, also in the middle of a job that another thread waits for."""
         self.closed = True
-        if self._child is not None:
-            self._child.kill()
+        if (child := self._child) is not None:
+            child.kill()
+        with self._at_work:
+            if self._child is not None:
+                self._end(self._child)
 
     def _started(self) -> subprocess.Popen[bytes]:
         """A new child, in a session of its own: Ctrl-C at the terminal is not for it."""
-        child = subprocess.Popen(
+        child = self._child = subprocess.Popen(
             [sys.executable, "-m", "reports.sweep.child", str(int(1e9 * self.limits.memory_gb))],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -95,16 +108,21 @@ class Isolated(Generic[Result]):
         return child
 
     def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:
-        """Why a child gave no answer; the next job gets another."""
-        child.kill()
-        code = child.wait()
-        self._child = None
-        for pipe in _pipes(child):
-            with contextlib.suppress(OSError):
-                pipe.close()
+        """Why a child gave no answer."""
+        code = self._end(child)
         if late:
             return Lost("timeout", f"no end within {self.limits.time_s:g} s")
         return Lost("crashed", f"the engine ended its process ({_ending(code)})")
+
+    def _end(self, child: subprocess.Popen[bytes]) -> int:
+        """End a child, whose exit code this is; the next job gets another."""
+        self._child = None
+        child.kill()
+        code = child.wait()
+        for pipe in _pipes(child):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        return code
 
 
 def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:

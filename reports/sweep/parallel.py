@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from typing import cast
 
 from joblib import Parallel, delayed, parallel_config  # type: ignore[import-untyped]  # no stubs
@@ -17,10 +17,11 @@ from reports.sweep.outcome import Outcome, measured
 _own = threading.local()
 _all: list[Isolated[Outcome]] = []
 Found = tuple[int, Outcome | Lost]
+Backend = Mapping[str, object]
 
 
 def run_all(
-    tasks: Sequence[Task], limits: Limits, keep_motion: bool, jobs: int, dask: str | None
+    tasks: Sequence[Task], limits: Limits, keep_motion: bool, where: Backend
 ) -> Generator[Found]:
     """Run every task; yields index and outcome of each, in the order in which they end.
 
@@ -29,14 +30,12 @@ def run_all(
 
     Parameters
     ----------
-    jobs : int
-        Cells at a time on this machine; 0 for one per processor.
-    dask : str or None
-        Address of the scheduler of a cluster to use in place of this machine.
+    where : Backend
+        What `backend` gave.
     """
     work = (delayed(_one)(i, task, limits, keep_motion) for i, task in enumerate(tasks))
     try:
-        with parallel_config(**_backend(jobs or processors(), dask)):
+        with parallel_config(**where):
             yield from Parallel(return_as="generator_unordered", batch_size=1)(work)
     finally:
         for isolated in _all:
@@ -44,10 +43,17 @@ def run_all(
         _all.clear()
 
 
-def _backend(jobs: int, dask: str | None) -> dict[str, object]:
-    """What joblib is told. Raises CrankcheckError where there is no cluster, or no Dask."""
+def backend(jobs: int, dask: str | None) -> Backend:
+    """What joblib is told: cells at a time on this machine (0: one per processor), or the
+    scheduler of a cluster to use in its place.
+
+    Raises
+    ------
+    CrankcheckError
+        No cluster at the address, one without workers, or no Dask here.
+    """
     if dask is None:
-        return {"backend": "threading", "n_jobs": jobs}
+        return {"backend": "threading", "n_jobs": jobs or processors()}
     try:
         from distributed import Client
     except ImportError:
@@ -55,7 +61,7 @@ def _backend(jobs: int, dask: str | None) -> dict[str, object]:
             "--dask: distributed is not installed; pip install 'crankcheck[dask]'"
         ) from None
     try:
-        client = Client(dask, timeout="10s")  # type: ignore[no-untyped-call]  # not annotated
+        client = Client(dask, timeout="5s")  # type: ignore[no-untyped-call]  # not annotated
     except (OSError, ValueError) as error:
         raise CrankcheckError(
             f"--dask {dask}: no scheduler answers there ({error}); start one with `dask scheduler` "

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from rich.console import Console
 
+from models.errors import CrankcheckError
 from reports.cell import unfinished
 from reports.rows import cell_row
 from reports.store.reader import stored_costs, stored_keys
@@ -16,7 +17,7 @@ from reports.store.writer import Writer
 from reports.sweep.grid import Task
 from reports.sweep.isolation import Isolated, Limits, Lost
 from reports.sweep.outcome import UNMEASURED, Outcome, timed
-from reports.sweep.parallel import run_all
+from reports.sweep.parallel import Backend, run_all
 from reports.sweep.progress import progress_bar
 
 
@@ -39,17 +40,17 @@ class Running:
     facts: Mapping[str, str]
     progress: Console
 
-    def errors(self, keep_motion: bool, jobs: int, dask: str | None) -> Done:
+    def errors(self, keep_motion: bool, where: Backend) -> Done:
         """Run every cell that the store has not."""
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
         failed: dict[str, Counter[str]] = {}
-        found = run_all(missing, self.limits, keep_motion, jobs, dask)
+        found = run_all(missing, self.limits, keep_motion, where)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(found):
             for index, how in found:
                 task = missing[index]
                 outcome = how if isinstance(how, Outcome) else _lost(task, how)
-                self._keep(task, outcome, "cluster" if dask else "local")
+                self._keep(task, outcome, "cluster" if where["backend"] == "dask" else "local")
                 status, reason = str(outcome.row["status"]), str(outcome.row["reason"])
                 if status != "ok":
                     failed.setdefault(status, Counter())[f"{task.label}: {reason}"] += 1
@@ -89,6 +90,12 @@ class Running:
         }
         if outcome.motion is not None:
             self.writer.trajectory(task.key, outcome.motion, outcome.gaps)
+        found = outcome.row["version"]
+        if found and found != task.version:
+            raise CrankcheckError(
+                f"a worker has {task.cell.engine} {found}, here it is {task.version}; install the "
+                "same version there"
+            )
         row = {**names, **outcome.row, "version": task.version}
         self.writer.cell(row, outcome.errors, outcome.trace)
 

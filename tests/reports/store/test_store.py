@@ -1,0 +1,141 @@
+"""What a store takes, keeps and refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
+import pytest
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.cell import Cell
+from reports.store.manifest import MANIFEST, Manifest, read_manifest
+from reports.store.reader import read_store, stored_costs, stored_keys
+from reports.store.schema import table
+from reports.store.writer import Writer
+from reports.sweep.outcome import Outcome, measured
+
+TEXT = 'name = "a"\nsize = 1.0\n'
+
+
+@pytest.fixture(scope="module")
+def outcome(fourbar: Scene) -> Outcome:
+    cell = Cell(fourbar, "pymunk", "tuned", fourbar.driver.law.period_s / 90, 180, converge=False)
+    return measured(cell, keep_motion=True)
+
+
+def names(key: str) -> dict[str, object]:
+    return {"key": key, "line": "l", "variant": "v", "scene_digest": "d", "asked": {"a": 1}}
+
+
+def filled(folder: Path, outcome: Outcome, *keys: str) -> None:
+    with Writer(folder, Manifest({"a": TEXT}, ({"command": list(keys)},))) as writer:
+        for key in keys:
+            writer.cell({**names(key), **outcome.row}, outcome.errors, outcome.trace)
+
+
+def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None:
+    filled(tmp_path / "s", outcome, "k1", "k2")
+    found = read_store(tmp_path / "s")
+    assert list(found.cells.key) == ["k1", "k2"]
+    assert found.cells.place_pure[0] == outcome.row["place_pure"]
+    assert json.loads(found.cells.asked[0]) == {"a": 1}
+    assert len(found.errors) == 2 * len(outcome.errors)
+    trace = found.trace("k2")
+    assert set(trace) == set(outcome.trace)
+    for series, values in outcome.trace.items():
+        np.testing.assert_array_equal(trace[series], values)
+    assert found.trace("k3") == {}
+    assert stored_keys(tmp_path / "s", "cells") == {"k1", "k2"}
+    assert stored_keys(tmp_path / "s", "timings") == set()
+    assert stored_costs(tmp_path / "s") == dict.fromkeys(
+        ("k1", "k2"), outcome.row["logged_us_per_step"]
+    )
+
+
+def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: Outcome) -> None:
+    folder = tmp_path / "s"
+    filled(folder, outcome, "k1")
+    first = {path: path.read_bytes() for path in folder.glob("*/*.parquet")}
+    filled(folder, outcome, "k2")
+    assert {path: path.read_bytes() for path in first} == first
+    assert list(read_store(folder).cells.key) == ["k1", "k2"]
+    assert [run["command"] for run in read_manifest(folder).runs] == [["k1"], ["k2"]]
+
+
+def test_types_of_columns_do_not_depend_on_what_is_missing() -> None:
+    full = {"key": "k", "gated": True, "place_pure": 1, "reason": "x", "values": np.ones(2)}
+    empty = dict.fromkeys(full)
+    assert table([full]).schema == table([empty]).schema
+
+
+def test_all_parts_have_one_schema(tmp_path: Path, outcome: Outcome) -> None:
+    folder = tmp_path / "s"
+    filled(folder, outcome, "k1")
+    lost = dict.fromkeys(outcome.row) | {"status": "crashed"}
+    with Writer(folder, Manifest()) as writer:
+        writer.cell({**names("k2"), **lost}, (), {})
+    schemas = [pq.read_schema(path) for path in (folder / "cells").glob("*.parquet")]
+    assert len(schemas) == 2
+    assert schemas[0] == schemas[1]
+
+
+def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: Outcome) -> None:
+    assert outcome.motion is not None
+    with Writer(tmp_path / "s", Manifest()) as writer:
+        writer.trajectory("k1", outcome.motion, outcome.gaps)
+    found = pq.read_table(tmp_path / "s" / "trajectories" / "k1.parquet").to_pandas()
+    np.testing.assert_array_equal(found.time_s, outcome.motion.time_s)
+    np.testing.assert_array_equal(found.rocker_theta_rad, outcome.motion.links["rocker"].theta)
+    np.testing.assert_array_equal(found.C_gap_m, outcome.gaps["C"])
+
+
+def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: Outcome) -> None:
+    filled(tmp_path / "s", outcome, "k1")
+    with pytest.raises(CrankcheckError, match="another scene called a"):
+        Writer(tmp_path / "s", Manifest({"a": TEXT.replace("1.0", "2.0")}))
+    Writer(tmp_path / "s", Manifest({"a": "# the same\n" + TEXT})).__exit__(None, None, None)
+
+
+def test_a_folder_with_something_else_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("years of work")
+    with pytest.raises(CrankcheckError, match=r"holds thesis\.txt and no manifest"):
+        Writer(tmp_path, Manifest())
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_a_file_in_place_of_the_folder_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    path.write_text("x")
+    with pytest.raises(CrankcheckError, match="is a file; name a folder"):
+        Writer(path, Manifest())
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [("{", "can not be read"), ("[]", "format list"), ('{"format": 99}', "format 99")],
+)
+def test_a_damaged_or_newer_manifest_is_said(tmp_path: Path, content: str, words: str) -> None:
+    (tmp_path / MANIFEST).write_text(content)
+    with pytest.raises(CrankcheckError, match=words):
+        read_store(tmp_path)
+
+
+def test_a_damaged_part_is_named_with_what_to_do(tmp_path: Path, outcome: Outcome) -> None:
+    filled(tmp_path / "s", outcome, "k1")
+    (path,) = (tmp_path / "s" / "cells").glob("*.parquet")
+    path.write_bytes(path.read_bytes()[:100])
+    with pytest.raises(CrankcheckError, match="delete this file and run the sweep again"):
+        read_store(tmp_path / "s")
+
+
+def test_no_store_and_an_empty_store(tmp_path: Path) -> None:
+    with pytest.raises(CrankcheckError, match="no store of a sweep there"):
+        read_store(tmp_path)
+    with Writer(tmp_path / "s", Manifest()):
+        pass
+    with pytest.raises(CrankcheckError, match="a store without cells"):
+        read_store(tmp_path / "s")

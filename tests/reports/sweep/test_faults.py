@@ -1,0 +1,86 @@
+"""An engine that crashes, hangs or fills memory costs its own cell alone."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from reports.store.reader import read_store
+from reports.sweep.isolation import Isolated, Limits, Lost
+
+EXPECTED = {
+    "none": ("ok", ""),
+    "abort": ("crashed", "the engine ended its process (signal SIGABRT)"),
+    "hang": ("timeout", "no end within 4 s"),
+    "fill": ("crashed", "out of memory: a cell has 2 GB"),
+    "leave": ("crashed", "the engine ended its process (exit code 5)"),
+    "throw": ("crashed", "RuntimeError: no luck"),
+}
+
+
+def test_every_fault_is_a_row_with_its_reason(
+    start: Callable[..., object], bad_engine: dict[str, str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "store"
+    faults = f"bad.fault={','.join(EXPECTED)}"
+    options = ("--engine", "bad", "--set", faults, "--steps-per-turn", "90,180", "--limit-s", 4)
+    done = start("sweep", "fourbar-lecture-1", "-o", folder, *options, more=bad_engine)
+    out, err = done.communicate(timeout=120)
+    assert done.returncode == 0, err
+    cells = read_store(folder).cells
+    assert len(cells) == 2 * len(EXPECTED)
+    cells["fault"] = cells.variant.str.removeprefix("tuned, fault=")
+    rows = cells[["fault", "status", "reason"]].itertuples(index=False)
+    assert {fault: (status, reason) for fault, status, reason in rows} == EXPECTED
+    assert set(cells.fault[cells.us_per_step.notna()]) == {"none"}
+    assert "2 timeout, such as" in out
+
+
+def test_a_child_that_keeps_memory_is_replaced() -> None:
+    isolated: Isolated[int] = Isolated(Limits(20.0, 0.4))
+    try:
+        pids = {isolated.call(hold, 60_000_000) for _ in range(4)}
+        assert not any(isinstance(pid, Lost) for pid in pids)
+        assert len(pids) > 1
+    finally:
+        isolated.close()
+
+
+def test_the_time_limit_is_for_each_job() -> None:
+    isolated: Isolated[None] = Isolated(Limits(0.5, 2.0))
+    try:
+        began = time.monotonic()
+        found = isolated.call(time.sleep, 30.0)
+        assert found == Lost("timeout", "no end within 0.5 s")
+        assert isolated.call(time.sleep, 0.3) is None
+        assert isolated.call(time.sleep, 0.3) is None
+        assert time.monotonic() - began < 10.0
+    finally:
+        isolated.close()
+
+
+def test_a_closed_one_starts_nothing() -> None:
+    isolated: Isolated[None] = Isolated(Limits())
+    isolated.close()
+    assert isolated.call(time.sleep, 0.0) == Lost("crashed", "the sweep was ended")
+
+
+_held: list[bytearray] = []
+
+
+def hold(size: int) -> int:
+    """Keep some memory, and tell in which process."""
+    import os
+
+    _held.append(bytearray(size))
+    return os.getpid()
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The child imports this file's functions by the name that pytest gave it."""
+    monkeypatch.syspath_prepend(Path(__file__).parents[3])
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[3]))

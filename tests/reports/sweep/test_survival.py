@@ -1,0 +1,153 @@
+"""A sweep that is killed, stopped, or run again: what is done is kept, what is missing is run."""
+
+from __future__ import annotations
+
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import psutil
+import pytest
+
+from reports.store.reader import Stored, read_store
+
+SEED = 20261121
+STEPS = "90,120,180,240,360,480,720,960,1440,1920"
+GRID = ("fourbar-lecture-1", "slider-crank-offset", "--steps-per-turn", STEPS, "--turns", "4")
+NUMBER = 2 * 8 * 10
+BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on", "us_per_step"}
+Start = Callable[..., "subprocess.Popen[str]"]
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is POSIX")
+
+
+@pytest.fixture(scope="module")
+def whole(start: Start, tmp_path_factory: pytest.TempPathFactory) -> Stored:
+    """The same sweep, never disturbed."""
+    folder = tmp_path_factory.mktemp("whole") / "store"
+    done = start("sweep", *GRID, "-o", folder, "--no-timing")
+    _, err = done.communicate(timeout=120)
+    assert done.returncode == 0, err
+    return read_store(folder)
+
+
+def counts(text: str) -> tuple[int, ...]:
+    """Cells in all, run now, and there before; cells timed now."""
+    found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed now", text)
+    assert found, text
+    return tuple(map(int, found.groups()))
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait for it, a minute at most."""
+    end = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def parts(folder: Path, table: str) -> int:
+    return len(list((folder / table).glob("part-*.parquet")))
+
+
+def sweeping(folder: Path) -> list[psutil.Process]:
+    """The processes of cells whose sweep writes to the folder, or is gone."""
+    return [
+        process
+        for process in psutil.process_iter(["cmdline"])
+        if "reports.sweep.child" in (process.info["cmdline"] or ())
+        and (process.ppid() == 1 or str(folder) in " ".join(process.parent().cmdline()))  # type: ignore[union-attr]  # one that ends meanwhile has no parent
+    ]
+
+
+def same(one: Stored, other: Stored) -> None:
+    """The same cells, each once, bit by bit but for what chance decides."""
+    columns = [name for name in one.cells.columns if name not in BY_CHANCE]
+    left, right = (s.cells.set_index("key").sort_index() for s in (one, other))
+    names = [name for name in columns if name != "key"]
+    pd.testing.assert_frame_equal(left[names], right[names], check_exact=True)
+    order = ["key", "quantity", "body_kind", "body", "source", "kind"]
+    long = (s.errors.sort_values(order).reset_index(drop=True) for s in (one, other))
+    pd.testing.assert_frame_equal(*long, check_exact=True)
+    for key in left.index:
+        assert set(one.trace(key)) == set(other.trace(key))
+
+
+@pytest.mark.parametrize("kill", range(5))
+def test_a_killed_sweep_goes_on_where_it_was(
+    start: Start, whole: Stored, tmp_path: Path, kill: int
+) -> None:
+    folder = tmp_path / "store"
+    arguments = ("sweep", *GRID, "-o", folder, "--no-timing", "--jobs", "1")
+    running = start(*arguments)
+    until(lambda: parts(folder, "cells") > 0)
+    time.sleep(random.Random(SEED + kill).uniform(0.0, 1.0))
+    running.send_signal(signal.SIGKILL)
+    running.communicate()
+    there = len(read_store(folder).cells)
+    assert 0 < there < NUMBER
+    done = start(*arguments)
+    out, err = done.communicate(timeout=120)
+    assert done.returncode == 0, err
+    assert counts(out) == (NUMBER, NUMBER - there, there, 0)
+    same(read_store(folder), whole)
+    until(lambda: not sweeping(folder))
+
+
+def test_a_third_run_finds_everything_there(start: Start, whole: Stored) -> None:
+    before = sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/part-*"))
+    out, _ = start("sweep", *GRID, "-o", whole.folder, "--no-timing").communicate(timeout=60)
+    assert counts(out) == (NUMBER, 0, NUMBER, 0)
+    assert sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/part-*")) == before
+
+
+def test_a_part_without_its_cells_is_dropped(start: Start, tmp_path: Path) -> None:
+    folder = tmp_path / "store"
+    small = ("sweep", "fourbar-lecture-1", "--steps-per-turn", "90", "-o", folder, "--no-timing")
+    start(*small).communicate(timeout=60)
+    number = len(read_store(folder).errors)
+    for path in (folder / "cells").glob("part-*"):
+        path.unlink()  # as if the sweep had been killed between the tables
+    (folder / "cells" / ".part.parquet.1.tmp").write_bytes(b"half")
+    out, _ = start(*small).communicate(timeout=60)
+    assert counts(out) == (8, 8, 0, 0)
+    assert len(read_store(folder).errors) == number
+    assert not list(folder.glob("*/.*.tmp"))
+
+
+@pytest.mark.parametrize("table", ["cells", "timings"])
+def test_ctrl_c_keeps_what_is_done(start: Start, tmp_path: Path, table: str) -> None:
+    folder = tmp_path / "store"
+    arguments = ("sweep", *GRID, "-o", folder, "--engine", "pymunk")
+    running = start(*arguments)
+    until(lambda: parts(folder, table) > 0)
+    running.send_signal(signal.SIGINT)
+    _, err = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert err.splitlines()[-1] == "crankcheck: interrupted"
+    assert "Traceback" not in err
+    until(lambda: not sweeping(folder))
+    kept = read_store(folder)
+    missing = [int(kept.cells.us_per_step.isna().sum()), 80 - len(kept.cells)]
+    assert sum(missing) > 0
+    out, _ = start(*arguments).communicate(timeout=120)
+    assert counts(out) == (80, missing[1], len(kept.cells), sum(missing))
+    assert not read_store(folder).cells.key.duplicated().any()
+
+
+def test_two_sweeps_into_one_folder_do_not_mix(start: Start, tmp_path: Path) -> None:
+    folder = tmp_path / "store"
+    first = start("sweep", *GRID, "-o", folder)
+    until(lambda: parts(folder, "cells") > 0)
+    second = start("sweep", *GRID, "-o", folder)
+    _, err = second.communicate(timeout=30)
+    first.send_signal(signal.SIGTERM)
+    first.communicate(timeout=30)
+    assert second.returncode == 2
+    assert "another sweep writes there now" in err
+    assert first.returncode == 143
