@@ -12,16 +12,23 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test slow benchmarks models format clean
+.PHONY: verify test browser slow benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
 
-test: $(VENV)/test
+test: $(VENV)/test browser
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -q -n 2 -m "not slow" $(PYTEST)
+
+# The page of `crankcheck report` is tested in a real browser: installed where that can be done
+# without asking (as root on Debian); elsewhere its tests are skipped and say how to install it.
+browser:
+	@command -v chromium >/dev/null || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || \
+		{ apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium; } \
+		>/dev/null || echo "chromium could not be installed: apt-get install chromium"
 
 slow: $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 -m slow $(PYTEST)
