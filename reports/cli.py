@@ -187,8 +187,8 @@ def sweep(
         list[str] | None,
         typer.Option("--set", metavar="ENGINE.SETTING=A,B", help="One variant per value."),
     ] = None,
-    limit_s: Annotated[float, typer.Option(help="Longest time for a cell [s].")] = 60.0,
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a cell [GB].")] = 2.0,
+    limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0,
+    memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this scheduler.")

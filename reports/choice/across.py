@@ -13,6 +13,8 @@ import pandas as pd
 from reports.choice.lines import Line, numbers
 from sim.engine import Drive, SettingValue
 
+NOT_RUN = "not run"
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -56,6 +58,24 @@ class Candidate:
     def worst_error(self) -> float:
         """The largest error over the scenes; infinite where one has no run that ended well."""
         return math.inf if self.faults else max(self.errors.values(), default=math.inf)
+
+    def same_settings(self, other: Candidate) -> bool:
+        """Whether another one differs in its step at most."""
+        return (self.engine, self.variant, self.drive, self.settings) == (
+            other.engine,
+            other.variant,
+            other.drive,
+            other.settings,
+        )
+
+    def holds(self, line: Line) -> bool:
+        """Whether a line is of these settings."""
+        return (self.engine, self.variant, self.drive, self.settings) == (
+            line.engine,
+            line.variant,
+            line.drive,
+            line.settings,
+        )
 
     def reaching(self, target: float) -> int:
         """On how many scenes the error is at most ``target``."""
@@ -116,7 +136,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
 def _fault(row: pd.Series | None) -> str:
     """Why a cell promises nothing; empty where it does."""
     if row is None:
-        return "not run"
+        return NOT_RUN
     if row["status"] != "ok":
         return str(row["status"])
     return "" if math.isfinite(row["place_pure"]) else "error is no number"

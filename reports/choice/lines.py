@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import cast
 
 import pandas as pd
+from pydantic import ValidationError
 
 from reports.choice.machines import comparable
 from reports.convergence import AT_ROUNDING
 from reports.fits.line import LineFit, fit_line
+from reports.fits.words import words
 from reports.halving import BEHIND_DRIVE, EXACT_DRIVE
+from reports.store.manifest import Manifest
 from reports.store.reader import Stored
+from reports.sweep.study import Study
 from sim.engine import Drive, SettingValue
 
 
@@ -56,11 +59,33 @@ def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
     """
     cells = comparable(stored.cells)
     chosen = _newest(cells)
-    return tuple(
+    found = [
         _line(rows.sort_values("dt_s", ascending=False).reset_index(drop=True), quantity)
         for key, rows in cells.groupby("line", sort=False)
         if key in chosen
-    )
+    ]
+    scenes, variants = list(stored.manifest.scenes), _variants(stored.manifest)
+
+    def place(line: Line) -> tuple[int, int]:
+        which = (line.engine, line.variant)
+        return (
+            scenes.index(line.scene) if line.scene in scenes else len(scenes),
+            variants.index(which) if which in variants else len(variants),
+        )
+
+    return tuple(sorted(found, key=place))
+
+
+def _variants(manifest: Manifest) -> list[tuple[str, str]]:
+    """Engine and name of the variants of all runs, in the order of their studies."""
+    found: dict[tuple[str, str], None] = {}
+    for run in manifest.runs:
+        try:
+            study = Study.model_validate(run.get("study"))
+        except ValidationError:  # of another version of crankcheck: then as the cells come
+            continue
+        found |= {(one.engine, one.name): None for each in study.variants for one in each.each()}
+    return list(found)
 
 
 def _newest(cells: pd.DataFrame) -> set[str]:
@@ -100,11 +125,24 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
         settings=json.loads(str(first["asked"])),
         cells=rows,
         fit=fit,
-        words=fit.kind,
+        words=words(fit, _unit(quantity), float(first["dt_s"] * first["steps_per_turn"])),
     )
+
+
+PURE = {"displacement": "L", "position": "L", "gap": "L", "velocity": "w", "acceleration": "w^2"}
+"""What pure errors are shares of, where it is not the radian."""
+UNITS = ("rad_s2", "m_s2", "rad_s", "m_s", "rad", "m")
+
+
+def _unit(quantity: str) -> str:
+    """The unit of a column of errors."""
+    if quantity.endswith("_pure"):
+        return PURE.get(quantity.partition("_")[0], "rad")
+    found = next((unit for unit in UNITS if quantity.endswith(f"_{unit}")), "")
+    return found.replace("_s2", "/s^2").replace("_s", "/s")
 
 
 def _rounding(rows: pd.DataFrame) -> float:
     """The pure error that rounding explains: that of the crank, and what the others are behind."""
-    drive = max((e for e in rows["drive_pure"] if e <= EXACT_DRIVE), default=0.0)
-    return max(AT_ROUNDING, BEHIND_DRIVE * float(drive) if math.isfinite(drive) else 0.0)
+    drive = max((float(error) for error in rows["drive_pure"] if error <= EXACT_DRIVE), default=0.0)
+    return max(AT_ROUNDING, BEHIND_DRIVE * drive)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from reports.choice.across import Candidate, candidates
 from reports.choice.cost import equal, noise, reached
 from reports.choice.lines import Line, lines
+from reports.choice.reasons import about, broken, nearest, nothing
+from reports.choice.snippets import PERIOD_S, snippet
+from reports.fits.words import short
 from reports.store.reader import Stored
 from sim.engine import Drive, SettingValue
 
@@ -21,21 +24,23 @@ class Recommendation:
     """What to set for a target, or why there is nothing to set.
 
     The promise rests on measured cells alone: at ``steps_per_turn`` the error of place is at most
-    ``target`` on every scene; ``worst_error`` is the largest, on ``worst_scene``. Where nothing
-    reaches the target ``variant`` is None, ``reason`` says so, and the numbers are those of what
-    came nearest.
+    ``target`` on every one of the ``scenes``; ``worst_error`` is the largest, on ``worst_scene``.
+    Where nothing reaches the target ``variant`` is None, ``reason`` says so, and the numbers are
+    those of what came ``nearest`` (a variant's name).
 
-    ``s_per_turn`` and ``us_per_step`` are geometric means over the scenes. ``least_steps`` is where
-    along the fits the target is met on every scene, between measured steps; None where that is not
-    known. ``equal_to`` costs the same, within the noise. ``caution`` says at which finer steps the
-    promise does not hold, and ``steadier`` what to take in its place. ``others`` has a sentence on
-    each other variant of the engine.
+    ``s_per_turn`` [s], ``us_per_step`` and ``us_per_step_median`` (least and median repeat) are
+    geometric means over the scenes. ``least_steps`` is where along the fits every scene meets the
+    target, between measured steps; None where a fit does not tell. ``equal_to`` cost the same,
+    within the noise, and have the larger error. ``caution`` says at which finer steps the promise
+    does not hold, and ``steadier`` is the cheapest of which that can not be said. ``others`` has a
+    sentence on each other variant of the engine.
     """
 
     target: float
     engine: str
     versions: tuple[str, ...]
     variant: str | None
+    nearest: str
     profile: str
     drive: Drive
     settings: Mapping[str, SettingValue] = field(repr=False)
@@ -49,9 +54,24 @@ class Recommendation:
     least_steps: float | None = None
     equal_to: tuple[str, ...] = ()
     caution: str = ""
-    steadier: str = ""
+    steadier: Recommendation | None = None
     others: tuple[str, ...] = ()
     reason: str = ""
+
+    def snippet(self, period_s: float = PERIOD_S) -> str:
+        """Text to copy and paste, headed by what it promises; empty where there is none."""
+        if self.variant is None:
+            return ""
+        scenes = "the scene" if self.scenes == 1 else f"each of {self.scenes} scenes"
+        head = (
+            f"{self.engine} {', '.join(self.versions)}, {self.variant}: place within "
+            f"{self.target:g} (rad, or of the longest link) on {scenes}; at worst "
+            f"{short(self.worst_error)}, on {self.worst_scene}.",
+            *([f"Caution: {self.caution}."] if self.caution else []),
+        )
+        return snippet(
+            self.engine, self.settings, self.steps_per_turn, period_s, drive=self.drive, head=head
+        )
 
 
 def recommendations(
@@ -68,30 +88,31 @@ def recommendations(
     known = candidates(every)
     engines = dict.fromkeys(line.engine for line in every)
     return tuple(
-        _recommend(target, [c for c in known if c.engine == name], every, within)
+        _recommended(target, [c for c in known if c.engine == name], every, within)
         for name in engines
         for target in targets
     )
 
 
-def _recommend(
+def _recommended(
     target: float, known: Sequence[Candidate], every: Sequence[Line], within: float
 ) -> Recommendation:
     """The recommendation of one engine."""
     good = [one for one in known if one.reaches(target)]
     timed = [one for one in good if math.isfinite(one.s_per_turn)]
     if not timed:
-        nearest = max(known, key=lambda one: (one.reaching(target), -one.worst_error))
-        return _of(nearest, target, None, reason=_nothing(target, good, nearest))
-    best = _cheapest(timed, within)
-    same = [
-        one.name
-        for one in timed
-        if one is not best and equal(one.s_per_turn, best.s_per_turn, within)
-    ]
-    return _of(
-        best, target, best.variant, least_steps=_least_steps(best, every, target), same=tuple(same)
-    )
+        best = nearest(known, target)
+        found = replace(_of(best, target, every), variant=None, reason=nothing(best, good, target))
+    else:
+        best = _cheapest(timed, within)
+        found = _of(best, target, every)
+        found = replace(
+            found, equal_to=_equal_to(best, timed, within), caution=broken(best, known, target)
+        )
+        steady = [one for one in timed if not broken(one, known, target)]
+        if found.caution and steady:
+            found = replace(found, steadier=_of(_cheapest(steady, within), target, every))
+    return replace(found, others=about(known, best, target))
 
 
 def _cheapest(timed: Sequence[Candidate], within: float) -> Candidate:
@@ -101,43 +122,27 @@ def _cheapest(timed: Sequence[Candidate], within: float) -> Candidate:
     return min(level, key=lambda one: one.worst_error)
 
 
-def _nothing(target: float, good: Sequence[Candidate], nearest: Candidate) -> str:
-    """Why nothing is recommended."""
-    if good:
-        names = ", ".join(dict.fromkeys(one.variant for one in good))
-        return f"{names} reach it, and were not timed on every scene; sweep without --no-timing"
-    text = f"nearest: {nearest.name}, {nearest.reaching(target)} of {nearest.scenes} scenes"
-    faults = [f"{scene} {why}" for scene, why in nearest.faults.items()]
-    if nearest.worst_scene is not None:
-        worst = nearest.errors[nearest.worst_scene]
-        faults.append(f"{worst:.1e} on {nearest.worst_scene}")
-    return f"{text}; {', '.join(faults)}"
+def _equal_to(best: Candidate, timed: Sequence[Candidate], within: float) -> tuple[str, ...]:
+    """What costs the same."""
+    rest = (one for one in timed if one is not best)
+    return tuple(one.name for one in rest if equal(one.s_per_turn, best.s_per_turn, within))
 
 
-def _least_steps(best: Candidate, every: Sequence[Line], target: float) -> float | None:
+def _least_steps(one: Candidate, every: Sequence[Line], target: float) -> float | None:
     """Steps a turn from which on all scenes meet the target, along the fits."""
-    own = [x for x in every if (x.engine, x.variant) == (best.engine, best.variant)]
-    found = [reached(line, target) for line in own]
-    steps = [one.steps_per_turn for one in found if one is not None]
+    found = [reached(line, target) for line in every if one.holds(line)]
+    steps = [each.steps_per_turn for each in found if each is not None]
     return max(steps) if len(steps) == len(found) else None
 
 
-def _of(
-    one: Candidate,
-    target: float,
-    variant: str | None,
-    *,
-    least_steps: float | None = None,
-    same: tuple[str, ...] = (),
-    reason: str = "",
-) -> Recommendation:
-    """A recommendation with the numbers of a candidate."""
-    worst = one.worst_scene
+def _of(one: Candidate, target: float, every: Sequence[Line]) -> Recommendation:
+    """A candidate as a recommendation."""
     return Recommendation(
         target=target,
         engine=one.engine,
         versions=one.versions,
-        variant=variant,
+        variant=one.variant,
+        nearest=one.variant,
         profile=one.profile,
         drive=one.drive,
         settings=one.settings,
@@ -145,10 +150,8 @@ def _of(
         s_per_turn=one.s_per_turn,
         us_per_step=one.us_per_step,
         us_per_step_median=one.us_per_step_median,
-        worst_error=math.nan if worst is None else one.errors[worst],
-        worst_scene=worst,
+        worst_error=max(one.errors.values(), default=math.nan),
+        worst_scene=one.worst_scene,
         scenes=one.scenes,
-        least_steps=least_steps,
-        equal_to=same,
-        reason=reason,
+        least_steps=_least_steps(one, every, target),
     )

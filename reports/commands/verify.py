@@ -18,6 +18,11 @@ from models.errors import CrankcheckError
 from reports.cell import Cell, Checked
 from reports.commands.names import chosen_engines, chosen_profiles, chosen_scenes
 from reports.commands.steps import counted
+from reports.diff.changes import FACTOR, Diff, compare
+from reports.diff.junit import joined
+from reports.diff.reading import read_run, scene_digests
+from reports.diff.runs import Run, planned_run, run_of
+from reports.diff.terminal import show as show_diff
 from reports.frames import cell_frame, error_frame
 from reports.junit import junit
 from reports.pool import check_all
@@ -35,7 +40,8 @@ IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
 
 @dataclass(frozen=True)
 class Request:
-    """What `verify` was asked for, as given."""
+    """What `verify` was asked for, as given; ``baseline`` is the folder of an earlier run, whose
+    errors may grow by ``factor``."""
 
     scenes: Sequence[str]
     engines: Sequence[str]
@@ -51,10 +57,24 @@ class Request:
     csv: Path | None
     json: Path | None
     folder: Path | None
+    baseline: Path | None = None
+    factor: float = FACTOR
+
+
+@dataclass(frozen=True)
+class Results:
+    """What there is to write: cells, where they come from, the digests of the texts of their
+    scenes, and what changed since the baseline."""
+
+    checked: Sequence[Checked]
+    facts: Mapping[str, str]
+    digests: Mapping[str, str]
+    diff: Diff | None = None
 
 
 def verify(request: Request, console: Console, progress: Console) -> int:
-    """Do it; returns the exit code: 0 within, 1 out of tolerance, 2 not to be run.
+    """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2 not
+    to be run.
 
     Raises
     ------
@@ -63,21 +83,33 @@ def verify(request: Request, console: Console, progress: Console) -> int:
     """
     cells = plan(request)
     _check_outputs(request)
+    digests = scene_digests(request.scenes)
+    base = _baseline(request, cells, digests)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("verifying", total=len(cells))
         checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
     facts = provenance({name: engine(name).version() for name in _engines(cells)})
+    diff = compare(base, run_of(checked, facts, digests), request.factor) if base else None
     try:
-        _write(request, checked, facts)
-    finally:
-        show(console, checked, facts)  # a full disk costs the file, and not the verdict with it
+        _write(request, Results(checked, facts, digests, diff))
+    finally:  # a full disk costs the file, and not the verdict with it
+        show(console, checked, facts)
+        if diff:
+            console.print()
+            show_diff(console, diff)
+    return _code(checked, diff, progress)
+
+
+def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
+    """The exit code; names the gated cells that could not be run."""
     gated = [one for one in checked if one.cell.gated]
     missing = [one for one in gated if one.verdict == "unsupported"]
     for one in missing:
         progress.print(f"crankcheck: {one.cell.label}: {one.reason}", markup=False, soft_wrap=True)
     if missing:
         return 2
-    return int(any(one.verdict == "out" for one in gated))
+    out = any(one.verdict == "out" for one in gated)
+    return int(out or (diff is not None and diff.code() == 1))
 
 
 def plan(request: Request) -> list[Cell]:
@@ -132,7 +164,23 @@ def _engines(cells: Sequence[Cell]) -> list[str]:
     return list(dict.fromkeys(cell.engine for cell in cells))
 
 
-def _write(request: Request, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
+def _baseline(request: Request, cells: Sequence[Cell], digests: Mapping[str, str]) -> Run | None:
+    """The cells of the baseline that are to be run now, read before anything is written over it.
+
+    Raises
+    ------
+    CrankcheckError
+        No stored run, or nothing to compare with.
+    """
+    if request.baseline is None:
+        return None
+    base = read_run(request.baseline)
+    planned = planned_run(cells, digests)
+    compare(base, planned, request.factor)  # raises, where nothing is to be compared
+    return base.only(planned.cells)
+
+
+def _write(request: Request, results: Results) -> None:
     """Every output that was asked for, each whole or not at all."""
     folder = request.folder
     *texts, table = IN_FOLDER
@@ -140,22 +188,23 @@ def _write(request: Request, checked: Sequence[Checked], facts: Mapping[str, str
         targets = [path] if path else []
         targets += [folder / name] if folder else []
         for target in targets:
-            write(target, _content(name, checked, facts))
+            write(target, _content(name, results))
     if folder:
-        write(folder / table, _parquet(error_frame(checked)))
+        write(folder / table, _parquet(error_frame(results.checked)))
 
 
-def _content(name: str, checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+def _content(name: str, results: Results) -> str:
     """The text of one output."""
     if name.endswith(".csv"):
-        return cell_frame(checked).to_csv(index=False, lineterminator="\n")
+        return cell_frame(results.checked).to_csv(index=False, lineterminator="\n")
     if name.endswith(".xml"):
-        return junit(checked, facts)
-    return _json(checked, facts)
+        text = junit(results.checked, results.facts)
+        return joined(text, results.diff) if results.diff else text
+    return _json(results)
 
 
-def _json(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
-    """Facts and cells with their findings; what is not finite is null."""
+def _json(results: Results) -> str:
+    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
     cells = [
         cell_row(one)
         | {
@@ -164,9 +213,14 @@ def _json(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
             "notes": list(one.errors.notes) if one.errors else [],
             "findings": [vars(finding) for finding in one.findings],
         }
-        for one in checked
+        for one in results.checked
     ]
-    return json.dumps(_finite({"provenance": dict(facts), "cells": cells}), indent=1) + "\n"
+    content = {
+        "provenance": dict(results.facts),
+        "scenes": dict(results.digests),
+        "cells": cells,
+    }
+    return json.dumps(_finite(content), indent=1) + "\n"
 
 
 def _finite(value: object) -> object:
