@@ -1,0 +1,134 @@
+"""A four-bar in MuJoCo and in pymunk as a user would write it, with a place for a snippet.
+
+Nothing here knows crankcheck: the numbers are those of the lecture's first example (crank 0.1,
+coupler 0.25, rocker 0.2, ground 0.3 m, rods of 1 kg/m, crank from 90 deg), and the angles to be
+found follow from the law of cosines.
+"""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
+START = math.pi / 2
+TURNS = 2
+
+
+def angles(crank: Array) -> tuple[Array, Array]:
+    """Angles of coupler and rocker [rad] at angles of the crank; the open assembly."""
+    bx, by = CRANK * np.cos(crank), CRANK * np.sin(crank)
+    diagonal = np.hypot(bx - GROUND, by)
+    at_d = np.arccos((diagonal**2 + ROCKER**2 - COUPLER**2) / (2 * diagonal * ROCKER))
+    rocker = np.unwrap(np.arctan2(by, bx - GROUND)) - at_d
+    cx, cy = GROUND + ROCKER * np.cos(rocker), ROCKER * np.sin(rocker)
+    return np.unwrap(np.arctan2(cy - by, cx - bx)), rocker
+
+
+def rates(crank: float, speed: float) -> tuple[float, float]:
+    """Angular velocities of coupler and rocker [rad/s], from the law of sines of the velocities."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([crank])))
+    across = math.sin(rocker - coupler)
+    return (
+        speed * CRANK / COUPLER * math.sin(crank - rocker) / across,
+        speed * CRANK / ROCKER * math.sin(crank - coupler) / across,
+    )
+
+
+MJCF = """
+<mujoco>
+  <compiler angle="radian" inertiafromgeom="false"/>
+  <!-- paste here -->
+  <worldbody>
+    <body euler="0 0 {crank!r}">
+      <joint axis="0 0 1" armature="{flywheel!r}"/>
+      <inertial pos="0.05 0 0" mass="0.1" diaginertia="8.333333333333e-5 8.333333333333e-5 8.333333333333e-5"/>
+      <body pos="0.1 0 0" euler="0 0 {coupler_in_crank!r}">
+        <joint axis="0 0 1"/>
+        <inertial pos="0.125 0 0" mass="0.25" diaginertia="1.302083333333e-3 1.302083333333e-3 1.302083333333e-3"/>
+        <site name="C of the coupler" pos="0.25 0 0"/>
+      </body>
+    </body>
+    <body pos="0.3 0 0" euler="0 0 {rocker!r}">
+      <joint axis="0 0 1"/>
+      <inertial pos="0.1 0 0" mass="0.2" diaginertia="6.666666666667e-4 6.666666666667e-4 6.666666666667e-4"/>
+      <site name="C of the rocker" pos="0.2 0 0"/>
+    </body>
+  </worldbody>
+  <equality>
+    <connect site1="C of the coupler" site2="C of the rocker"/>
+  </equality>
+</mujoco>
+"""  # noqa: E501
+
+
+def mujoco_error(snippet: str, steps: int, speed: float) -> float:
+    """The largest error of coupler and rocker [rad] over two turns of the MJCF with a snippet."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
+    # The snippet's rule: 1e12 times the sum of mass L^2 + inertia, L = 0.3 m.
+    flywheel = 1e12 * (0.55 * 0.3**2 + (0.1**3 + 0.25**3 + 0.2**3) / 12)
+    text = MJCF.format(
+        crank=START, coupler_in_crank=coupler - START, rocker=rocker, flywheel=flywheel
+    )
+    model = mujoco.MjModel.from_xml_string(text.replace("<!-- paste here -->", snippet))
+    start = mujoco.MjData(model)
+    of_coupler, of_rocker = rates(START, speed)
+    start.qvel[:] = speed, of_coupler - speed, of_rocker
+    turned = np.empty((TURNS * steps + 1, 3))
+    for row in turned:
+        row[:] = start.qpos
+        mujoco.mj_step(model, start)
+    crank = START + speed * model.opt.timestep * np.arange(len(turned))
+    exact = angles(crank)
+    found = (START + turned[:, 0] + coupler - START + turned[:, 1], rocker + turned[:, 2])
+    return worst(found, exact)
+
+
+def pymunk_error(snippet: str, steps: int, speed: float) -> float:
+    """The largest error of coupler and rocker [rad] over two turns of a space with a snippet."""
+    at_start = tuple(float(each[0]) for each in angles(np.array([START])))
+    b = CRANK * math.cos(START), CRANK * math.sin(START)
+    c = GROUND + ROCKER * math.cos(at_start[1]), ROCKER * math.sin(at_start[1])
+    of_coupler, of_rocker = rates(START, speed)
+    space = pymunk.Space()
+    crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    crank.angle, crank.angular_velocity = START, speed
+    coupler = pymunk.Body(0.25, 0.25 * 0.25**2 / 12)
+    coupler.position = (b[0] + c[0]) / 2, (b[1] + c[1]) / 2
+    coupler.angle, coupler.angular_velocity = at_start[0], of_coupler
+    rocker = pymunk.Body(0.2, 0.2 * 0.2**2 / 12)
+    rocker.position = (GROUND + c[0]) / 2, c[1] / 2
+    rocker.angle, rocker.angular_velocity = at_start[1], of_rocker
+    of_c = -of_rocker * c[1], of_rocker * (c[0] - GROUND)
+    of_b = -speed * b[1], speed * b[0]
+    rocker.velocity = of_c[0] / 2, of_c[1] / 2
+    coupler.velocity = (of_b[0] + of_c[0]) / 2, (of_b[1] + of_c[1]) / 2
+    space.add(
+        crank,
+        coupler,
+        rocker,
+        pymunk.PivotJoint(crank, coupler, (CRANK, 0.0), (-COUPLER / 2, 0.0)),
+        pymunk.PivotJoint(coupler, rocker, (COUPLER / 2, 0.0), (ROCKER / 2, 0.0)),
+        pymunk.PivotJoint(space.static_body, rocker, (GROUND, 0.0), (-ROCKER / 2, 0.0)),
+    )
+    names: dict[str, object] = {"space": space}
+    turned = [(crank.angle, coupler.angle, rocker.angle)]
+    run = compile(snippet, "snippet", "exec")
+    for _ in range(TURNS * steps):
+        exec(run, names)
+        turned.append((crank.angle, coupler.angle, rocker.angle))
+    dt = names["dt"]
+    assert isinstance(dt, float)
+    exact = angles(START + speed * dt * np.arange(len(turned)))
+    _, *found = np.array(turned).T
+    return worst(tuple(found), exact)
+
+
+def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
+    """The largest difference."""
+    return max(float(np.abs(a - b).max()) for a, b in zip(found, exact, strict=True))
