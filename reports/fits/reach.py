@@ -1,0 +1,67 @@
+"""Between measured points: the step that reaches an error, and what was measured at it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+
+STEPS_OF_HALVING = 60
+"""Halvings of an interval of ln dt: to rounding."""
+
+
+def reach(
+    knots: Sequence[tuple[float, float]],
+    target: float,
+    error_at: Callable[[float], float | None] = lambda dt_s: None,
+) -> float | None:
+    """The coarsest step at which, and at all finer ones, the error is at most ``target``.
+
+    ``knots`` are (step, error), finest first; between two of them the error is that of
+    ``error_at``, or where that is None a straight line in the logarithms. None where the finest
+    error is over the target already, and where none is: the step is then outside of the knots.
+    """
+    for (fine, below), (coarse, above) in itertools.pairwise(knots):
+        if below > target:
+            return None
+        if above >= target:
+            return _between(fine, below, coarse, above, target, error_at)
+    return None
+
+
+def _between(
+    fine: float,
+    below: float,
+    coarse: float,
+    above: float,
+    target: float,
+    error_at: Callable[[float], float | None],
+) -> float:
+    """Where the error rises through ``target``, by halving the interval."""
+
+    def error(dt_s: float) -> float:
+        fitted = error_at(dt_s)
+        if fitted is not None:
+            return fitted
+        return interpolate((fine, coarse), (below, above), dt_s) or 0.0
+
+    low, high = math.log(fine), math.log(coarse)
+    for _ in range(STEPS_OF_HALVING):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if error(math.exp(middle)) <= target else (low, middle)
+    return math.exp(low)
+
+
+def interpolate(dt_s: Sequence[float], values: Sequence[float], at_s: float) -> float | None:
+    """A positive quantity, such as the time per turn, at a step between measured ones.
+
+    A straight line in the logarithms; None outside of the measured steps.
+    """
+    points = sorted(zip(dt_s, values, strict=True))
+    for (fine, first), (coarse, second) in itertools.pairwise(points):
+        if fine <= at_s <= coarse:
+            if not (first > 0.0 and second > 0.0 and coarse > fine):
+                return second if at_s == coarse else first
+            part = math.log(at_s / fine) / math.log(coarse / fine)
+            return math.exp((1.0 - part) * math.log(first) + part * math.log(second))
+    return None
