@@ -7,9 +7,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
 import pandas as pd
 
+from reports.choice.cost import mean
 from reports.choice.lines import Line, numbers
 from sim.engine import Drive, SettingValue
 
@@ -113,7 +113,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
     for steps, rows in sorted(by_step.items()):
         faults = {scene: _fault(rows.get(scene)) for scene in scenes}
         good = {scene: row for scene, row in rows.items() if not faults[scene]}
-        complete = list(good.values()) if len(good) == len(scenes) else []
+        complete = tuple(good.values()) if len(good) == len(scenes) else ()
         found.append(
             Candidate(
                 engine=first.engine,
@@ -125,9 +125,9 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
                 steps_per_turn=steps,
                 errors={scene: float(row["place_pure"]) for scene, row in good.items()},
                 faults={scene: fault for scene, fault in faults.items() if fault},
-                us_per_step=_mean(complete, "us_per_step"),
-                us_per_step_median=_mean(complete, "us_per_step_median"),
-                s_per_turn=_mean(complete, "s_per_turn"),
+                us_per_step=mean(float(row["us_per_step"]) for row in complete),
+                us_per_step_median=mean(float(row["us_per_step_median"]) for row in complete),
+                s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
             )
         )
     return found
@@ -140,9 +140,3 @@ def _fault(row: pd.Series | None) -> str:
     if row["status"] != "ok":
         return str(row["status"])
     return "" if math.isfinite(row["place_pure"]) else "error is no number"
-
-
-def _mean(rows: Sequence[pd.Series], column: str) -> float:
-    """The geometric mean of a column; NaN where there is no row, or one without a number."""
-    values = np.array([float(row[column]) for row in rows])
-    return float(np.exp(np.log(values).mean())) if len(values) else math.nan

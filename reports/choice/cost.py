@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -81,3 +82,51 @@ def _cost(line: Line, dt_s: float) -> float:
     costs = [float(cost) for cost in timed["s_per_turn"]]
     found = interpolate([float(dt) for dt in timed["dt_s"]], costs, dt_s)
     return math.nan if found is None else found
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What a variant costs, as geometric means over the scenes.
+
+    ``us_per_step`` is of the least and ``us_per_step_median`` of the median repeat. ``s_to`` is the
+    time per turn [s] to reach each target, NaN where it is not reached on every scene;
+    ``reached`` on how many scenes it is.
+    """
+
+    engine: str
+    variant: str
+    us_per_step: float
+    us_per_step_median: float
+    s_to: Mapping[float, float]
+    reached: Mapping[float, int]
+    scenes: int
+
+
+def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ...]:
+    """The costs of each variant."""
+    scenes = len({line.scene for line in lines})
+    groups: dict[tuple[str, str], list[Line]] = {}
+    for line in lines:
+        groups.setdefault((line.engine, line.variant), []).append(line)
+    found = []
+    for (engine, variant), group in groups.items():
+        cells = pd.concat([line.cells for line in group])
+        times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
+        found.append(
+            Costs(
+                engine,
+                variant,
+                mean(cells["us_per_step"].dropna()),
+                mean(cells["us_per_step_median"].dropna()),
+                {a: mean(each) if len(each) == scenes else math.nan for a, each in times.items()},
+                {a: sum(reached(line, a) is not None for line in group) for a in targets},
+                scenes,
+            )
+        )
+    return tuple(found)
+
+
+def mean(values: Iterable[float]) -> float:
+    """The geometric mean, NaN of nothing."""
+    logs = np.log(np.fromiter(values, dtype=np.float64))
+    return float(np.exp(logs.mean())) if len(logs) else math.nan
