@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -9,11 +10,13 @@ from xml.etree import ElementTree as Xml
 
 import pandas as pd
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner, Result
 
-from models.errors import EngineError
+from models.errors import CrankcheckError, EngineError
 from models.files import shipped
 from reports.cli import app
+from reports.commands import verify as command
 from reports.rules import RULES
 
 FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
@@ -289,8 +292,6 @@ def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(
 
 
 def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.MonkeyPatch) -> None:
-    import reports.commands.verify as command
-
     def interrupted(*_: object) -> object:
         raise KeyboardInterrupt
 
@@ -313,3 +314,119 @@ def test_a_scene_that_no_engine_can_hold_is_a_row_and_exit_2(
     assert result.exit_code == 2
     assert "coupler has no mass" in " ".join(result.output.split())
     assert "NONE fourbar-lecture-1" in result.output
+
+
+Verify = Callable[..., tuple[int, str]]
+
+
+@pytest.fixture
+def against(tmp_path: Path) -> Verify:
+    """Verify a four-bar with MuJoCo against a baseline; gives the exit code and the output."""
+
+    def run(**asked: object) -> tuple[int, str]:
+        console = Console(width=100, record=True, file=io.StringIO())
+        given: dict[str, object] = {
+            "scenes": ("fourbar-lecture-1",), "engines": ("mujoco",), "profiles": ("tuned",),
+            "dt_s": None, "steps_per_turn": 90.0, "turns": 1.0, "tolerance": (),
+            "drive": "prescribed", "converge": False, "jobs": 1, "junit": None, "csv": None,
+            "json": None, "folder": None,
+        }  # fmt: skip
+        code = command.verify(command.Request(**{**given, **asked}), console, console)  # type: ignore[arg-type]
+        return code, console.export_text()
+
+    return run
+
+
+def plant(folder: Path, column: str, factor: float) -> None:
+    """Make an error of a stored run so many times as large."""
+    cells = pd.read_csv(folder / "verify.csv")
+    cells[column] *= factor
+    cells.to_csv(folder / "verify.csv", index=False)
+
+
+def test_a_run_as_good_as_its_baseline_ends_with_0(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path)
+    code, text = against(baseline=tmp_path)
+    assert code == 0
+    verdict, _, diff = text.partition("NOT WORSE: 0 worse, 0 better, 1 equal, 0 new, 0 missing")
+    assert "WITHIN TOLERANCE" in verdict
+    assert f"old: {tmp_path}" in "".join(diff.splitlines())
+
+
+def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
+    against: Verify, tmp_path: Path
+) -> None:
+    against(folder=tmp_path)
+    plant(tmp_path, "gap_pure", 1 / 1.2)
+    code, text = against(baseline=tmp_path, junit=tmp_path / "j.xml")
+    assert code == 1
+    assert "WITHIN TOLERANCE" in text
+    assert "WORSE: 1 worse" in text
+    assert against(baseline=tmp_path, factor=1.3)[0] == 0
+    own, diff = Xml.fromstring((tmp_path / "j.xml").read_text(encoding="utf-8"))
+    assert [suite.get("failures") for suite in (own, diff)] == ["0", "1"]
+    assert ["gap" in failure.get("message", "") for failure in diff.iter("failure")] == [True]
+
+
+def test_the_baseline_does_not_excuse_what_is_out_of_tolerance(
+    against: Verify, tmp_path: Path
+) -> None:
+    against(folder=tmp_path)
+    code, text = against(baseline=tmp_path, tolerance=("angle=1e-12",))
+    assert code == 1
+    assert "OUT OF TOLERANCE" in text
+    assert "NOT WORSE" in text
+
+
+def test_the_baseline_may_be_the_folder_that_is_written(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path)
+    plant(tmp_path, "gap_pure", 1 / 1.2)
+    assert against(baseline=tmp_path, folder=tmp_path)[0] == 1
+    assert against(baseline=tmp_path, folder=tmp_path)[0] == 0, "it is the new run by now"
+
+
+def test_only_what_is_run_now_is_compared(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path, profiles=("tuned", "as-shipped"))
+    code, text = against(baseline=tmp_path, scenes=("fourbar-lecture-1", "scotch-yoke"))
+    assert code == 0
+    assert "1 equal, 1 new, 0 missing" in text
+
+
+def test_an_engine_that_can_not_run_ends_with_2_beside_its_diff(
+    against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.cell as cell
+
+    def refuse(*_: object, **__: object) -> object:
+        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
+
+    against(folder=tmp_path)
+    monkeypatch.setattr(cell, "run", refuse)
+    code, text = against(baseline=tmp_path)
+    assert code == 2
+    assert "status" in text.partition("WORSE: 1 worse")[2]
+
+
+def test_a_scene_that_changed_since_the_baseline_is_refused(
+    against: Verify, tmp_path: Path
+) -> None:
+    scene = tmp_path / "mine.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    scene.write_text(text.replace("0.25", "0.26"), encoding="utf-8")
+    against(folder=tmp_path)
+    with pytest.raises(CrankcheckError, match="every scene of both changed in between"):
+        against(baseline=tmp_path, scenes=(str(scene),))
+
+
+def test_a_bad_baseline_is_refused_before_the_run(
+    against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    against(folder=tmp_path)
+    monkeypatch.setattr(command, "check_all", lambda *_: pytest.fail("it ran"))
+    for asked, fault in (
+        ({"baseline": tmp_path / "none"}, "none: no such folder"),
+        ({"baseline": tmp_path, "steps_per_turn": 180.0}, "no cell in common: .* holds 1 cell"),
+        ({"baseline": tmp_path, "factor": 0.5}, "--factor 0.5: give a number of at least 1"),
+    ):
+        with pytest.raises(CrankcheckError, match=fault):
+            against(**asked)

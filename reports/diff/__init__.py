@@ -1,0 +1,1 @@
+"""What changed between two stored runs: better, worse, new and missing cells."""

@@ -1,0 +1,208 @@
+"""What became better and what became worse, quantity by quantity and cell by cell."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from models.errors import CrankcheckError
+from reports.diff.runs import Found, Name, Run
+from reports.tolerance import DEFAULTS, ROUNDING
+
+FACTOR = 1.1
+"""How much an error may grow before it is called worse."""
+Word = Literal["worse", "better", "equal"]
+
+
+@dataclass(frozen=True)
+class Change:
+    """One error, old and new, as pure numbers; infinite where there is no number.
+
+    Both may be off by ``floor`` for no other reason than rounding.
+    """
+
+    quantity: str
+    old: float
+    new: float
+    floor: float
+
+    @property
+    def ratio(self) -> float:
+        """New over old, as they stand; infinite where something came of nothing."""
+        if self.old == self.new:
+            return 1.0
+        return self.new / self.old if self.old else math.inf
+
+    @property
+    def growth(self) -> float:
+        """New over old where the floor under both keeps what is near zero from counting."""
+        if self.old == self.new:
+            return 1.0
+        return (self.new + self.floor) / (self.old + self.floor)
+
+    def word(self, factor: float) -> Word:
+        """Worse or better if one exceeds ``factor`` times the other by more than the floor."""
+        if self.new > factor * self.old + self.floor:
+            return "worse"
+        return "better" if self.old > factor * self.new + self.floor else "equal"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A cell that both runs have.
+
+    One that did not end well has no errors to compare: that it did or did not is the change, and
+    two that failed are equal, however they failed. ``word`` is worse where any error is worse,
+    better where some are better and none is worse.
+    """
+
+    old: Found
+    new: Found
+    changes: tuple[Change, ...]
+    word: Word
+    factor: float
+
+    @property
+    def name(self) -> Name:
+        return self.new.name
+
+    @property
+    def turned(self) -> bool:
+        """Whether it ended well in one run and not in the other."""
+        return self.old.ok != self.new.ok
+
+    @property
+    def failed(self) -> bool:
+        """Whether it ended well in neither."""
+        return not (self.old.ok or self.new.ok)
+
+    @property
+    def worst(self) -> Change | None:
+        """The change that is to be told: the largest in the direction of ``word``."""
+        alike = [c for c in self.changes if c.word(self.factor) == self.word]
+        if self.word == "better":
+            return min(alike, key=lambda change: change.growth, default=None)
+        return max(alike, key=lambda change: change.growth, default=None)
+
+    @property
+    def factor_of_change(self) -> float:
+        """By how many times it is worse or better; infinite where it ended in another way."""
+        if self.turned:
+            return math.inf
+        growth = self.worst.growth if self.worst else 1.0
+        return max(growth, 1.0 / growth) if growth else math.inf
+
+
+@dataclass(frozen=True)
+class Diff:
+    """Two runs, cell by cell.
+
+    ``other_scene`` are cells of both whose scenes differ: there is nothing to compare. A cell of
+    one run only is ``missing`` or ``added``.
+    """
+
+    old: Run
+    new: Run
+    factor: float
+    pairs: tuple[Pair, ...]
+    missing: tuple[Found, ...]
+    added: tuple[Found, ...]
+    other_scene: tuple[Found, ...]
+
+    def those(self, word: Word) -> tuple[Pair, ...]:
+        """The cells that are worse, better or equal, the largest change first."""
+        found = [pair for pair in self.pairs if pair.word == word]
+        return tuple(sorted(found, key=lambda pair: -pair.factor_of_change))
+
+    def code(self, strict: bool = False) -> int:
+        """The exit code: 1 where something is worse; ``strict``: or could not be compared.
+
+        A run that failed is a row with its status, so a cell is missing only where it was not
+        asked for: that is told, and is no fault unless one says so.
+        """
+        lost = strict and (self.missing or self.other_scene)
+        return int(bool(lost or any(pair.word == "worse" for pair in self.pairs)))
+
+
+def compare(old: Run, new: Run, factor: float = FACTOR) -> Diff:
+    """Compare two runs.
+
+    Raises
+    ------
+    CrankcheckError
+        A factor that is not at least 1; no cell that both runs have, of the same scene.
+    """
+    if not (math.isfinite(factor) and factor >= 1.0):
+        raise CrankcheckError(f"--factor {factor:g}: give a number of at least 1, such as 1.1")
+    both = [name for name in new.cells if name in old.cells]
+    if not both:
+        raise CrankcheckError(f"no cell in common: {old.holds}; {new.holds}")
+    alike = [name for name in both if _same_scene(old.cells[name], new.cells[name])]
+    if not alike:
+        scenes = ", ".join(dict.fromkeys(name.scene for name in both))
+        raise CrankcheckError(
+            f"{old.label}, {new.label}: every scene of both changed in between ({scenes}); run "
+            "the old one again with the scenes as they are now"
+        )
+    other = set(both) - set(alike)
+    return Diff(
+        old=old,
+        new=new,
+        factor=factor,
+        pairs=tuple(_pair(old.cells[name], new.cells[name], factor) for name in alike),
+        missing=tuple(cell for name, cell in old.cells.items() if name not in new.cells),
+        added=tuple(cell for name, cell in new.cells.items() if name not in old.cells),
+        other_scene=tuple(cell for name, cell in new.cells.items() if name in other),
+    )
+
+
+def floor(quantity: str, steps_per_turn: float) -> float:
+    """What rounding alone may make of an error, as a pure number (see `reports.tolerance`).
+
+    The step is taken as an equal part of a turn, which it is for a driver of constant speed.
+    """
+    tolerance = DEFAULTS[quantity]
+    step_rad = math.tau / steps_per_turn
+    return tolerance.floor + ROUNDING / step_rad**tolerance.differenced
+
+
+def other_settings(diff: Diff) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """The settings that an engine held otherwise, with both values, by engine and variant: not
+    the version alone changed. One example is given of each setting."""
+    found: dict[tuple[str, str], dict[str, str]] = {}
+    for pair in diff.pairs:
+        was, now = pair.old.settings, pair.new.settings
+        for name in was.keys() & now.keys():
+            before, after = json.dumps(was[name]), json.dumps(now[name])
+            if before != after:
+                here = found.setdefault((pair.name.engine, pair.name.variant), {})
+                here.setdefault(name, f"{name} {before} -> {after}")
+    return {key: tuple(here[name] for name in sorted(here)) for key, here in found.items()}
+
+
+def _same_scene(old: Found, new: Found) -> bool:
+    """Whether both are of one scene, as far as the runs tell."""
+    known = old.scene_digest and new.scene_digest
+    return not known or old.scene_digest == new.scene_digest
+
+
+def _pair(old: Found, new: Found, factor: float) -> Pair:
+    """A cell of both runs, judged."""
+    if not (old.ok and new.ok):
+        word: Word = "equal" if old.ok == new.ok else "better" if new.ok else "worse"
+        return Pair(old, new, (), word, factor)
+    changes = tuple(_changes(old, new))
+    words = {change.word(factor) for change in changes}
+    word = "worse" if "worse" in words else "better" if "better" in words else "equal"
+    return Pair(old, new, changes, word, factor)
+
+
+def _changes(old: Found, new: Found) -> Iterator[Change]:
+    """Every quantity that both runs know, and either has a number for."""
+    for quantity, was in old.errors.items():
+        now = new.errors.get(quantity, was)
+        if math.isfinite(was) or math.isfinite(now):
+            yield Change(quantity, was, now, floor(quantity, new.name.steps_per_turn))

@@ -1,0 +1,68 @@
+"""What a step cost in two runs: advice, which never counts for the verdict."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reports.diff.changes import Diff
+from reports.diff.runs import counted, few
+
+LEAST_NOISE = 0.1
+"""Two sweeps are further apart than two repeats within one: another machine of the same kind, or
+one that does something else beside. Up to this, costs are equal however near the repeats were."""
+SHARE = 0.95
+"""The part of the repeats that lie within the noise."""
+
+
+@dataclass(frozen=True)
+class CostChange:
+    """An engine and variant: the median over its cells of new cost over old."""
+
+    engine: str
+    variant: str
+    ratio: float
+    cells: int
+
+    def equal(self, noise: float) -> bool:
+        return 1.0 / (1.0 + noise) <= self.ratio <= 1.0 + noise
+
+
+def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
+    """The change of every engine and variant whose cells were timed on the same processor, and
+    the relative difference up to which costs are equal, from pairs of repeats of one cell."""
+    ratios: dict[tuple[str, str], list[float]] = {}
+    noises: list[float] = []
+    for pair in diff.pairs:
+        was, now = pair.old.cost, pair.new.cost
+        if was and now and was.processor == now.processor:
+            key = (pair.name.engine, pair.name.variant)
+            ratios.setdefault(key, []).append(now.us_per_step / was.us_per_step)
+            noises += [was.noise, now.noise]
+    found = [CostChange(*key, statistics.median(each), len(each)) for key, each in ratios.items()]
+    return found, _noise(noises)
+
+
+def cost_text(diff: Diff) -> str:
+    """The costs that changed in a sentence, empty where none can be compared."""
+    found, noise = cost_changes(diff)
+    if not found:
+        return ""
+    told = [
+        f"{one.engine} {one.variant} {one.ratio:.2f} x (median of {counted(one.cells, 'cell')})"
+        for one in sorted(found, key=lambda one: -one.ratio)
+        if not one.equal(noise)
+    ]
+    rest = f"inside the noise of {noise:.0%}"
+    if not told:
+        return f"time of a step, as advice: equal {rest}"
+    others = f"; the others equal {rest}" if len(told) < len(found) else ""
+    return f"time of a step, new over old, as advice: {few(told, 6)}{others}"
+
+
+def _noise(found: Sequence[float]) -> float:
+    """The difference that all but a few of the repeats stay below."""
+    ordered = sorted(found)
+    share = ordered[int(SHARE * (len(ordered) - 1))] if ordered else 0.0
+    return max(share, LEAST_NOISE)

@@ -1,0 +1,156 @@
+"""Read a stored run, of either kind: the store of a sweep, or what `crankcheck verify -o` left."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import cast
+
+from models.errors import CrankcheckError
+from models.files import find_scene, parse_scene, read_text, shipped
+from reports.diff.runs import Found, Name, Row, Run, found_in, text
+from reports.store.key import digest
+from reports.store.manifest import MANIFEST
+from reports.store.reader import read_store
+
+CELLS, FACTS = "verify.csv", "verify.json"
+WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
+
+
+def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
+    """The run in a folder.
+
+    A store keeps every version of an engine that it was filled with. Of cells that differ in
+    nothing else the one written last counts, unless ``version`` is given: then an engine that
+    has cells of that version is taken with those alone. ``option`` is what chooses the version,
+    for messages.
+
+    Raises
+    ------
+    CrankcheckError
+        No such folder, no stored run in it, one that can not be read, a version that it has not.
+    """
+    rows, facts, digests = _contents(folder)
+    try:
+        found = [found_in(row, facts, digests) for row in rows]
+    except (KeyError, ValueError, OverflowError) as error:
+        why = f"no column {error}" if isinstance(error, KeyError) else str(error)
+        raise CrankcheckError(
+            f"{folder}: not the cells of a run ({why}); make it again with {WRITERS}"
+        ) from None
+    if not any(cell.errors for cell in found):
+        raise CrankcheckError(f"{folder}: no errors in its cells; make it again with {WRITERS}")
+    kept, notes = _chosen(found, folder, version, option)
+    return Run(str(folder), kept, facts, notes)
+
+
+def scene_digests(names: Iterable[str]) -> dict[str, str]:
+    """The hash of each scene's text by the scene's own name; of all shipped ones for none."""
+    found = {}
+    for given in tuple(names) or tuple(shipped()):
+        path = find_scene(given)
+        content = read_text(path)
+        found[parse_scene(content, str(path)).name] = digest(content)
+    return found
+
+
+def _contents(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
+    """Rows of the cells, facts, and digests of scenes, by the kind of folder."""
+    kinds: dict[str, Callable[[Path], tuple[list[Row], dict[str, str], dict[str, str]]]] = {
+        MANIFEST: _store,
+        CELLS: _verification,
+    }
+    try:
+        there = [name for name in kinds if (folder / name).is_file()]
+        if len(there) == 1:
+            return kinds[there[0]](folder)
+        raise CrankcheckError(f"{folder}: {_not_a_run(folder, there)}")
+    except OSError as error:
+        raise CrankcheckError(
+            f"{folder}: can not be read: {error.strerror or error}; name a folder that "
+            f"{WRITERS} wrote"
+        ) from None
+
+
+def _not_a_run(folder: Path, there: list[str]) -> str:
+    """What is wrong with a folder that holds no run, or two."""
+    if there:
+        return (
+            f"holds a sweep ({MANIFEST}) and a verification ({CELLS}); move one of them to a "
+            "folder of its own"
+        )
+    if not folder.exists():
+        return f"no such folder; name one that {WRITERS} wrote"
+    if not folder.is_dir():
+        return f"a file; name the folder that {WRITERS} wrote"
+    inside = sorted(
+        path.parent.name for name in (MANIFEST, CELLS) for path in folder.glob(f"*/{name}")
+    )
+    if inside:
+        return f"no stored run there, but in folders of it: name one of {', '.join(inside[:8])}"
+    return f"no stored run there (no {MANIFEST}, no {CELLS}); {WRITERS} makes one"
+
+
+def _store(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
+    stored = read_store(folder)
+    runs = stored.manifest.runs
+    facts = runs[-1].get("provenance") if runs else None
+    rows = cast("list[Row]", stored.cells.to_dict("records"))
+    return rows, _texts(facts), {}
+
+
+def _verification(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
+    path = folder / CELLS
+    try:
+        with path.open(encoding="utf-8", newline="") as lines:
+            rows: list[Row] = [
+                {key: value for key, value in row.items() if isinstance(key, str)}
+                for row in csv.DictReader(lines)
+            ]
+    except (ValueError, csv.Error) as error:
+        raise CrankcheckError(f"{path}: not a CSV file ({error}); verify again") from None
+    if not rows:
+        raise CrankcheckError(f"{path}: no cells in it; verify again")
+    try:
+        known = json.loads((folder / FACTS).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        known = {}  # the cells are enough to compare
+    except ValueError as error:
+        raise CrankcheckError(f"{folder / FACTS}: not JSON ({error}); verify again") from None
+    if not isinstance(known, dict):
+        raise CrankcheckError(f"{folder / FACTS}: no facts of a verification; verify again")
+    return rows, _texts(known.get("provenance")), _texts(known.get("scenes"))
+
+
+def _texts(value: object) -> dict[str, str]:
+    """A mapping of texts, empty where there is none."""
+    if not isinstance(value, Mapping):
+        return {}
+    return {str(key): text(item) for key, item in value.items()}
+
+
+def _chosen(
+    found: list[Found], folder: Path, version: str | None, option: str
+) -> tuple[dict[Name, Found], tuple[str, ...]]:
+    """One cell of each name, and what to say of those that were passed over."""
+    versions: dict[str, dict[str, None]] = {}
+    for cell in found:
+        versions.setdefault(cell.name.engine, {})[cell.version] = None
+    if version is not None:
+        if not any(version in each for each in versions.values()):
+            has = "; ".join(f"{engine} {', '.join(each)}" for engine, each in versions.items())
+            raise CrankcheckError(f"{option} {version}: {folder} has {has}")
+        found = [
+            cell for cell in found
+            if version not in versions[cell.name.engine] or cell.version == version
+        ]  # fmt: skip
+        versions = {e: {version: None} if version in v else v for e, v in versions.items()}
+    choice = f"; {option} chooses" if option else ""
+    notes = tuple(
+        f"{folder} holds {engine} {', '.join(each)}: of each cell the last written counts{choice}"
+        for engine, each in versions.items()
+        if len(each) > 1
+    )
+    return {cell.name: cell for cell in found}, notes

@@ -1,0 +1,210 @@
+"""A run as it is compared: cells by what names them, whatever wrote them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from reports.cell import Cell, Checked
+from reports.rows import cell_row
+from reports.tolerance import DEFAULTS
+
+QUANTITIES = tuple(DEFAULTS)
+"""What is compared: the largest error of each, as a pure number."""
+Row = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Name:
+    """What names a cell in every run; the version of the engine is what one compares across."""
+
+    scene: str
+    engine: str
+    variant: str
+    drive: str
+    steps_per_turn: float
+    turns: float
+
+    @property
+    def line(self) -> tuple[str, str, str, str, float]:
+        """What it shares with the cells that differ in step only."""
+        return self.scene, self.engine, self.variant, self.drive, self.turns
+
+    @property
+    def label(self) -> str:
+        servo = "" if self.drive == "prescribed" else f", drive {self.drive}"
+        return (
+            f"{self.scene}, {self.engine} {self.variant}{servo}, {self.steps_per_turn:g} steps a "
+            f"turn, {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
+        )
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a step took [microseconds], by how much two measurements of it differed (relative),
+    and where it was measured."""
+
+    us_per_step: float
+    noise: float
+    processor: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """One cell of a run: how it ended, and its largest errors by quantity, as pure numbers.
+
+    An error is infinite where the run has no number for it: it was not finite, or nothing of the
+    kind was reported. A quantity that the run does not know at all is not there. ``scene_digest``
+    is empty where the run does not tell which text the scene had.
+    """
+
+    name: Name
+    version: str
+    status: str
+    reason: str
+    errors: Mapping[str, float]
+    settings: Mapping[str, object] = field(default_factory=dict)
+    scene_digest: str = ""
+    cost: Cost | None = None
+
+    @property
+    def ok(self) -> bool:
+        return self.status == "ok"
+
+
+@dataclass(frozen=True)
+class Run:
+    """All cells of a run; ``label`` is what it is called, ``facts`` its versions, processor, time.
+
+    ``notes`` say what was left out of it, and why.
+    """
+
+    label: str
+    cells: Mapping[Name, Found]
+    facts: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def only(self, names: Collection[Name]) -> Run:
+        """The same run with these cells alone."""
+        return replace(self, cells={n: cell for n, cell in self.cells.items() if n in names})
+
+    @property
+    def holds(self) -> str:
+        """What there is to compare, in a sentence."""
+        names = list(self.cells)
+        parts = [
+            f"{counted(len(names), 'cell')}: scenes {few(name.scene for name in names)}",
+            few(f"{name.engine} {name.variant}" for name in names),
+            f"{few(f'{name.steps_per_turn:g}' for name in names)} steps a turn",
+            f"{few(f'{name.turns:g}' for name in names)} turns",
+            f"drive {few(name.drive for name in names)}",
+        ]
+        return f"{self.label} holds {'; '.join(parts)}"
+
+
+def run_of(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> Run:
+    """A verification that was just made; ``digests`` of the scenes by name."""
+    found = (found_in(cell_row(one), facts, digests) for one in checked)
+    return Run("this run", {cell.name: cell for cell in found}, facts)
+
+
+def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> Run:
+    """A verification that is still to be made: the names of its cells, without any error."""
+    found = {}
+    for cell in cells:
+        steps, turns = same(cell.steps_per_turn), same(cell.turns)
+        name = Name(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
+        found[name] = Found(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
+    return Run("what was asked for", found)
+
+
+def found_in(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> Found:
+    """One cell of a row as `reports.rows.cell_row` makes it, of a store or of a CSV file.
+
+    Raises
+    ------
+    KeyError, ValueError
+        A column that names the cell is not there; a number or settings that can not be read.
+    """
+    engine = text(row["engine"])
+    steps, turns = (_positive(row[key], key) for key in ("steps_per_turn", "turns"))
+    name = Name(
+        scene=text(row["scene"]),
+        engine=engine,
+        variant=text(row.get("variant")) or text(row["profile"]),
+        drive=text(row["drive"]),
+        steps_per_turn=same(steps),
+        turns=same(turns),
+    )
+    columns = {each: f"{each.replace('-', '_')}_pure" for each in QUANTITIES}
+    return Found(
+        name=name,
+        version=text(row["version"]) or facts.get(engine, "?"),
+        status=text(row["status"]),
+        reason=" ".join(text(row["reason"]).split()),
+        errors={q: _error(row[column]) for q, column in columns.items() if column in row},
+        settings=_settings(text(row.get("settings")) or "{}"),
+        scene_digest=text(row.get("scene_digest")) or digests.get(name.scene, ""),
+        cost=_cost(row),
+    )
+
+
+def _error(value: object) -> float:
+    """An error, infinite where there is no number."""
+    found = number(value)
+    if found is not None and found < 0.0:
+        raise ValueError(f"an error of {found:g}")
+    return math.inf if found is None else found
+
+
+def _positive(value: object, column: str) -> float:
+    found = number(value)
+    if found is None or found <= 0.0:
+        raise ValueError(f"{column} {value!r}")
+    return found
+
+
+def _settings(content: str) -> Mapping[str, object]:
+    found = json.loads(content)
+    if not isinstance(found, dict):
+        raise ValueError(f"settings {content[:40]!r}")
+    return found
+
+
+def _cost(row: Row) -> Cost | None:
+    least, a, b = (number(row.get(f"us_per_step{part}")) for part in ("", "_a", "_b"))
+    if not (least and a and b):
+        return None
+    return Cost(least, abs(a - b) / min(a, b), text(row.get("processor")))
+
+
+def same(value: float) -> float:
+    """A number of steps or turns, in the digits that are equal however it was computed."""
+    return float(f"{value:.9g}")
+
+
+def number(value: object) -> float | None:
+    """A number as it stands in a table, None where there is none. Raises ValueError for words."""
+    if value is None or value == "":
+        return None
+    found = float(str(value))
+    return found if math.isfinite(found) else None
+
+
+def text(value: object) -> str:
+    """A text as it stands in a table, empty where there is none."""
+    return value if isinstance(value, str) else ""
+
+
+def counted(count: int, thing: str) -> str:
+    """A number of things, in the singular or the plural."""
+    return f"{count} {thing}" + ("" if count == 1 else "s")
+
+
+def few(values: Iterable[str], most: int = 4) -> str:
+    """Each value once, and the number of those beyond the first few."""
+    each = list(dict.fromkeys(values))
+    more = f" and {len(each) - most} more" if len(each) > most else ""
+    return ", ".join(each[:most]) + more

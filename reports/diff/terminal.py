@@ -1,0 +1,90 @@
+"""A diff on the terminal: what counts first, then the rest in short."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from reports.diff.changes import Diff
+from reports.diff.runs import Found
+from reports.diff.words import HEADS, Line, footer, headline, left_out, lines, remarks, verdict
+
+MOST = {"worse": 200, "better": 10}
+"""Rows of a table; all that is worse is named, unless that is more than anyone reads."""
+LEFT_OUT = 8
+NARROW = 76
+"""Columns below which old and new give way to their ratio."""
+STYLES = {"worse": "bold red", "better": "green"}
+
+
+def show(console: Console, diff: Diff, strict: bool = False) -> None:
+    """Print the whole diff."""
+    style = STYLES["worse"] if diff.code(strict) else "bold green"
+    console.print(Text(f"{verdict(diff, strict)}: {headline(diff)}", style))
+    for remark in remarks(diff):
+        _hanging(console, "  ", remark)
+    console.print()
+    _table(console, "worse", lines(diff, "worse"))
+    _table(console, "better", lines(diff, "better"))
+    _left_out(console, "new", diff.added)
+    _left_out(console, "missing", diff.missing)
+    console.print(Text("\n".join(footer(diff)), "dim"), highlight=False)
+
+
+def _table(console: Console, word: str, found: Sequence[Line]) -> None:
+    """The rows of what is worse, or better, and the reasons of engines that gave up."""
+    if not found:
+        return
+    wide = console.width >= NARROW
+    shown = found[: MOST[word]]
+    table = Table(
+        title=word,
+        title_justify="left",
+        title_style=STYLES[word],
+        box=None,
+        padding=(0, 1, 0, 0),
+        collapse_padding=True,
+    )
+    for head in HEADS:
+        number = head in ("old", "new", "ratio")
+        if wide or not number or head == "ratio":
+            side: Literal["left", "right"] = "right" if number else "left"
+            table.add_column(head, overflow="fold", justify=side, no_wrap=number)
+    for line in shown:
+        middle = (line.old, line.new) if wide else ()
+        table.add_row(
+            *map(Text, (line.scene, line.engine, line.steps, line.quantity, *middle, line.ratio))
+        )
+    console.print(table)
+    if len(found) > len(shown):
+        more = f"and {len(found) - len(shown)} more rows; --junit FILE names every cell"
+        console.print(more, style="dim", highlight=False)
+    for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
+        _hanging(console, "  ", text)
+    console.print()
+
+
+def _left_out(console: Console, word: str, cells: Sequence[Found]) -> None:
+    """The cells of one run only."""
+    found = left_out(cells)
+    if not found:
+        return
+    console.print(Text(word, "bold"))
+    for text in found[:LEFT_OUT]:
+        _hanging(console, "  ", text)
+    if len(found) > LEFT_OUT:
+        console.print(f"  and {len(found) - LEFT_OUT} more lines like these", style="dim")
+    console.print()
+
+
+def _hanging(console: Console, head: str, text: str) -> None:
+    """A paragraph whose later lines stand below its text."""
+    grid = Table.grid(padding=0)
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    grid.add_row(head, Text(text))
+    console.print(grid)

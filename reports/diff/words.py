@@ -1,0 +1,194 @@
+"""A diff in words and rows, which the terminal, Markdown and JUnit share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from reports.diff.changes import Change, Diff, Pair, Word, other_settings
+from reports.diff.costs import cost_text
+from reports.diff.runs import Found, Name, Run, counted, few
+
+REASON = 120
+"""Characters of the reason that an engine gave for how it ended."""
+Names = Sequence[Name]
+
+
+@dataclass(frozen=True)
+class Line:
+    """Cells that differ in step only, as one row: the worst of them, and which the others are."""
+
+    scene: str
+    engine: str
+    steps: str
+    quantity: str
+    old: str
+    new: str
+    ratio: str
+    reason: str = ""
+
+
+HEADS = ("scene", "engine", "steps\na turn", "quantity", "old", "new", "ratio")
+
+
+def headline(diff: Diff) -> str:
+    """How many cells are what."""
+    parts = [f"{len(diff.those(word))} {word}" for word in ("worse", "better", "equal")]
+    parts += [f"{len(diff.added)} new", f"{len(diff.missing)} missing"]
+    if diff.other_scene:
+        parts.append(f"{len(diff.other_scene)} of a scene that changed")
+    return ", ".join(parts)
+
+
+def verdict(diff: Diff, strict: bool = False) -> str:
+    """What the exit code says, in words."""
+    if diff.those("worse"):
+        return "WORSE"
+    return "NOT WHOLE (--strict)" if diff.code(strict) else "NOT WORSE"
+
+
+def lines(diff: Diff, word: Word) -> list[Line]:
+    """The cells that are worse, or better, one row for those that differ in step only."""
+    compared: dict[tuple[object, ...], list[float]] = {}
+    for pair in diff.pairs:
+        compared.setdefault(pair.name.line, []).append(pair.name.steps_per_turn)
+    groups: dict[tuple[object, ...], list[Pair]] = {}
+    for pair in diff.those(word):
+        groups.setdefault(pair.name.line, []).append(pair)
+    several = _several(diff)
+    return [
+        _line(members, compared[line], _engine(members[0], several))
+        for line, members in groups.items()
+    ]
+
+
+def left_out(cells: Iterable[Found]) -> list[str]:
+    """Cells of one run, one text for those that differ in step only."""
+    groups: dict[tuple[object, ...], list[Name]] = {}
+    for cell in cells:
+        groups.setdefault(cell.name.line, []).append(cell.name)
+    return [
+        f"{names[0].scene}, {_called(names[0])}, "
+        f"{', '.join(f'{n.steps_per_turn:g}' for n in names)} steps a turn"
+        for names in groups.values()
+    ]
+
+
+def remarks(diff: Diff) -> list[str]:
+    """What one must know to read the numbers."""
+    found = [versions(diff), *diff.old.notes]
+    found += [note for note in diff.new.notes if note not in diff.old.notes]
+    scenes = list(dict.fromkeys(cell.name.scene for cell in diff.other_scene))
+    if scenes:
+        number = counted(len(diff.other_scene), "cell")
+        found.append(f"the text of {few(scenes, 10)} changed: {number} not compared")
+    failed = [pair.new.status for pair in diff.pairs if pair.failed]
+    if failed:
+        found.append(f"{len(failed)} of the equal ones failed in both ({few(failed)})")
+    for (engine, variant), changed in other_settings(diff).items():
+        found.append(f"settings of {engine} {variant} differ: {few(changed, 6)}")
+    return [text for text in (*found, cost_text(diff)) if text]
+
+
+def footer(diff: Diff) -> list[str]:
+    """Units, the rule of the verdict, and where both runs come from."""
+    return [
+        "Largest errors against the closed form as pure numbers: angles in rad, lengths over the "
+        "longest link, rates over the driver's peak speed and its square.",
+        f"Worse: an error above {diff.factor:g} times the old one by more than rounding explains, "
+        "or a cell that ended well before.",
+        f"old: {origin(diff.old)}",
+        f"new: {origin(diff.new)}",
+    ]
+
+
+def origin(run: Run) -> str:
+    """Where a run comes from."""
+    told = ("crankcheck", "processor", "made")
+    facts = [f"{name} {run.facts[name]}" for name in told if run.facts.get(name)]
+    return ", ".join([run.label, *facts])
+
+
+def versions(diff: Diff) -> str:
+    """The versions of every engine, old and new, where that can be said of all its cells."""
+    found: dict[str, dict[str, None]] = {}
+    for pair in diff.pairs:
+        found.setdefault(pair.name.engine, {})[_versions(pair)] = None
+    return "; ".join(f"{engine} {few(each)}" for engine, each in found.items())
+
+
+def told(pair: Pair) -> str:
+    """The change of a cell in one line."""
+    if pair.turned:
+        failed = pair.old if pair.new.ok else pair.new
+        why = f": {failed.reason[:REASON]}" if failed.reason else ""
+        return f"ended as {pair.new.status}, before as {pair.old.status}{why}"
+    if pair.failed:
+        return f"failed in both: {pair.new.status}, before {pair.old.status}"
+    change = pair.worst
+    if change is None:
+        return "nothing to compare"
+    return f"{change.quantity} {size(change.old)} to {size(change.new)} (ratio {ratio(change)})"
+
+
+def size(error: float) -> str:
+    """A pure error; a dash where there is no number."""
+    return f"{error:.2e}" if math.isfinite(error) else "-"
+
+
+def ratio(change: Change) -> str:
+    """New over old in three digits; a dash where one of them is no number, or the old one 0."""
+    found = change.ratio
+    if not math.isfinite(found) or not math.isfinite(change.old):
+        return "-"
+    return f"{found:#.3g}".removesuffix(".")
+
+
+def _line(members: Sequence[Pair], compared: Sequence[float], engine: str) -> Line:
+    """Pairs of one line, the largest change first, as a row."""
+    first, change = members[0], members[0].worst
+    steps = _steps([pair.name.steps_per_turn for pair in members], compared)
+    if first.turned or change is None:
+        failed = first.old if first.new.ok else first.new
+        was, now = first.old.status, first.new.status
+        reason = failed.reason[:REASON]
+        return Line(first.name.scene, engine, steps, "status", was, now, "-", reason)
+    numbers = (size(change.old), size(change.new), ratio(change))
+    return Line(first.name.scene, engine, steps, change.quantity, *numbers)
+
+
+def _steps(changed: Sequence[float], compared: Sequence[float]) -> str:
+    """The step of the largest change, and which others changed too."""
+    first, *others = [f"{each:g}" for each in changed]
+    if len(changed) > 2 and len(changed) == len(compared):
+        return f"{first} (all {len(changed)}: {min(changed):g} to {max(changed):g})"
+    return f"{first} (also {', '.join(others)})" if others else first
+
+
+def _engine(pair: Pair, several: frozenset[str]) -> str:
+    """Engine and variant; with its versions where those of the engine differ from cell to cell."""
+    called = _called(pair.name, "turns" in several)
+    return f"{called} ({_versions(pair)})" if pair.name.engine in several else called
+
+
+def _called(name: Name, turns: bool = False) -> str:
+    parts = [f"{name.engine} {name.variant}"]
+    parts += [f"drive {name.drive}"] if name.drive != "prescribed" else []
+    parts += [f"{name.turns:g} turns"] if turns else []
+    return ", ".join(parts)
+
+
+def _versions(pair: Pair) -> str:
+    was, now = pair.old.version, pair.new.version
+    return was if was == now else f"{was} -> {now}"
+
+
+def _several(diff: Diff) -> frozenset[str]:
+    """The engines with several pairs of versions, and ``turns`` where cells differ in those."""
+    pairs = {(pair.name.engine, _versions(pair)) for pair in diff.pairs}
+    engines = [engine for engine, _ in pairs]
+    found = {engine for engine in engines if engines.count(engine) > 1}
+    if len({pair.name.turns for pair in diff.pairs}) > 1:
+        found.add("turns")
+    return frozenset(found)

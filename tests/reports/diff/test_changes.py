@@ -1,0 +1,193 @@
+"""What counts as worse, and what does not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from models.errors import CrankcheckError
+from reports.diff.changes import Change, compare, floor, other_settings
+from reports.diff.runs import QUANTITIES, Found, Name, Run
+
+Make = Callable[..., Found]
+Group = Callable[..., Run]
+OTHER = {"worse": "better", "better": "worse", "equal": "equal"}
+errors = st.one_of(
+    st.just(0.0), st.just(math.inf), st.floats(-16.0, 2.0).map(lambda exponent: 10.0**exponent)
+)
+cells = st.fixed_dictionaries(dict.fromkeys(("drive", "angle", "acceleration-differenced"), errors))
+runs = st.dictionaries(
+    st.tuples(st.sampled_from("abc"), st.sampled_from((90.0, 720.0))),
+    st.tuples(st.sampled_from(("ok", "ok", "diverged")), cells),
+    min_size=1,
+)
+
+
+def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Run:
+    """A run of drawn cells, with one that every run has."""
+    found = {("common", 720.0): ("ok", {"angle": 1e-3})} | content
+    names = {key: Name(key[0], "mujoco", "tuned", "prescribed", key[1], 2.0) for key in found}
+    return Run("drawn", {names[k]: Found(names[k], "1", s, "", e) for k, (s, e) in found.items()})
+
+
+@given(runs)
+def test_a_run_against_itself_is_all_equal(content: dict[object, object]) -> None:
+    found = made(content)  # type: ignore[arg-type]
+    diff = compare(found, found)
+    assert len(diff.those("equal")) == len(diff.pairs) == len(found.cells)
+    assert diff.missing == diff.added == diff.other_scene == ()
+    assert diff.code(strict=True) == 0
+
+
+@given(runs, runs, st.floats(1.0, 10.0))
+def test_old_and_new_exchanged_exchange_better_and_worse(
+    one: dict[object, object], two: dict[object, object], factor: float
+) -> None:
+    there = compare(made(one), made(two), factor)  # type: ignore[arg-type]
+    back = compare(made(two), made(one), factor)  # type: ignore[arg-type]
+    assert [c.name for c in there.missing] == [c.name for c in back.added]
+    found = {pair.name: pair for pair in back.pairs}
+    assert found.keys() == {pair.name for pair in there.pairs}
+    for pair in there.pairs:
+        turned = found[pair.name]
+        words = {change.quantity: change.word(factor) for change in turned.changes}
+        assert {c.quantity: OTHER[c.word(factor)] for c in pair.changes} == words
+        # A cell in which one error grew and another shrank is worse whichever comes first.
+        mixed = {"worse", "better"} <= set(words.values())
+        assert pair.word == (turned.word if mixed else OTHER[turned.word])
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_growth_past_the_factor_is_worse_and_below_it_is_not(
+    quantity: str, cell: Make, run: Group
+) -> None:
+    old = run(cell("a", **{quantity: 1e-3}), cell("b", **{quantity: 1e-3}))
+    for growth, word in ((1.2, "worse"), (1.05, "equal"), (1 / 1.05, "equal"), (1 / 1.2, "better")):
+        new = run(cell("a", **{quantity: 1e-3 * growth}), cell("b", **{quantity: 1e-3}))
+        diff = compare(old, new)
+        assert [pair.word for pair in diff.pairs] == [word, "equal"]
+        assert diff.code() == (word == "worse")
+    assert compare(old, run(cell("a", **{quantity: 1.2e-3})), factor=1.3).code() == 0
+
+
+@pytest.mark.parametrize(
+    ("quantity", "steps", "noise"),
+    [("angle", 720, 0.9e-11), ("gap", 720, 0.9e-11), ("drive", 720, 0.9e-9),
+     ("velocity-differenced", 5760, 0.9e-11 / (math.tau / 5760)),
+     ("acceleration-differenced", 5760, 0.9e-11 / (math.tau / 5760) ** 2)],
+)  # fmt: skip
+def test_noise_of_the_size_of_rounding_is_no_alarm(
+    quantity: str, steps: int, noise: float, cell: Make, run: Group
+) -> None:
+    for old in (0.0, noise / 1e4, noise):
+        before = run(cell(steps=float(steps), **{quantity: old}))
+        after = run(cell(steps=float(steps), **{quantity: old + noise}))
+        assert compare(before, after).code() == 0
+        far = run(cell(steps=float(steps), **{quantity: old + 3 * noise}))
+        assert compare(before, far).code() == 1, "what exceeds rounding counts"
+
+
+def test_the_floor_follows_how_often_a_quantity_was_differenced() -> None:
+    assert floor("angle", 90) == floor("angle", 9000) == pytest.approx(1e-11)
+    assert floor("velocity-differenced", 7200) == pytest.approx(
+        10 * floor("velocity-differenced", 720)
+    )
+    assert floor("acceleration-differenced", 7200) == pytest.approx(
+        100 * floor("acceleration-differenced", 720)
+    )
+
+
+def test_an_error_that_is_no_number_any_more_is_worse(cell: Make, run: Group) -> None:
+    number, none = run(cell(angle=1e-3, gap=1e-3)), run(cell(angle=math.inf, gap=1e-3))
+    (pair,) = compare(number, none).pairs
+    assert pair.word == "worse"
+    assert pair.worst is not None
+    assert pair.worst.quantity == "angle"
+    assert compare(none, number).those("better")
+    assert compare(none, none).those("equal")
+
+
+def test_a_quantity_that_one_run_does_not_know_is_not_compared(cell: Make, run: Group) -> None:
+    (pair,) = compare(run(cell(angle=1e-3)), run(cell(angle=1e-3, gap=1.0))).pairs
+    assert [change.quantity for change in pair.changes] == ["angle"]
+
+
+def test_how_a_cell_ends_goes_before_its_errors(cell: Make, run: Group) -> None:
+    good = run(cell(angle=1e-3))
+    bad = run(cell(status="diverged", reason="came apart", angle=1e-9))
+    lost = run(cell(status="crashed"))
+    assert compare(good, bad).code() == 1
+    assert compare(bad, good).those("better")
+    assert compare(bad, lost).those("equal")
+    assert compare(bad, lost).pairs[0].failed
+
+
+def test_the_worst_quantity_and_the_worst_cell_are_told_first(cell: Make, run: Group) -> None:
+    old = run(*(cell(name, angle=1e-3, gap=1e-3, drive=1e-13) for name in "abc"))
+    new = run(
+        cell("a", angle=2e-3, gap=5e-3, drive=1e-9),
+        cell("b", angle=1e-2, gap=1e-4, drive=1e-13),
+        cell("c", status="locked"),
+    )
+    worse = compare(old, new).those("worse")
+    assert [pair.name.scene for pair in worse] == ["c", "b", "a"]
+    told = [pair.worst.quantity if pair.worst else "" for pair in worse]
+    assert told == ["", "angle", "gap"]
+
+
+def test_missing_cells_count_only_when_one_is_strict(cell: Make, run: Group) -> None:
+    old, new = run(cell("a", angle=1e-3), cell("b", angle=1e-3)), run(cell("a", angle=1e-3))
+    diff = compare(old, new)
+    assert [c.name.scene for c in diff.missing] == ["b"]
+    assert (diff.code(), diff.code(strict=True)) == (0, 1)
+    assert [c.name.scene for c in compare(new, old).added] == ["b"]
+    assert compare(new, old).code(strict=True) == 0
+
+
+def test_cells_of_a_scene_that_changed_are_not_compared(cell: Make, run: Group) -> None:
+    old = run(cell("a", angle=1e-3, digest="1"), cell("b", angle=1e-3, digest="2"))
+    new = run(cell("a", angle=1e-1, digest="9"), cell("b", angle=1e-3, digest="2"))
+    diff = compare(old, new)
+    assert [c.name.scene for c in diff.other_scene] == ["a"]
+    assert [pair.name.scene for pair in diff.pairs] == ["b"]
+    assert (diff.code(), diff.code(strict=True)) == (0, 1)
+    unknown = run(cell("a", angle=1e-1))
+    assert compare(old, unknown).code() == 1, "a run that does not tell its scenes is compared"
+
+
+def test_nothing_in_common_is_refused_with_what_each_side_holds(cell: Make, run: Group) -> None:
+    old, new = run(cell("a", steps=90.0), label="OLD"), run(cell("b"), label="NEW")
+    with pytest.raises(CrankcheckError) as caught:
+        compare(old, new)
+    told = str(caught.value)
+    assert told.startswith("no cell in common: OLD holds 1 cell: scenes a; mujoco tuned; 90 steps")
+    assert "; NEW holds 1 cell: scenes b; mujoco tuned; 720 steps a turn; 2 turns" in told
+    with pytest.raises(CrankcheckError, match="every scene of both changed in between"):
+        compare(run(cell(digest="1")), run(cell(digest="2")))
+
+
+@pytest.mark.parametrize("factor", [0.99, 0.0, -1.0, math.inf, math.nan])
+def test_a_factor_below_1_is_refused(factor: float, cell: Make, run: Group) -> None:
+    with pytest.raises(CrankcheckError, match=r"--factor .* at least 1"):
+        compare(run(cell()), run(cell()), factor)
+
+
+def test_settings_that_the_engine_held_otherwise_are_told() -> None:
+    name = Name("a", "mujoco", "stiff", "prescribed", 720.0, 2.0)
+    was, now = (
+        Run("x", {name: Found(name, "1", "ok", "", {"angle": 1.0}, {"cone": 0, "solver": value})})
+        for value in ("PGS", "Newton")
+    )
+    found = other_settings(compare(was, now))
+    assert found == {("mujoco", "stiff"): ('solver "PGS" -> "Newton"',)}
+    assert other_settings(compare(was, was)) == {}
+
+
+def test_a_ratio_is_of_the_numbers_as_they_stand() -> None:
+    assert Change("angle", 2e-3, 3e-3, 1e-11).ratio == pytest.approx(1.5)
+    assert Change("angle", 0.0, 3e-3, 1e-11).ratio == math.inf
+    assert Change("angle", 0.0, 0.0, 1e-11).ratio == 1.0

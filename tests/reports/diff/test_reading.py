@@ -1,0 +1,158 @@
+"""Both kinds of stored runs, and every folder that is none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from models.errors import CrankcheckError
+from models.files import shipped
+from reports.diff.changes import compare
+from reports.diff.reading import read_run, scene_digests
+from reports.store.reader import read_store
+from sim.registry import engine
+
+Copy = Callable[..., Path]
+
+
+def test_a_verification_is_read_with_every_number(
+    stored: Copy, verified: tuple[pd.DataFrame, object]
+) -> None:
+    found = read_run(stored("old"))
+    frame = verified[0]
+    assert [(c.name.engine, c.name.variant) for c in found.cells.values()] == list(
+        zip(frame.engine, frame.profile, strict=True)
+    )
+    for one, angle, wanted in zip(
+        found.cells.values(), frame.angle_pure, frame.acceleration_pure, strict=True
+    ):
+        assert one.errors["angle"] == angle
+        reported = not np.isnan(wanted)
+        assert one.errors["acceleration"] == (wanted if reported else math.inf)
+        assert one.version == engine(one.name.engine).version()
+        assert one.settings
+        assert one.scene_digest
+        assert one.cost is None
+    assert found.facts["processor"]
+    assert found.notes == ()
+
+
+def test_a_store_is_read_with_costs_and_digests(store: Copy) -> None:
+    folder = store("s", us=2.5, cpu="mine")
+    found = read_run(folder)
+    cells = read_store(folder).cells
+    assert [c.name.steps_per_turn for c in found.cells.values()] == [90.0, 180.0]
+    for one, (_, row) in zip(found.cells.values(), cells.iterrows(), strict=True):
+        assert one.errors["position"] == row.position_pure
+        assert one.scene_digest == row.scene_digest
+        assert one.cost is not None
+        assert (one.cost.us_per_step, one.cost.noise, one.cost.processor) == (2.5, 0.0, "mine")
+    assert found.facts["mujoco"] == "4.0.0"
+
+
+def test_a_verification_and_a_store_are_compared_with_each_other(stored: Copy, store: Copy) -> None:
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    diff = compare(read_run(store("s")), read_run(stored("v", text=text)))
+    assert [pair.word for pair in diff.pairs] == ["equal"]
+    assert (len(diff.missing), len(diff.added)) == (1, 3)
+
+
+def test_of_several_versions_the_last_written_counts_unless_one_is_chosen(store: Copy) -> None:
+    store("s", version="3.9.0")
+    folder = store("s", version="3.7.0")
+    found = read_run(folder, None, "--old-version")
+    assert {c.version for c in found.cells.values()} == {"3.7.0"}
+    assert len(found.notes) == 1
+    assert "mujoco 3.9.0, 3.7.0: of each cell the last written counts" in found.notes[0]
+    assert "--old-version chooses" in found.notes[0]
+    chosen = read_run(folder, "3.9.0")
+    assert {c.version for c in chosen.cells.values()} == {"3.9.0"}
+    assert chosen.notes == ()
+    with pytest.raises(CrankcheckError, match=r"--new-version 3\.8\.0: .* has mujoco 3\.9\.0, 3"):
+        read_run(folder, "3.8.0", "--new-version")
+
+
+def test_a_version_of_one_engine_leaves_the_other_engines_whole(stored: Copy) -> None:
+    found = read_run(stored("v"), engine("mujoco").version())
+    assert {c.name.engine for c in found.cells.values()} == {"mujoco", "pymunk"}
+
+
+def test_a_verification_without_its_facts_is_enough(stored: Copy) -> None:
+    folder = stored("v")
+    (folder / "verify.json").unlink()
+    assert len(read_run(folder).cells) == 4
+
+
+def test_the_digest_of_a_shipped_scene_is_that_of_a_store(store: Copy) -> None:
+    wanted = {c.scene_digest for c in read_run(store("s")).cells.values()}
+    assert {scene_digests(["fourbar-lecture-1"])["fourbar-lecture-1"]} == wanted
+    assert scene_digests([]).keys() == set(shipped())
+
+
+def spoil(name: str, content: str) -> Callable[[Path], None]:
+    return lambda folder: (folder / name).write_text(content, encoding="utf-8") and None
+
+
+def column(name: str, value: object) -> Callable[[Path], None]:
+    """Replace a column of the cells."""
+
+    def change(folder: Path) -> None:
+        frame = pd.read_csv(folder / "verify.csv")
+        frame[name] = value
+        frame.to_csv(folder / "verify.csv", index=False)
+
+    return change
+
+
+def without(*names: str) -> Callable[[Path], None]:
+    def change(folder: Path) -> None:
+        frame = pd.read_csv(folder / "verify.csv")
+        frame[[c for c in frame if not c.endswith(names)]].to_csv(folder / "verify.csv")
+
+    return change
+
+
+SPOILT: dict[str, tuple[Callable[[Path], None], str]] = {
+    "empty file": (spoil("verify.csv", ""), "no cells in it"),
+    "other table": (spoil("verify.csv", "a,b\n1,2\n"), "no column 'engine'"),
+    "no column": (without("turns"), "no column 'turns'"),
+    "no errors": (without("_pure"), "no errors in its cells"),
+    "words": (column("angle_pure", "large"), "could not convert string to float: 'large'"),
+    "no steps": (column("steps_per_turn", 0.0), "steps_per_turn '0.0'"),
+    "negative": (column("gap_pure", -1.0), "an error of -1"),
+    "settings": (column("settings", "[1]"), r"settings '\[1\]'"),
+    "facts": (spoil("verify.json", "{"), "verify.json: not JSON"),
+    "list of facts": (spoil("verify.json", "[]"), "verify.json: no facts"),
+    "two kinds": (spoil("manifest.json", "{}"), "holds a sweep .* and a verification"),
+    "not text": (lambda f: (f / "verify.csv").write_bytes(b"\xff\xfe\x00") and None, "not a CSV"),
+}
+
+
+@pytest.mark.parametrize("name", SPOILT)
+def test_a_spoilt_run_is_refused_with_its_place_and_fault(name: str, stored: Copy) -> None:
+    folder = stored("v")
+    change, fault = SPOILT[name]
+    change(folder)
+    with pytest.raises(CrankcheckError, match=fault) as caught:
+        read_run(folder)
+    assert str(caught.value).startswith(str(folder))
+
+
+def test_what_is_no_run_is_refused_with_what_would_be(stored: Copy, tmp_path: Path) -> None:
+    stored("inside")
+    (tmp_path / "empty").mkdir()
+    for path, text in {
+        tmp_path / "nowhere": "no such folder; name one that `crankcheck sweep -o` or",
+        tmp_path / "inside" / "verify.csv": "a file; name the folder",
+        tmp_path / "empty": "no stored run there (no manifest.json, no verify.csv)",
+        tmp_path: "in folders of it: name one of inside",
+    }.items():
+        with pytest.raises(CrankcheckError) as caught:
+            read_run(path)
+        assert str(path) in str(caught.value)
+        assert text in str(caught.value)
