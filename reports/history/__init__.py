@@ -1,0 +1,1 @@
+"""One engine in several versions: an environment for each, the same verification, what changed."""

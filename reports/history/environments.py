@@ -1,0 +1,198 @@
+"""An environment for one version of an engine: made once, complete or not there at all."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import shutil
+import sys
+import sysconfig
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+from packaging.version import InvalidVersion, Version
+
+from models.errors import CrankcheckError
+from reports.history.children import Ended, Runner
+from reports.history.reasons import reason, shortened
+from reports.writing import write
+
+COMPLETE = "complete.txt"
+LEAKS = (
+    "CONDA_PREFIX",
+    "PIP_CONSTRAINT",
+    "PIP_NO_DEPS",
+    "PIP_PREFIX",
+    "PIP_PYTHON",
+    "PIP_ROOT",
+    "PIP_TARGET",
+    "PIP_USER",
+    "PYTHONHOME",
+    "PYTHONPATH",
+    "UV_CONSTRAINT",
+    "UV_OVERRIDE",
+    "UV_PROJECT_ENVIRONMENT",
+    "UV_PYTHON",
+    "UV_SYSTEM_PYTHON",
+    "UV_TARGET",
+    "VIRTUAL_ENV",
+    "__PYVENV_LAUNCHER__",
+)
+"""Variables that would put packages of another environment in front of those of a new one, install
+into another place, or hold the engine at another version."""
+
+
+class NotMeasuredError(Exception):
+    """A version that has no result; its text is the reason, one line."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """An engine at a version. Its packages are called as the engine is."""
+
+    engine: str
+    version: Version
+
+    @property
+    def name(self) -> str:
+        return f"{self.engine}-{self.version}"
+
+    @property
+    def requirement(self) -> str:
+        return f"{self.engine}=={self.version}"
+
+
+def wanted(engine: str, texts: Sequence[str]) -> list[Wanted]:
+    """The versions that a user named, each once, the oldest first.
+
+    Raises
+    ------
+    CrankcheckError
+        A text that is no version.
+    """
+    found: dict[Version, Wanted] = {}
+    for text in texts:
+        try:
+            version = Version(text)
+        except InvalidVersion:
+            raise CrankcheckError(
+                f"version {text[:80]!r}: not a version number; name released versions of "
+                f"{engine}, such as 3.6.0"
+            ) from None
+        found.setdefault(version, Wanted(engine, version))
+    return [found[version] for version in sorted(found)]
+
+
+def uv_here() -> str | None:
+    """The command uv, on the path or beside this Python; None without one."""
+    return shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
+
+
+def python_of(folder: Path) -> Path:
+    """The interpreter of an environment."""
+    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def place(cache: Path, one: Wanted) -> Path:
+    """The folder of an environment: another for every Python and every numpy."""
+    python = platform.python_version()
+    build = (sysconfig.get_config_var("SOABI"), platform.machine(), sys.base_prefix)
+    short = hashlib.sha256(repr(build).encode()).hexdigest()[:8]
+    name = f"{one.name}-python-{python}-numpy-{held_numpy()}-{short}"
+    return cache / "environments" / name
+
+
+def held_numpy() -> str:
+    """The version of numpy that runs now: every version of the engine is run with this one."""
+    return installed_version("numpy")
+
+
+def commands(uv: str | None, folder: Path, one: Wanted, constraint: Path) -> list[list[str]]:
+    """What makes an environment and installs an engine, with its own dependencies, into it.
+
+    Wheels only: an engine that has to be compiled first would be another one on every machine.
+    """
+    wheels = ["--only-binary", ":all:", "--constraint", str(constraint), one.requirement]
+    python = str(python_of(folder))
+    if uv:
+        return [
+            [uv, "venv", "--no-project", "--quiet", "--python", sys.executable, str(folder)],
+            [uv, "pip", "install", "--quiet", "--python", python, *wheels],
+        ]
+    return [
+        [sys.executable, "-m", "venv", str(folder)],
+        [python, "-m", "pip", "install", "--quiet", "--no-input", *wheels],
+    ]
+
+
+def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """The environment variables without those that lead a new environment astray."""
+    return {name: text for name, text in variables.items() if name.upper() not in LEAKS}
+
+
+def ready(cache: Path, one: Wanted, uv: str | None, run: Runner) -> Path:
+    """The interpreter of the version's environment, which is made if it is not there yet.
+
+    An environment counts as there once it is complete: what a killed install left is made anew.
+
+    Raises
+    ------
+    NotMeasuredError
+        It could not be installed, with the reason in one line.
+    CrankcheckError
+        The cache can not be written.
+    """
+    folder = place(cache, one)
+    python = python_of(folder)
+    if (folder / COMPLETE).is_file() and python.is_file():
+        return python
+    _clear(folder)
+    constraint = cache / "environments" / f"numpy-{held_numpy()}.txt"
+    write(constraint, f"numpy=={held_numpy()}\n")
+    for command in commands(uv, folder, one, constraint):
+        ended = run(command, clean_variables(), constraint.parent)
+        if ended.code:
+            _clear(folder)
+            raise NotMeasuredError(_not_installed(ended))
+    _check(python, one, run)
+    write(folder / COMPLETE, f"{one.requirement}\n")
+    return python
+
+
+def _check(python: Path, one: Wanted, run: Runner) -> None:
+    """Ask the new interpreter for the version that it finds. Raises NotMeasuredError."""
+    question = f"from importlib.metadata import version; print(version({one.engine!r}))"
+    ended = run([str(python), "-P", "-c", question], clean_variables(), None)
+    found = ended.output.strip()
+    try:
+        same = not ended.code and Version(found) == one.version
+    except InvalidVersion:
+        same = False
+    if not same:
+        raise NotMeasuredError(
+            shortened(
+                f"installed, but the new environment finds {found or 'no ' + one.engine} in place "
+                f"of {one.version}: look into the settings of pip or uv"
+            )
+        )
+
+
+def _not_installed(ended: Ended) -> str:
+    why = reason(f"{ended.output}\n{ended.complaint}")
+    return f"not installed: {why}"
+
+
+def _clear(folder: Path) -> None:
+    """Take away what is left of an environment. Raises CrankcheckError."""
+    if not folder.exists():
+        return
+    try:
+        shutil.rmtree(folder)
+    except OSError as error:
+        raise CrankcheckError(
+            f"{folder}: left over, and can not be taken away: {error.strerror or error}; "
+            "remove it, or choose another --cache"
+        ) from None

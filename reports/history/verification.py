@@ -1,0 +1,122 @@
+"""The verification of one version, run with its own environment, and kept."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterable, Sequence
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+from models.errors import CrankcheckError
+from reports.history.children import Ended, Runner, run_child
+from reports.history.environments import NotMeasuredError, Wanted, clean_variables, held_numpy
+from reports.history.reasons import shortened
+from reports.provenance import crankcheck_version, processor
+
+PACKAGES = ("models", "analytic", "sim", "reports")
+RESULT = "verify.csv"
+UNWIND_S = 2.0
+"""Less than `reports.stopping.PATIENCE_S`: the child ends before this process is ended."""
+LAUNCH = """\
+import sys
+from importlib.util import find_spec
+if find_spec({engine!r}) is None:
+    sys.exit("the environment holds no {engine}")
+sys.path += {folders!r}
+from reports.stopping import leave_to_parent
+leave_to_parent()
+from reports.cli import main
+sys.argv[0] = "crankcheck"
+main()
+"""
+"""What the other interpreter runs: its own packages, the engine among them, go before all that is
+borrowed from here."""
+patient: Runner = partial(run_child, patience_s=UNWIND_S)
+
+
+def borrowed() -> list[str]:
+    """The folders of crankcheck and of all the packages that run it here, in order."""
+    ours = [str(Path(str(import_module(name).__file__)).parents[1]) for name in PACKAGES]
+    found = [folder for folder in sys.path if folder and Path(folder).is_dir()]
+    return list(dict.fromkeys([*ours, *(str(Path(folder).resolve()) for folder in found)]))
+
+
+def code_key() -> str:
+    """A name for crankcheck as it is: its version, and the text of its code and scenes."""
+    digest = hashlib.sha256(crankcheck_version().encode())
+    for name in PACKAGES:
+        root = Path(str(import_module(name).__file__)).parent
+        for path in sorted(root.rglob("*.py")):
+            digest.update(f"{name}/{path.relative_to(root).as_posix()}".encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def key_of(what: Iterable[object]) -> str:
+    """A name for all that a result depends on, but for the version of the engine.
+
+    ``what`` are the cells to verify, each of which shows its scene and settings in full.
+    """
+    parts = [code_key(), held_numpy(), platform.python_version(), processor()]
+    return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
+
+
+def place(cache: Path, one: Wanted, key: str) -> Path:
+    """The folder of the result of a version."""
+    return cache / "results" / f"{one.name}-{key}"
+
+
+def kept(folder: Path) -> bool:
+    """Whether there is a result; it is written aside, so what is there is whole."""
+    return (folder / RESULT).is_file()
+
+
+def measure(
+    folder: Path,
+    one: Wanted,
+    python: Path,
+    arguments: Sequence[str],
+    run: Runner = patient,
+) -> None:
+    """Run `crankcheck verify ARGUMENTS` with another interpreter, and keep the files it writes.
+
+    Raises
+    ------
+    NotMeasuredError
+        It wrote no result.
+    CrankcheckError
+        The cache can not be written.
+    """
+    aside = folder.with_name(f".{folder.name}.{os.getpid()}.tmp")
+    try:
+        aside.parent.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(aside, ignore_errors=True)
+        code = LAUNCH.format(engine=one.engine, folders=borrowed())
+        options = ["verify", "--engine", one.engine, "-o", str(aside), *arguments]
+        ended = run([str(python), "-P", "-c", code, *options], clean_variables(), None)
+        if not kept(aside):
+            raise NotMeasuredError(_not_run(ended))
+        if folder.exists():
+            shutil.rmtree(folder)
+        aside.replace(folder)
+    except OSError as error:
+        raise CrankcheckError(
+            f"--cache {folder}: {error.strerror or error}; free some space there, or choose "
+            "another place"
+        ) from None
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _not_run(ended: Ended) -> str:
+    """How a verification ended that left no result."""
+    lines = [line.strip() for line in ended.complaint.splitlines() if line.strip()]
+    if ended.code < 0:
+        return f"not run: the process was ended by signal {-ended.code}"
+    told = lines[-1].removeprefix("crankcheck: ") if lines else f"exit code {ended.code}"
+    return shortened(f"not run: {told}")
