@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import pandas as pd
 
 from reports.choice.cost import mean
-from reports.choice.lines import Line, numbers
+from reports.choice.lines import Line, called, numbers
 from sim.engine import Drive, SettingValue
 
 NOT_RUN = "not run"
@@ -47,7 +47,7 @@ class Candidate:
     @property
     def name(self) -> str:
         """As a sentence calls it."""
-        return f"{self.variant} at {self.steps_per_turn:g} steps a turn"
+        return f"{called(self.variant, self.drive)} at {self.steps_per_turn:g} steps a turn"
 
     @property
     def worst_scene(self) -> str | None:

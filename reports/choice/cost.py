@@ -94,7 +94,7 @@ class Costs:
     """
 
     engine: str
-    variant: str
+    name: str
     us_per_step: float
     us_per_step_median: float
     s_to: Mapping[float, float]
@@ -107,15 +107,15 @@ def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ..
     scenes = len({line.scene for line in lines})
     groups: dict[tuple[str, str], list[Line]] = {}
     for line in lines:
-        groups.setdefault((line.engine, line.variant), []).append(line)
+        groups.setdefault((line.engine, line.name), []).append(line)
     found = []
-    for (engine, variant), group in groups.items():
+    for (engine, name), group in groups.items():
         cells = pd.concat([line.cells for line in group])
         times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
         found.append(
             Costs(
                 engine,
-                variant,
+                name,
                 mean(cells["us_per_step"].dropna()),
                 mean(cells["us_per_step_median"].dropna()),
                 {a: mean(each) if len(each) == scenes else math.nan for a, each in times.items()},

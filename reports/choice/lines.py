@@ -43,10 +43,20 @@ class Line:
     words: str
 
     @property
+    def name(self) -> str:
+        """The variant as a sentence calls it, without the engine."""
+        return called(self.variant, self.drive)
+
+    @property
     def period_s(self) -> float:
         """The period of the driver [s]."""
         first = self.cells.iloc[0]
         return float(first["dt_s"] * first["steps_per_turn"])
+
+
+def called(variant: str, drive: Drive) -> str:
+    """A variant by its name, and its drive where that is not the usual one."""
+    return variant if drive == "prescribed" else f"{variant}, {drive} drive"
 
 
 def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:

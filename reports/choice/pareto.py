@@ -43,28 +43,33 @@ def _unbeaten(points: Iterable[tuple[Name, float, float]], noise: float) -> list
     least = math.inf
     finite = [p for p in points if math.isfinite(p[1]) and math.isfinite(p[2])]
     for name, _, time_s in sorted(finite, key=lambda p: (p[1], p[2])):
-        if time_s * (1.0 + noise) < least:
+        if time_s * (1.0 + _known(noise)) < least:
             found.append(name)
             least = time_s
     return found
 
 
+def _known(noise: float) -> float:
+    """The noise, none where it was not measured."""
+    return noise if math.isfinite(noise) else 0.0
+
+
 def performance_profile(lines: Sequence[Line], target: float, noise: float = 0.0) -> pd.DataFrame:
     """On which share of the scenes each variant reaches ``target`` within a factor of the fastest.
 
-    Columns engine, variant, factor, share; rows of a variant are the corners of a rising stair
-    (``share`` holds from ``factor`` on), which starts at factor 1. Scenes on which no variant
-    reaches the target count as well, so that no stair need rise to 1. Times are those of
-    `reports.choice.cost.time_to`; within ``noise`` of the fastest they are called equal to it.
+    Columns engine, variant (as `Line.name` has it), factor, share; rows of a variant are the
+    corners of a rising stair (``share`` holds from ``factor`` on), which starts at factor 1. Scenes
+    on which no variant reaches the target count as well, so that no stair need rise to 1. Times are
+    those of `reports.choice.cost.time_to`; within ``noise`` of the fastest they are called equal.
     Source: Dolan and More, Benchmarking optimization software with performance profiles, 2002.
     """
     times = pd.DataFrame(
-        [(x.engine, x.variant, x.scene, time_to(x, target)) for x in lines],
+        [(x.engine, x.name, x.scene, time_to(x, target)) for x in lines],
         columns=["engine", "variant", "scene", "s"],
     ).astype({"s": float})
     number = times["scene"].nunique()
     factor = times["s"] / times.groupby("scene")["s"].transform("min")
-    times["factor"] = np.where(factor <= 1.0 + noise, 1.0, factor)
+    times["factor"] = np.where(factor <= 1.0 + _known(noise), 1.0, factor)
     rows = []
     for (engine, variant), own in times.groupby(["engine", "variant"], sort=False):
         corners = own["factor"].dropna().sort_values().to_numpy()

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from reports.choice.across import NOT_RUN, Candidate
+from reports.choice.lines import called
 from reports.fits.words import short
 
 SHOWN = 3
@@ -20,7 +21,7 @@ def nearest(known: Sequence[Candidate], target: float) -> Candidate:
 def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
     """Why nothing is recommended, where ``best`` comes nearest; ``good`` lack their times."""
     if good:
-        names = ", ".join(dict.fromkeys(one.variant for one in good))
+        names = ", ".join(dict.fromkeys(called(one.variant, one.drive) for one in good))
         return (
             f"{names} would do, but no cost is known of every scene: sweep again without "
             "--no-timing"
@@ -58,7 +59,7 @@ def _about(group: Sequence[Candidate], best: Candidate, target: float) -> str:
     if not good:
         one = nearest(group, target)
         where = f"at {one.steps_per_turn:g} steps a turn"
-        return f"{one.variant} does not: {where} {_shortfall(one, target)}"
+        return f"{called(one.variant, one.drive)} does not: {where} {_shortfall(one, target)}"
     cheapest = min(good, key=_cost)
     ratio = cheapest.s_per_turn / best.s_per_turn
     if not math.isfinite(ratio):

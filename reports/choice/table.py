@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from reports.choice.cost import SHARE, Costs, costs_of, noise, pairs
-from reports.choice.lines import Line
+from reports.choice.lines import Line, called
 from reports.choice.machines import left_out, machine
 from reports.choice.recommend import TARGETS, Recommendation
 from reports.fits.words import short
@@ -64,7 +65,7 @@ def cost_table(
     for cost in costs:
         steps = [_number(cost.us_per_step, 2), _number(cost.us_per_step_median, 2)]
         every = [_reached(cost, target) for target in targets]
-        table.add_row(cost.engine, cost.variant, *steps[: 1 + (width >= WIDE)], *every)
+        table.add_row(cost.engine, Text(cost.name), *steps[: 1 + (width >= WIDE)], *every)
     return Group(table, Text(MEANS))
 
 
@@ -92,7 +93,11 @@ def _row(
 ) -> Sequence[str | Text]:
     """One row; of what comes nearest where nothing reaches the target."""
     none = one.variant is None
-    name = Text("none", "red") if none else Text(("or " if steadier else "") + str(one.variant))
+    name = (
+        Text("none", "red")
+        if none
+        else Text(("or " if steadier else "") + called(str(one.variant), one.drive))
+    )
     if mark:
         name.append(f" [{mark}]", "yellow")
     first = ["", ""] if steadier else [short_target(one.target), one.engine]
@@ -104,7 +109,7 @@ def _row(
     ]
     if wide:
         least = "-" if one.least_steps is None else f"{math.ceil(one.least_steps - 1e-6)}"
-        numbers += [str(one.worst_scene), least]
+        numbers += [escape(str(one.worst_scene)), least]
     return [*first, name, *(["-"] * len(numbers) if none else numbers)]
 
 

@@ -145,7 +145,7 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
     """Paragraphs as an XML comment, in which two hyphens may not stand together."""
     found: list[str] = []
     for paragraph in paragraphs:
-        text = paragraph.replace("--", "- -")
+        text = paragraph.replace("--", "- -").replace("--", "- -")
         found += textwrap.wrap(text, WIDTH - 5, break_on_hyphens=False)
     return [("<!-- " if i == 0 else "     ") + line for i, line in enumerate(found[:-1])] + [
         ("<!-- " if len(found) == 1 else "     ") + f"{found[-1]} -->"
