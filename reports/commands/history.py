@@ -13,6 +13,7 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from reports.cell import Cell
 from reports.commands import verify
+from reports.diff.reading import scene_digests
 from reports.history.cache import alone, cache_folder
 from reports.history.children import run_child
 from reports.history.document import page, table_text
@@ -61,7 +62,8 @@ def run_history(request: Request, console: Console, progress: Console) -> int:
     cache = cache_folder(request.cache)
     _check_outputs(request, versions)
     uv = uv_here()
-    key, outcomes = key_of(cells), []
+    # The files of a result hold the digests of the scenes' texts, comments and all.
+    key, outcomes = key_of([*cells, scene_digests(request.scenes)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("", total=2 * len(versions))
         for one in versions:
@@ -71,7 +73,7 @@ def run_history(request: Request, console: Console, progress: Console) -> int:
 
             outcomes.append(_outcome(request, one, place(cache, one, key), cache, uv, tell))
             bar.update(task, completed=2 * len(outcomes))
-    footer = _footer(request, cells, outcomes, uv)
+    footer = _footer(request, cells, outcomes)
     try:
         _write(request, outcomes, footer)
     finally:
@@ -173,9 +175,7 @@ def _write(request: Request, outcomes: Sequence[Outcome], footer: str) -> None:
     write(request.folder / FILES[1], page(outcomes, footer))
 
 
-def _footer(
-    request: Request, cells: Sequence[Cell], outcomes: Sequence[Outcome], uv: str | None
-) -> str:
+def _footer(request: Request, cells: Sequence[Cell], outcomes: Sequence[Outcome]) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
     alike = {round(cell.steps_per_turn, 3) for cell in cells}
@@ -189,7 +189,7 @@ def _footer(
         "Largest errors against the closed form at the commanded time; L longest link, w driver's "
         "peak speed.",
         f"{step}, {first.turns:.4g} turns; settings are those of this crankcheck's profiles in "
-        f"every version; environments made by {'uv' if uv else 'venv and pip'}.",
+        "every version.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     if request.folder is None and measured:

@@ -60,7 +60,8 @@ def code_key() -> str:
 def key_of(what: Iterable[object]) -> str:
     """A name for all that a result depends on, but for the version of the engine.
 
-    ``what`` are the cells to verify, each of which shows its scene and settings in full.
+    ``what`` are the cells to verify, each of which shows its scene and settings in full, and what
+    else there is.
     """
     parts = [code_key(), held_numpy(), platform.python_version(), processor()]
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
