@@ -62,7 +62,7 @@ def run_history(request: Request, console: Console, progress: Console) -> int:
     cache = cache_folder(request.cache)
     _check_outputs(request, versions)
     uv = uv_here()
-    # The files of a result hold the digests of the scenes' texts, comments and all.
+    # The files of a result hold the digests of the scenes' texts, by which they are compared later.
     key, outcomes = key_of([*cells, scene_digests(request.scenes)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("", total=2 * len(versions))

@@ -194,8 +194,10 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
     history: History, measured: list[Path], tmp_path: Path
 ) -> None:
     path, text = tmp_path / "mine.toml", shipped()[SCENE].read_text(encoding="utf-8")
+    bar = 'bar = ["B", "C"], length_m = 0.25'
     longer = text.replace("length_m = 0.25", "length_m = 0.26")
-    for content, count in ((text, 1), (text, 1), (longer, 2), (f"{longer}# a word\n", 3)):
+    said_otherwise = text.replace(bar, "points = { B = [0.0, 0.0], C = [0.25, 0.0] }")
+    for content, count in ((text, 1), (f"{text}# a word", 1), (longer, 2), (said_otherwise, 3)):
         path.write_text(content, encoding="utf-8")
         history("3.7.0", scenes=[str(path)], cache=tmp_path)
         assert len(measured) == count
