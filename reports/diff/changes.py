@@ -202,7 +202,7 @@ def _pair(old: Found, new: Found, factor: float) -> Pair:
 
 def _changes(old: Found, new: Found) -> Iterator[Change]:
     """Every quantity that both runs know, and either has a number for."""
-    for quantity, was in old.errors.items():
-        now = new.errors.get(quantity, was)
+    for quantity in (each for each in old.errors if each in new.errors):
+        was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
             yield Change(quantity, was, now, floor(quantity, new.name.steps_per_turn))

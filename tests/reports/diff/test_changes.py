@@ -87,8 +87,9 @@ def test_noise_of_the_size_of_rounding_is_no_alarm(
         before = run(cell(steps=float(steps), **{quantity: old}))
         after = run(cell(steps=float(steps), **{quantity: old + noise}))
         assert compare(before, after).code() == 0
-        far = run(cell(steps=float(steps), **{quantity: old + 3 * noise}))
-        assert compare(before, far).code() == 1, "what exceeds rounding counts"
+        far = run(cell(steps=float(steps), **{quantity: old * 1.1 + 1.2 * noise}))
+        assert compare(before, far).those("worse"), "what exceeds rounding counts"
+        assert compare(far, before).those("better"), "and it does in both directions"
 
 
 def test_the_floor_follows_how_often_a_quantity_was_differenced() -> None:
@@ -112,8 +113,10 @@ def test_an_error_that_is_no_number_any_more_is_worse(cell: Make, run: Group) ->
 
 
 def test_a_quantity_that_one_run_does_not_know_is_not_compared(cell: Make, run: Group) -> None:
-    (pair,) = compare(run(cell(angle=1e-3)), run(cell(angle=1e-3, gap=1.0))).pairs
-    assert [change.quantity for change in pair.changes] == ["angle"]
+    less, more = run(cell(angle=1e-3)), run(cell(angle=1e-3, gap=1.0))
+    for old, new in ((less, more), (more, less)):
+        (pair,) = compare(old, new).pairs
+        assert [change.quantity for change in pair.changes] == ["angle"]
 
 
 def test_how_a_cell_ends_goes_before_its_errors(cell: Make, run: Group) -> None:

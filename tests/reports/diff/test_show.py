@@ -96,6 +96,7 @@ def test_steps_of_a_line_are_named_each(cell: Make, run: Group) -> None:
     for growths, wanted in {
         (1.0, 1.0, 2.0, 1.0): "360",
         (3.0, 1.0, 2.0, 1.0): "90 (also 360)",
+        (3.0, 1.0, 2.0, 4.0): "720 (also 90, 360)",
         (2.0, 3.0, 4.0, 5.0): "720 (all 4: 90 to 720)",
     }.items():
         new = [cell(steps=n, angle=1e-3 * g) for n, g in zip(STEPS, growths, strict=True)]
