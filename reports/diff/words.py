@@ -70,7 +70,7 @@ def left_out(cells: Iterable[Found]) -> list[str]:
         groups.setdefault(cell.name.line, []).append(cell.name)
     return [
         f"{names[0].scene}, {_called(names[0])}, "
-        f"{', '.join(f'{n.steps_per_turn:g}' for n in names)} steps a turn"
+        f"{', '.join(f'{each:g}' for each in sorted(n.steps_per_turn for n in names))} steps a turn"
         for names in groups.values()
     ]
 
