@@ -55,8 +55,8 @@ def _notes(
     if held["lines"] == "exact":
         found.append(
             "Points on lines: where a push turns the sliding body or its guide, not GrooveJoint "
-            "but a PinJoint whose far end moves along with the point (models/rail.py). Loops of "
-            "pins need nothing of the kind."
+            "but a PinJoint whose far end moves along with the point (crankcheck, models/rail.py). "
+            "Loops of pins need nothing of the kind."
         )
     if held["error_bias"] == defaults["error_bias"]:
         found.append(
