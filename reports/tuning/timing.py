@@ -1,0 +1,58 @@
+"""What steps really take: two choices of settings, timed in turns on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reports.sweep.isolation import Isolated, Limits, Lost
+from reports.sweep.outcome import timed
+from reports.tuning.attempt import Attempt, Goal
+
+ROUNDS = 3
+"""How often each is timed, one after the other: a slow minute then slows both."""
+
+
+@dataclass(frozen=True)
+class Taken:
+    """Measured times of the scenes together: of a step [microseconds] and of a turn [s].
+
+    ``noise`` is how far two timings of the same thing lay apart, relative to it.
+    """
+
+    us_per_step: float
+    s_per_turn: float
+    noise: float
+
+
+def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken] | None:
+    """Time each attempt at its step; the least time of all rounds counts. None where one is lost.
+
+    The A/A noise is that of the least times of odd and even repeats over all rounds and scenes.
+    """
+    isolated: Isolated[dict[str, object]] = Isolated(limits)
+    cells = [
+        [goal.cell(scene, one.settings, one.tried) for scene in goal.scenes] for one in attempts
+    ]
+    least = {(i, j): [float("inf")] * 2 for i, row in enumerate(cells) for j in range(len(row))}
+    try:
+        for _ in range(ROUNDS):
+            for (i, j), halves in least.items():
+                found = isolated.call(timed, cells[i][j], 5.0)
+                if isinstance(found, Lost):
+                    return None
+                for half, name in enumerate(("us_per_step_a", "us_per_step_b")):
+                    halves[half] = min(halves[half], float(str(found[name])))
+    finally:
+        isolated.close()
+    return [
+        _taken([least[i, j] for j in range(len(goal.scenes))], one.tried)
+        for i, one in enumerate(attempts)
+    ]
+
+
+def _taken(halves: Sequence[Sequence[float]], steps_per_turn: int) -> Taken:
+    """Sums over the scenes."""
+    us = sum(min(half) for half in halves)
+    a, b = (sum(half[k] for half in halves) for k in (0, 1))
+    return Taken(us, 1e-6 * us * steps_per_turn, abs(a - b) / min(a, b))
