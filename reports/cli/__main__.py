@@ -1,0 +1,5 @@
+"""`python -m reports.cli` is the command `crankcheck`."""
+
+from reports.cli import main
+
+main()

@@ -1,0 +1,107 @@
+"""The command itself: how it begins, and every way in which it may end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, NoReturn
+
+import typer
+
+from models.errors import CrankcheckError
+from reports.stopping import Stopped, broken_pipe_ends, install, seen
+from reports.terminal import UNWRITABLE, give_up_output, readable_everywhere
+
+app = typer.Typer(
+    name="crankcheck",
+    help="Hold physics engines to the closed form of planar closed-loop mechanisms.",
+    epilog="Exit codes: 0 all within tolerance, 1 out of tolerance or worse than before, 2 bad "
+    "input or usage, 70 a fault of crankcheck itself, 130 interrupted, 141 nobody reads the "
+    "output, 143 terminated.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
+TRACEBACK = "CRANKCHECK_TRACEBACK"
+
+
+def main() -> None:
+    """The entry of the command `crankcheck`."""
+    with guarded():
+        install()
+        broken_pipe_ends(at_once=True)
+        if sys.stdout is None:
+            raise CrankcheckError("standard output is closed; send it to a file, or to /dev/null")
+        readable_everywhere()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+
+
+@contextmanager
+def guarded() -> Iterator[None]:
+    """Every end but a verdict: one line, and an exit code that tells whose fault it is."""
+    try:
+        yield
+    except CrankcheckError as error:
+        _end(BAD_INPUT, str(error))
+    except Stopped as stopped:
+        _end(stopped.code, stopped.word)
+    except KeyboardInterrupt:
+        _end(INTERRUPTED, "interrupted")
+    except BrokenPipeError:
+        give_up_output()
+        raise SystemExit(BROKEN_PIPE) from None
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in UNWRITABLE and error.filename is None:
+            give_up_output()
+            _end(
+                BAD_INPUT, f"standard output can not be written: {error.strerror}; free some space"
+            )
+        if os.environ.get(TRACEBACK):
+            traceback.print_exc()
+        first = str(error).partition("\n")[0][:300]
+        _end(
+            INTERNAL,
+            f"internal error: {type(error).__name__}: {first}; please report it; "
+            f"--traceback or {TRACEBACK}=1 shows where it is",
+        )
+
+
+def _end(code: int, text: str) -> NoReturn:
+    """The last line, where it can be written, and the exit code; a signal goes before all else."""
+    if stopped := seen():
+        code, text = stopped.code, stopped.word
+    with contextlib.suppress(OSError):
+        typer.echo(f"crankcheck: {text}", err=True)
+    raise SystemExit(code) from None
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from reports.provenance import crankcheck_version
+
+        typer.echo(f"crankcheck {crankcheck_version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+    show_traceback: Annotated[
+        bool, typer.Option("--traceback", help="Show where an internal error is.")
+    ] = False,
+) -> None:
+    """Options of the command itself."""
+    broken_pipe_ends(at_once=False)
+    if show_traceback:
+        os.environ[TRACEBACK] = "1"

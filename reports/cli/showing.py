@@ -1,0 +1,92 @@
+"""The commands that show scenes, engines and the reference alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reports.cli.base import app, guarded
+from reports.terminal import terminal
+
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
+
+
+@app.command()
+def solve(
+    scene: SceneName,
+    at_deg: Annotated[
+        float | None, typer.Option(metavar="DEG", help="One position: the driver's angle.")
+    ] = None,
+    turns: Annotated[
+        float | None, typer.Option(help="A motion over so many turns (default 1).")
+    ] = None,
+    steps_per_turn: Annotated[
+        int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
+    ] = None,
+) -> None:
+    """Show the closed-form reference alone: angles, points and sliders with all their rates."""
+    with guarded():
+        from reports.commands import solve as command
+
+        request = command.Request(scene, at_deg, turns, steps_per_turn, output)
+        command.run_solve(request, terminal())
+
+
+@app.command()
+def export(
+    scene: SceneName,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write an .xml file.")
+    ] = None,
+    close: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PIN", help="Close a loop at this pin; may be repeated."),
+    ] = None,
+) -> None:
+    """Write the scene as MJCF, assembled, with its state as the keyframe."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.export(scene, output, tuple(close or ()), terminal())
+
+
+@app.command()
+def scenes() -> None:
+    """List the shipped scenes with their structure, driver and source."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.scenes(terminal())
+
+
+@app.command()
+def engines(
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Show every setting with its reason.")
+    ] = False,
+) -> None:
+    """List the engines with their version, or the command that installs them, and profiles."""
+    with guarded():
+        from reports.commands import listing
+
+        listing.engines(terminal(), settings)
+
+
+@app.command()
+def view(
+    scene: SceneName,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Draw into a .gif or .png in place of the viewer."),
+    ] = None,
+) -> None:
+    """Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""
+    with guarded():
+        from reports.commands import view as command
+
+        command.run_view(scene, output, terminal())
