@@ -1,0 +1,52 @@
+"""`crankcheck report`: a store as one page for people, or as text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from rich.console import Console
+
+from reports.store.reader import read_store
+from reports.writing import check_file, write
+
+Format = Literal["html", "md"]
+ENDINGS: dict[Format, tuple[str, ...]] = {
+    "html": (".html", ".htm"),
+    "md": (".md", ".markdown", ".txt"),
+}
+
+
+def run_report(folder: Path, output: Path | None, format: Format, console: Console) -> int:
+    """Write the report of the store in ``folder``; returns the exit code, 0.
+
+    Without ``output`` a page goes to ``report.html`` in the working folder, and text to the
+    terminal.
+
+    Raises
+    ------
+    CrankcheckError
+        No store there, or a file that can not be written.
+    """
+    if output is None and format == "html":
+        output = Path("report.html")
+    if output is not None:
+        check_file(output, "-o", ENDINGS[format])
+    stored = read_store(folder)
+    if format == "md":
+        from reports.figures.summary import summary
+
+        text = summary(stored)
+    else:
+        from reports.page.build import page
+
+        text = page(stored)
+    if output is None:
+        console.file.write(text)
+        return 0
+    write(output, text)
+    size = len(text.encode()) / 1e6
+    console.print(
+        f"{output}: {len(stored.cells)} cells, {size:.1f} MB", markup=False, highlight=False
+    )
+    return 0

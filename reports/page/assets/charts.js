@@ -1,0 +1,87 @@
+"use strict";
+// Diagrams by Plotly in the colours and type of the page; each is drawn when it comes into view.
+
+/** Text for Plotly, which reads a little HTML of its own in labels. */
+crankcheck.escaped = (text) =>
+  String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
+
+/** Text broken into lines of some characters, for labels. */
+crankcheck.folded = (text, width = 58) => {
+  const lines = [""];
+  for (const word of String(text).split(" ")) {
+    if (lines.at(-1) && lines.at(-1).length + word.length > width) lines.push("");
+    lines[lines.length - 1] += (lines.at(-1) ? " " : "") + word;
+  }
+  return lines.map(crankcheck.escaped).join("<br>");
+};
+
+/** A logarithmic axis; decades as powers of ten, or as plain numbers. */
+crankcheck.logAxis = (title, powers) => ({
+  title: { text: title, standoff: 8 },
+  type: "log",
+  exponentformat: powers ? "power" : "none",
+  ...(powers ? { dtick: 1 } : {}),
+});
+
+/** Ticks at 1, 2 and 5 of each decade for an axis of some values; decades alone on a long one. */
+crankcheck.ticks = (values) => {
+  const known = values.filter((value) => value > 0);
+  if (!known.length) return {};
+  const [low, high] = [Math.floor(Math.log10(Math.min(...known))), Math.ceil(Math.log10(Math.max(...known)))];
+  const tickvals = [];
+  for (let decade = low; decade <= high; decade += 1) {
+    for (const first of high - low > 3 ? [1] : [1, 2, 5]) tickvals.push(Number(`${first}e${decade}`));
+  }
+  return { tickvals, ticktext: tickvals.map(String) };
+};
+
+crankcheck.chart = (() => {
+  const { colour } = crankcheck;
+  const finger = matchMedia("(pointer: coarse)").matches;
+
+  function axis(own) {
+    return {
+      gridcolor: colour("line"), linecolor: colour("rule"), zerolinecolor: colour("rule"), tickcolor: colour("rule"),
+      ticks: "outside", ticklen: 4, automargin: true, ...own,
+    };
+  }
+
+  function layout(own) {
+    return {
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
+      font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
+      margin: { l: 56, r: 14, t: 12, b: 48 },
+      hoverlabel: {
+        bgcolor: colour("panel"), bordercolor: colour("rule"), font: { color: colour("ink"), size: 13 }, align: "left",
+      },
+      dragmode: finger ? false : "zoom", // a finger scrolls the page
+      ...own,
+      xaxis: axis(own.xaxis),
+      yaxis: axis(own.yaxis),
+    };
+  }
+
+  const config = {
+    responsive: true, displaylogo: false, displayModeBar: finger ? false : "hover",
+    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"], scrollZoom: false,
+    toImageButtonOptions: { format: "svg", filename: "crankcheck" },
+  };
+
+  /** A diagram in `element`; `figure()` gives its data and layout. Returns what draws it anew. */
+  return (element, figure) => {
+    let seen = false;
+    const draw = () => {
+      if (!seen) return;
+      const { data, layout: own } = figure();
+      Plotly.react(element, data, layout(own), config);
+    };
+    new IntersectionObserver((entries, observer) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      observer.disconnect();
+      seen = true;
+      draw();
+    }, { rootMargin: "300px" }).observe(element);
+    crankcheck.onTheme(draw);
+    return draw;
+  };
+})();

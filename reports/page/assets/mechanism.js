@@ -1,0 +1,172 @@
+"use strict";
+// A drawing of a mechanism that moves: the reference, and over it any runs, their error magnified.
+// It reads what `reports.page.drawing` writes, and nothing of the page around it.
+
+crankcheck.mechanism = (() => {
+  const { svg, unpacked } = crankcheck;
+  const MARGIN = 0.12; // room around what moves, over its size
+  const FARTHEST = 0.6; // a magnified displacement is cut off here, over the size of the drawing
+  const TURNED = 0.7; // and a magnified turn of a block here [rad]
+
+  /** A row at a position between samples. */
+  function between(row, position) {
+    const first = Math.min(Math.floor(position), row.length - 1);
+    const second = Math.min(first + 1, row.length - 1);
+    return row[first] + (position - first) * (row[second] - row[first]);
+  }
+
+  /** The vector cut off at a length, and whether it was. */
+  function held([x, y], most) {
+    const length = Math.hypot(x, y);
+    return length > most ? [[(x * most) / length, (y * most) / length], true] : [[x, y], false];
+  }
+
+  /** What a drawing knows of a scene, with its series unpacked. */
+  function read(drawing) {
+    const [x0, y0, x1, y1] = drawing.box;
+    const size = Math.max(x1 - x0, y1 - y0);
+    const places = unpacked(drawing.places);
+    const rows = new Map(drawing.points.map((name, i) => [name, [places[2 * i], places[2 * i + 1]]]));
+    return {
+      ...drawing, size, rows, turns: unpacked(drawing.angles),
+      sliders: drawing.sliders.map((slider) => ({ ...slider, along: unpacked(slider.along)[0] })),
+      low: [x0 - MARGIN * size, y0 - MARGIN * size], high: [x1 + MARGIN * size, y1 + MARGIN * size],
+    };
+  }
+
+  /**
+   * Draw into an SVG element. Gives `samples`, `degrees(position)`, and
+   * `show(position, overlays, factor)`, which draws overlays `{off, paint, dash}` and tells
+   * whether any of them was cut off.
+   */
+  return (element, drawing) => {
+    const scene = read(drawing);
+    const samples = scene.crank_deg.length;
+    const layers = ["paths", "ground", "guides", "reference", "overlays", "pins"].map((name) => svg("g", { class: name }));
+    const [paths, ground, guides, reference, over, pins] = layers;
+    element.replaceChildren(...layers);
+    let pixel = 1;
+    let toScreen = ([x, y]) => [x, y];
+
+    function fit() {
+      const { width, height } = element.getBoundingClientRect();
+      const wide = scene.high[0] - scene.low[0];
+      const high = scene.high[1] - scene.low[1];
+      const scale = Math.min(width / wide, height / high) || 1;
+      const [left, top] = [(width - scale * wide) / 2, (height - scale * high) / 2];
+      pixel = 1 / scale;
+      toScreen = ([x, y]) => [left + scale * (x - scene.low[0]), top + scale * (scene.high[1] - y)];
+      element.setAttribute("viewBox", `0 0 ${width || 1} ${height || 1}`);
+    }
+
+    const text = (points) => points.map((p) => toScreen(p).map((v) => v.toFixed(2)).join(" ")).join(" L");
+    const path = (points, attributes, closed = false) =>
+      svg("path", { d: `M${text(points)}${closed ? "Z" : ""}`, ...attributes });
+
+    /** Where a point is; `run` adds its displacement. */
+    function place(name, position, run) {
+      const fixed = scene.ground[name];
+      if (fixed) return fixed;
+      const [xs, ys] = scene.rows.get(name);
+      const exact = [between(xs, position), between(ys, position)];
+      if (!run) return exact;
+      const row = 2 * scene.points.indexOf(name);
+      const off = [0, 1].map((i) => run.factor * between(run.rows[row + i], position));
+      if (!off.every(Number.isFinite)) return null;
+      const [moved, cut] = held(off, FARTHEST * scene.size);
+      run.cut ||= cut;
+      return [exact[0] + moved[0], exact[1] + moved[1]];
+    }
+
+    /** The angle of a slider's guide, as the reference or as a run has it. */
+    function direction(slider, position, run) {
+      const guide = scene.guides.indexOf(slider.on);
+      if (guide < 0) return slider.angle;
+      const exact = slider.angle + between(scene.turns[guide], position);
+      if (!run) return exact;
+      const off = run.factor * between(run.rows[2 * scene.points.length + guide], position);
+      return exact + Math.max(-TURNED, Math.min(TURNED, off || 0));
+    }
+
+    /** The links and blocks of the reference or of a run. */
+    function bodies(position, run) {
+      const found = scene.links.map((link) => {
+        const corners = link.points.map((name) => place(name, position, run));
+        if (corners.some((corner) => corner === null)) return null;
+        const plate = corners.length > 2;
+        const kind = `link${link.name === scene.driver ? " driver" : ""}${plate ? " plate" : ""}`;
+        return path(corners, { class: kind }, plate);
+      });
+      const blocks = scene.sliders.map((slider) => {
+        const middle = place(slider.point, position, run);
+        if (middle === null) return null;
+        const angle = direction(slider, position, run);
+        const [c, s] = [Math.cos(angle), Math.sin(angle)];
+        const corners = [[-13, -8], [13, -8], [13, 8], [-13, 8]].map(([x, y]) => [
+          middle[0] + pixel * (c * x - s * y), middle[1] + pixel * (s * x + c * y),
+        ]);
+        return path(corners, { class: "block" }, true);
+      });
+      return [...found, ...blocks].filter(Boolean);
+    }
+
+    /** The line of a guide, as far as its slider runs. */
+    function guide(slider, position) {
+      const [x, y] = place(slider.point, position);
+      const angle = direction(slider, position);
+      const along = between(slider.along, position);
+      const spare = 22 * pixel;
+      const ends = [slider.reach[0] - spare - along, slider.reach[1] + spare - along];
+      return path(ends.map((s) => [x + s * Math.cos(angle), y + s * Math.sin(angle)]), { class: "guide" });
+    }
+
+    /** What does not move: the paths of the points, and the ground's pins on their triangles. */
+    function still() {
+      fit();
+      paths.replaceChildren(...scene.points.map((name) => {
+        const [xs, ys] = scene.rows.get(name);
+        return path([...xs].map((x, i) => [x, ys[i]]), { class: "path" });
+      }));
+      const foot = 11 * pixel;
+      ground.replaceChildren(...Object.values(scene.ground).map(([x, y]) =>
+        path([[x, y], [x - foot, y - 1.6 * foot], [x + foot, y - 1.6 * foot]], { class: "foot" }, true)));
+    }
+
+    function pin(name, position) {
+      const [x, y] = toScreen(place(name, position));
+      const block = scene.sliders.some((slider) => slider.point === name);
+      const away = block ? 15 : 8;
+      return [
+        svg("circle", { class: "pin", cx: x, cy: y, r: 4 }),
+        svg("text", { class: "letter", x: x + away, y: y - away }, name),
+      ];
+    }
+
+    function show(position, overlays, factor) {
+      const runs = overlays.map((overlay) => ({ ...overlay, factor, cut: false }));
+      guides.replaceChildren(...scene.sliders.map((slider) => guide(slider, position)));
+      reference.replaceChildren(...bodies(position));
+      over.replaceChildren(...runs.map((run) =>
+        svg("g", { class: `run ${run.paint}`, "data-dash": run.dash }, ...bodies(position, run))));
+      const names = [...Object.keys(scene.ground), ...scene.points];
+      pins.replaceChildren(...names.flatMap((name) => pin(name, position)));
+      return runs.some((run) => run.cut);
+    }
+
+    /** The largest displacement of a run at a position, or over all of them [m]. */
+    function farthest(rows, position = null) {
+      let most = 0;
+      for (let i = 0; i < 2 * scene.points.length; i += 2) {
+        const at = position === null ? [...rows[i].keys()] : [position];
+        for (const t of at) most = Math.max(most, Math.hypot(between(rows[i], t), between(rows[i + 1], t)) || 0);
+      }
+      return most;
+    }
+
+    still();
+    return {
+      samples, show, farthest, refit: still, size: scene.size,
+      degrees: (position) => between(scene.crank_deg, position),
+    };
+  };
+})();

@@ -1,0 +1,101 @@
+"use strict";
+// What all scripts of the page share. Text goes in as text only: nothing here makes HTML of strings.
+
+const crankcheck = (() => {
+  const SVG = "http://www.w3.org/2000/svg";
+  const MISSING = -32768;
+  const themed = [];
+
+  /** What a section embedded in the page; null where there is nothing. */
+  function embedded(name) {
+    const found = document.getElementById(`embedded-${name}`);
+    return found && JSON.parse(found.textContent);
+  }
+
+  /** Rows of numbers from the form of `reports.page.embed.packed`; what is missing is NaN. */
+  function unpacked(packed) {
+    const bytes = Uint8Array.from(atob(packed.base64), (c) => c.charCodeAt(0));
+    const whole = new DataView(bytes.buffer);
+    return packed.scales.map((scale, row) => {
+      const values = new Float64Array(packed.samples);
+      for (let i = 0; i < packed.samples; i += 1) {
+        const level = whole.getInt16(2 * (row * packed.samples + i), true);
+        values[i] = level === MISSING ? NaN : scale * level;
+      }
+      return values;
+    });
+  }
+
+  function make(element, attributes, children) {
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === true) element.setAttribute(name, "");
+      else if (value !== false && value !== null) element.setAttribute(name, value);
+    }
+    element.append(...children);
+    return element;
+  }
+
+  /** An HTML element with attributes and children (elements, or strings as text). */
+  const html = (name, attributes = {}, ...children) =>
+    make(document.createElement(name), attributes, children);
+
+  /** An SVG element. */
+  const svg = (name, attributes = {}, ...children) =>
+    make(document.createElementNS(SVG, name), attributes, children);
+
+  /** A colour of the style sheet, as it is in the theme of the moment. */
+  const colour = (name) =>
+    getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+  /** A number with few digits, such as 2.7e-4. */
+  function short(value, digits = 2) {
+    if (value === null || !Number.isFinite(value)) return "–";
+    if (value === 0) return "0";
+    return value.toExponential(digits - 1).replace("e+", "e");
+  }
+
+  /** A time in the unit that suits it. */
+  function duration(seconds) {
+    if (seconds === null || !Number.isFinite(seconds)) return "not timed";
+    const [size, unit] = [[1, "s"], [1e-3, "ms"], [1e-6, "µs"]].find(([s]) => seconds >= 0.9995 * s) ?? [1e-9, "ns"];
+    return `${Number((seconds / size).toPrecision(3))} ${unit}`;
+  }
+
+  const dark = () =>
+    (document.documentElement.dataset.theme ??
+      (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+
+  /** Calls `draw` whenever the theme has changed. */
+  const onTheme = (draw) => themed.push(draw);
+  const retheme = () => themed.forEach((draw) => draw());
+
+  function themeButton() {
+    const button = document.getElementById("theme");
+    const label = () => {
+      button.textContent = dark() ? "Light theme" : "Dark theme";
+    };
+    button.hidden = false;
+    label();
+    button.addEventListener("click", () => {
+      document.documentElement.dataset.theme = dark() ? "light" : "dark";
+      try {
+        localStorage.setItem("crankcheck-theme", document.documentElement.dataset.theme);
+      } catch {
+        // Kept for this visit only.
+      }
+      label();
+      retheme();
+    });
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      label();
+      retheme();
+    });
+  }
+
+  themeButton();
+  return {
+    embedded, unpacked, html, svg, colour, short, duration, onTheme,
+    looks: embedded("looks") ?? [],
+    calm: matchMedia("(prefers-reduced-motion: reduce)"),
+  };
+})();

@@ -1,0 +1,65 @@
+"use strict";
+// Error against cost: one scene at a time, or all of them.
+
+(() => {
+  const { colour, duration, escaped, folded, short } = crankcheck;
+  const own = crankcheck.embedded("precision");
+  const scene = document.getElementById("precision-scene");
+  const cost = document.getElementById("precision-cost");
+  const chart = document.getElementById("precision-chart");
+  if (!own.timed) cost.closest(".field").hidden = true;
+  cost.value = own.timed ? "time" : "steps";
+
+  /** The cost of the points of a line: time a turn [ms], or steps. */
+  const costs = (line) => (cost.value === "time" ? line.s_per_turn.map((s) => s && 1e3 * s) : line.steps);
+
+  function label(line, look, i) {
+    const at = `${line.steps[i]} steps a turn${line.dt_s ? ` (dt ${short(line.dt_s[i], 3)} s)` : ""}`;
+    const worst = line.worst ? ` on ${escaped(line.worst[i])}` : "";
+    return [
+      `<b>${escaped(look.name)}</b> ${escaped(look.version)}`,
+      at,
+      `error ${short(line.error[i])}${worst}, ${line.within[i] ? "within" : "out of"} tolerance`,
+      `${duration(line.s_per_turn[i])} a turn`,
+      folded(own.settings[look.number]),
+    ].join("<br>");
+  }
+
+  function trace(line, legend) {
+    const look = crankcheck.looks[line.look];
+    const paint = colour(`c${look.colour}`);
+    return {
+      x: costs(line), y: line.error, name: look.name, mode: "lines+markers", visible: legend.on(line.look),
+      line: { color: paint, width: 1.6, dash: look.dash },
+      marker: {
+        color: paint, size: 9, line: { color: paint, width: 1.6 },
+        symbol: line.within.map((good) => (good ? look.symbol : `${look.symbol}-open`)),
+      },
+      text: line.error.map((_, i) => label(line, look, i)), hovertemplate: "%{text}<extra></extra>",
+    };
+  }
+
+  function figure() {
+    const shown = own.scenes.find((each) => each.name === scene.value);
+    const front = {
+      x: shown.front.s_per_turn.map((s) => 1e3 * s), y: shown.front.error, name: "front", mode: "lines",
+      hoverinfo: "skip", visible: cost.value === "time", line: { color: colour("front"), width: 9 },
+    };
+    const axis = cost.value === "time" ? "time to compute a turn [ms]" : "steps a turn";
+    return {
+      data: [front, ...shown.lines.map((line) => trace(line, legend))],
+      layout: {
+        xaxis: { ...crankcheck.logAxis(axis, false), ...crankcheck.ticks(shown.lines.flatMap((line) => costs(line))) },
+        yaxis: crankcheck.logAxis("error [rad, or of longest link]", true),
+      },
+    };
+  }
+
+  const drawn = new Set(own.scenes.flatMap((each) => each.lines.map((line) => line.look)));
+  const legend = crankcheck.legend(
+    document.getElementById("precision-legend"), crankcheck.lookGroups(drawn), () => draw(),
+  );
+  const draw = crankcheck.chart(chart, figure);
+  scene.addEventListener("change", draw);
+  cost.addEventListener("change", draw);
+})();

@@ -1,0 +1,115 @@
+"""What all sections of a page are built from: a store, and what was chosen from it, once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import pandas as pd
+
+from models.errors import CrankcheckError
+from models.files import parse_scene
+from models.scene import Scene
+from reports.choice.across import Candidate, candidates
+from reports.choice.cost import noise
+from reports.choice.lines import Line, lines
+from reports.choice.recommend import Recommendation, recommendations
+from reports.page.looks import Look, Named, looks, named
+from reports.store.reader import Stored
+
+
+@dataclass(frozen=True)
+class Report:
+    """A store as the page sees it: its newest lines, and the cells of those."""
+
+    stored: Stored
+
+    @cached_property
+    def lines(self) -> tuple[Line, ...]:
+        """The newest lines, by scene and variant in the order of the study."""
+        return lines(self.stored)
+
+    @cached_property
+    def cells(self) -> pd.DataFrame:
+        """The cells of the lines, in their order, coarse steps first."""
+        return pd.concat([line.cells for line in self.lines], ignore_index=True)
+
+    @cached_property
+    def looks(self) -> Mapping[Named, Look]:
+        """How each engine with its settings is drawn."""
+        return looks(self.lines)
+
+    @cached_property
+    def recommendations(self) -> tuple[Recommendation, ...]:
+        """The cheapest settings per engine and target."""
+        return recommendations(self.stored)
+
+    @cached_property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Every set of settings at every step, over all scenes."""
+        return candidates(self.lines)
+
+    @cached_property
+    def noise(self) -> float:
+        """The relative difference up to which costs are called equal; NaN if nothing was timed."""
+        return noise(self.stored)
+
+    @cached_property
+    def scenes(self) -> Mapping[str, Scene | None]:
+        """The scenes that were run, in order; None where the store has no readable text of one."""
+        names = dict.fromkeys(line.scene for line in self.lines)
+        return {name: _parsed(self.stored.manifest.scenes.get(name), name) for name in names}
+
+    @cached_property
+    def engines(self) -> Mapping[str, str]:
+        """The engines with their versions, in the order of the study."""
+        found: dict[str, dict[str, None]] = {}
+        for line in self.lines:
+            found.setdefault(line.engine, {})[line.version] = None
+        return {engine: ", ".join(versions) for engine, versions in found.items()}
+
+    @property
+    def timed(self) -> bool:
+        """Whether there is a cost to speak of."""
+        return bool(self.cells["s_per_turn"].notna().any())
+
+    def look(self, line: Line) -> Look:
+        """How a line is drawn."""
+        return self.looks[named(line)]
+
+    def lines_of(self, scene: str) -> tuple[Line, ...]:
+        """The lines of a scene."""
+        return tuple(line for line in self.lines if line.scene == scene)
+
+    def settings_told(self, line: Line) -> str:
+        """The settings of a line, as what differs from the engine as shipped, where that was run.
+
+        A store without a line of the engine as shipped gives all settings.
+        """
+        shipped = next(
+            (x for x in self.lines if x.engine == line.engine and x.variant == "as-shipped"), None
+        )
+        if shipped is not None and shipped.settings == line.settings:
+            return "every setting as the engine is shipped"
+        usual = {} if shipped is None else shipped.settings
+        told = [
+            f"{name} {_told(value)}"
+            for name, value in line.settings.items()
+            if name not in usual or usual[name] != value
+        ]
+        return ", ".join(told)
+
+
+def _parsed(text: str | None, name: str) -> Scene | None:
+    """A scene of its text."""
+    if text is None:
+        return None
+    try:
+        return parse_scene(text, name)
+    except CrankcheckError:
+        return None
+
+
+def _told(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value) or "none"

@@ -1,0 +1,31 @@
+"""The sections of the page, one file each, in the order in which they stand.
+
+A section is built by a function from the `Report`; None where the store has nothing for it. Another
+one is another file here, a template beside the others, and a line in `SECTIONS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from reports.page.report import Report
+from reports.page.sections.base import Section
+from reports.page.sections.convergence import build as convergence
+from reports.page.sections.fairness import build as fairness
+from reports.page.sections.motion import build as motion
+from reports.page.sections.precision import build as precision
+from reports.page.sections.provenance import build as provenance
+from reports.page.sections.recommendation import build as recommendation
+from reports.page.sections.stability import build as stability
+from reports.page.sections.verdict import build as verdict
+
+SECTIONS: dict[str, Callable[[Report], Section | None]] = {
+    "verdict": verdict,
+    "recommendation": recommendation,
+    "precision": precision,
+    "convergence": convergence,
+    "motion": motion,
+    "stability": stability,
+    "fairness": fairness,
+    "provenance": provenance,
+}

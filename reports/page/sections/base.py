@@ -1,0 +1,24 @@
+"""What a section of the page is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section: its place in the page, the words of its template, and what its scripts read.
+
+    ``template`` is a file of ``templates/sections``, rendered with ``words``. ``embedded`` is put
+    into the page as JSON, to be read with ``crankcheck.embedded(anchor)``; ``scripts`` are files of
+    ``assets`` that the section needs, in order; ``plotly`` says that it draws diagrams.
+    """
+
+    anchor: str
+    title: str
+    template: str
+    words: Mapping[str, object] = field(default_factory=dict)
+    embedded: Mapping[str, object] | None = None
+    scripts: tuple[str, ...] = ()
+    plotly: bool = False

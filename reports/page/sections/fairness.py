@@ -1,0 +1,79 @@
+"""The rules by which engines are compared."""
+
+from __future__ import annotations
+
+import math
+
+from reports.page.report import Report
+from reports.page.sections.base import Section
+
+RULES = (
+    (
+        "One truth for all",
+        "Every engine is held to the closed-form solution of the mechanism, whose own error is "
+        "bounded at every sample. No engine is the reference for another.",
+    ),
+    (
+        "One scene",
+        "Lengths, masses, joints and the assembly branch come from one scene file. Each engine's "
+        "model is built from it and from nothing else.",
+    ),
+    (
+        "One start",
+        "Every run starts from the same state: angles, places and velocities of the closed form "
+        "at the first instant. A fault at the start is no fault of an engine.",
+    ),
+    (
+        "One drive",
+        "The crank follows the same law everywhere. Where it is not where it was told to be, that "
+        "is the drive's error, and is shown apart from the geometry's.",
+    ),
+    (
+        "Each at its own instants",
+        "Positions and velocities are compared at the instants that they belong to in the engine "
+        "that logged them: some engines log a velocity half a step away from the position.",
+    ),
+    (
+        "Twice where it can be",
+        "Velocities and accelerations are taken as an engine reports them, and by differencing "
+        "the places that it logged.",
+    ),
+    (
+        "Tolerances that know the step",
+        "A limit follows from the step, the curvature of the motion and the conditioning of its "
+        "dyads. It is one number per quantity, for every engine alike.",
+    ),
+    (
+        "Judged as tuned, shown as shipped",
+        "What is judged is profile tuned, with the settings that suit an engine best. What it "
+        "does as shipped, and under other settings, is shown beside it.",
+    ),
+    (
+        "Errors and times apart",
+        "Runs that are measured for error record every step; runs that are timed record nothing. "
+        "Timed runs go one by one, warmed up, alone on the machine, several times over.",
+    ),
+    (
+        "Time is advice",
+        "The least of the repeats is shown. Times are compared within one processor only, and "
+        "called equal where they differ by less than the same run timed twice.",
+    ),
+    (
+        "Nothing left out",
+        "A run that diverged, came apart or was not supported is a row with its reason, and takes "
+        "no part in a recommendation.",
+    ),
+)
+
+
+def build(report: Report) -> Section:
+    """The section."""
+    return Section(
+        anchor="fairness",
+        title="How it is kept fair",
+        template="fairness.html",
+        words={
+            "rules": RULES,
+            "noise": report.noise if math.isfinite(report.noise) else None,
+        },
+    )

@@ -1,0 +1,179 @@
+"""Scene by scene: the mechanism in motion with the engines over it, and its error over the crank
+angle, split into what a user can turn."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from analytic.structure import analyse
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.choice.lines import Line
+from reports.commands.solve import describe_law
+from reports.mechanism import facts
+from reports.page.drawing import displacements, drawing, drawn_links, instants, moving_points
+from reports.page.embed import packed, size_of
+from reports.page.numbers import error_text
+from reports.page.report import Report
+from reports.page.sections.base import Section
+from reports.page.split import Body, Parts, Split, split, worst_body
+from reports.page.thinning import chosen, steps_held
+from reports.series import Array
+
+CURVES = 5
+"""Total, drive, floor, discretisation and gap."""
+
+
+def build(report: Report) -> Section | None:
+    """The section; None where no scene of the store can be drawn."""
+    scenes = [scene for scene in report.scenes.values() if scene is not None]
+    if not scenes:
+        return None
+    sizes = {key: size for scene in scenes for key, size in _sizes(report, scene).items()}
+    held = steps_held(sizes, report.lines)
+    return Section(
+        anchor="motion",
+        title="Scene by scene",
+        template="motion.html",
+        words={
+            "scenes": [_told(scene) for scene in scenes],
+            "thinned": held < max(len(line.cells) for line in report.lines),
+            "held": held,
+        },
+        embedded={
+            "scenes": [_Drawn(report, scene, sizes, held).embedded() for scene in scenes],
+            "judged": sorted({report.look(x).number for x in report.lines if _judged(x)}),
+        },
+        scripts=("legend.js", "charts.js", "mechanism.js", "parts.js", "motion.js"),
+        plotly=True,
+    )
+
+
+def _judged(line: Line) -> bool:
+    return bool(line.cells["gated"].all())
+
+
+def _sizes(report: Report, scene: Scene) -> dict[str, int]:
+    """What each traced cell of a scene takes in the page [characters], by key."""
+    rows = 2 * len(moving_points(scene)) + len(drawn_links(scene)) + CURVES
+    traces = {
+        str(key): report.stored.trace(str(key))
+        for line in report.lines_of(scene.name)
+        for key in line.cells["key"]
+    }
+    return {key: size_of(rows, len(one["time_s"])) for key, one in traces.items() if one}
+
+
+def _told(scene: Scene) -> dict[str, object]:
+    """A scene in words: its source, its driver, and what theory says of it."""
+    try:
+        known = facts(scene, analyse(scene))
+    except CrankcheckError:
+        known = []
+    return {
+        "name": scene.name,
+        "source": scene.source,
+        "note": scene.note,
+        "driver": f"{scene.driver.link}, {describe_law(scene)}",
+        "facts": known,
+    }
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A scene on its way into the page. Cells that share their instants share one axis."""
+
+    report: Report
+    scene: Scene
+    sizes: dict[str, int]
+    held: int
+    axes: dict[str, int] = field(default_factory=dict)
+
+    def embedded(self) -> dict[str, object]:
+        """The scene with everything that is drawn of it."""
+        lines = self.report.lines_of(self.scene.name)
+        time_s = self._instants(lines)
+        body = worst_body(lines, self.report.stored.trace, self.scene.longest_m)
+        drawn = [self._line(line, time_s, body) for line in lines]
+        return {
+            "drawing": drawing(self.scene, time_s),
+            "body": None if body is None else {"name": body.name, "turns": body.scale == 1.0},
+            "lines": drawn,
+            "axes": [json.loads(axis) for axis in self.axes],
+        }
+
+    def _instants(self, lines: Sequence[Line]) -> Array:
+        """The instants of the drawing: those of a run that ended well, where there is one."""
+        trace = self.report.stored.trace
+        found = [
+            trace(str(key)).get("time_s", np.zeros(0))
+            for line in lines
+            for key in line.cells["key"][line.cells["status"] == "ok"]
+        ]
+        longest = max(found, key=len, default=np.zeros(0))
+        return longest if len(longest) > 1 else instants(self.scene)
+
+    def _line(self, line: Line, time_s: Array, body: Body | None) -> dict[str, object]:
+        """A line: what it is off by in the drawing and over the crank angle, at some steps."""
+        trace = self.report.stored.trace
+        found = None if body is None else split(line, trace, body, self.scene.longest_m)
+        rows = line.cells.set_index("key")
+        return {
+            "look": self.report.look(line).number,
+            "floor": "" if found is None else _floor(found),
+            "cells": [
+                {
+                    "steps": rows.loc[key]["steps_per_turn"],
+                    "off": displacements(self.scene, trace(key), time_s),
+                    "parts": self._parts(found.cells.get(key)) if found else None,
+                }
+                for key in chosen(line, self.sizes, self.held)
+            ],
+        }
+
+    def _parts(self, parts: Parts | None) -> dict[str, object] | None:
+        """The curves of one cell, and the number of their axis."""
+        if parts is None:
+            return None
+        rows: Mapping[str, Array | None] = {
+            "total": parts.total,
+            "drive": parts.drive,
+            "floor": parts.floor,
+            "discretisation": parts.discretisation,
+            "geometric": parts.geometric if parts.floor is None else None,
+            "gap": parts.gap,
+        }
+        there = {name: row for name, row in rows.items() if row is not None}
+        axis = json.dumps(self._axis(parts), default=float)
+        return {
+            "names": list(there),
+            "curves": packed(np.vstack(list(there.values()))),
+            "axis": self.axes.setdefault(axis, len(self.axes)),
+        }
+
+    def _axis(self, parts: Parts) -> dict[str, object]:
+        """The crank angle [deg], from its first turn on, and the part of the period [%]."""
+        angle = parts.driver_rad
+        turn = angle - math.tau * math.floor(float(angle[0]) / math.tau + 1e-9)
+        part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
+        return {
+            "angle": [round(float(a), 3) for a in np.degrees(turn)],
+            "part": [round(100.0 * float(p), 3) for p in part],
+        }
+
+
+def _floor(found: Split) -> str:
+    """What the extrapolation to dt = 0 says, in words."""
+    if not math.isfinite(found.floor):
+        return f"Model floor not told apart: {found.why}." if found.why else ""
+    if found.seen:
+        return f"Model floor up to {error_text(found.floor)}, extrapolated to a step of zero."
+    return (
+        f"No model floor seen: the extrapolation to a step of zero is good to "
+        f"{error_text(found.doubt)}."
+    )

@@ -1,0 +1,73 @@
+"""Where the numbers come from: versions, processor, studies, commands, settings, every cell."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Mapping, Sequence
+
+from reports.choice.lines import Line
+from reports.choice.machines import left_out
+from reports.page.looks import Look
+from reports.page.report import Report
+from reports.page.sections.base import Section
+from reports.provenance import crankcheck_version
+
+
+def build(report: Report) -> Section:
+    """The section."""
+    runs = [_run(run) for run in report.stored.manifest.runs]
+    older = len(report.stored.cells) - len(report.cells)
+    return Section(
+        anchor="provenance",
+        title="Where the numbers come from",
+        template="provenance.html",
+        words={
+            "runs": runs,
+            "written_by": crankcheck_version(),
+            "older": older,
+            "other_processors": left_out(report.stored.cells),
+            "settings": [_settings(report, engine) for engine in report.engines],
+            "cells": [_cell(report, line, row) for line in report.lines for row in _rows(line)],
+            "scenes": report.stored.manifest.scenes,
+        },
+    )
+
+
+def _run(run: Mapping[str, object]) -> dict[str, object]:
+    """A run of the sweep: when, what was typed, on what, and its study."""
+    command, facts = run.get("command"), run.get("provenance")
+    typed = shlex.join(str(part) for part in command) if isinstance(command, Sequence) else ""
+    return {
+        "started": run.get("started", ""),
+        "command": typed,
+        "facts": facts if isinstance(facts, Mapping) else {},
+        "study": json.dumps(run.get("study", {}), indent=1),
+    }
+
+
+def _settings(report: Report, engine: str) -> dict[str, object]:
+    """All settings of all variants of an engine: a row per setting."""
+    variants: dict[Look, Line] = {}
+    for line in report.lines:
+        if line.engine == engine:
+            variants.setdefault(report.look(line), line)
+    names = dict.fromkeys(name for line in variants.values() for name in line.settings)
+    rows = []
+    for name in names:
+        values = [_value(line.settings.get(name)) for line in variants.values()]
+        rows.append((name, [(value, value != values[0]) for value in values]))
+    return {"engine": engine, "looks": list(variants), "rows": rows}
+
+
+def _value(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else "" if value is None else str(value)
+
+
+def _rows(line: Line) -> list[dict[str, object]]:
+    return [{str(k): v for k, v in row.items()} for row in line.cells.to_dict("records")]
+
+
+def _cell(report: Report, line: Line, row: Mapping[str, object]) -> dict[str, object]:
+    """A cell as a row of the table of all cells."""
+    return {"look": report.look(line), **row}

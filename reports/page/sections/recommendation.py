@@ -1,0 +1,64 @@
+"""What to set: the cheapest settings of each engine that reach a target on every scene."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from reports.choice.lines import called
+from reports.choice.recommend import Recommendation
+from reports.page.numbers import count
+from reports.page.report import Report
+from reports.page.sections.base import Section
+
+Row = dict[str, object]
+
+
+def build(report: Report) -> Section:
+    """The section."""
+    period_s = _usual_period(report)
+    rows = [row for one in report.recommendations for row in _rows(report, one, period_s)]
+    return Section(
+        anchor="recommendation",
+        title="What to set",
+        template="recommendation.html",
+        words={
+            "rows": rows,
+            "scenes": count(len(report.scenes), "scene"),
+            "noise": report.noise if math.isfinite(report.noise) else None,
+            "timed": report.timed,
+        },
+        scripts=("copying.js",),
+    )
+
+
+def _usual_period(report: Report) -> float:
+    """The period of most lines [s]: what a copied text is written for."""
+    return Counter(line.period_s for line in report.lines).most_common(1)[0][0]
+
+
+def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Row]:
+    """A recommendation, and after it the one that is steadier."""
+    yield _row(report, one, period_s)
+    if one.steadier is not None:
+        yield {**_row(report, one.steadier, period_s), "steadier": True}
+
+
+def _row(report: Report, one: Recommendation, period_s: float) -> Row:
+    """A recommendation with its look and its text to be copied."""
+    name = (one.engine, one.variant or one.nearest, one.drive)
+    return {
+        "one": one,
+        "look": report.looks.get(name),
+        "called": called(one.variant or one.nearest, one.drive),
+        "steadier": False,
+        "equal": _first(one.equal_to),
+        "snippet": one.snippet(period_s),
+    }
+
+
+def _first(names: Sequence[str], most: int = 2) -> str:
+    """The first names of a list, and how many more there are."""
+    rest = len(names) - most
+    return "; ".join(names[:most]) + (f"; and {rest} more" if rest > 0 else "")

@@ -1,0 +1,99 @@
+"""Stability: which settings hold which scene, and from which step on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import pandas as pd
+
+from reports.page.report import Report
+from reports.page.sections.base import Section
+
+
+@dataclass(frozen=True)
+class Holds:
+    """How a line holds over its steps: ``level`` is ``all``, ``some`` or ``none``; ``rank`` orders
+    the cells of the table; ``runs`` and ``within`` are its two lines of words."""
+
+    level: str
+    rank: float
+    runs: str
+    within: str
+
+
+def build(report: Report) -> Section:
+    """The section."""
+    looks = list(report.looks.values())
+    found = {(x.scene, report.look(x).number): holds(x.cells) for x in report.lines}
+    lost = report.cells[report.cells["status"] != "ok"]
+    return Section(
+        anchor="stability",
+        title="Stability",
+        template="stability.html",
+        words={
+            "looks": looks,
+            "engines": Counter(look.engine for look in looks),
+            "rows": [
+                (scene, [found.get((scene, look.number)) for look in looks])
+                for scene in report.scenes
+            ],
+            "lost": [_lost(report, row) for _, row in lost.iterrows()],
+        },
+    )
+
+
+def holds(cells: pd.DataFrame) -> Holds:
+    """How a line holds; its cells go from the coarse to the fine step."""
+    steps = [f"{step:g}" for step in cells["steps_per_turn"]]
+    ran = [status == "ok" for status in cells["status"]]
+    within = [verdict == "within" for verdict in cells["verdict"]]
+    ends = Counter(status for status in cells["status"] if status != "ok")
+    why = ends.most_common(1)[0][0] if ends else ""
+    level = "all" if all(ran) else "some" if any(ran) else "none"
+    return Holds(
+        level=level,
+        rank=sum(ran) + sum(within) / (len(within) + 1),
+        runs=_runs(steps, ran, why),
+        within=_within(steps, within),
+    )
+
+
+def _runs(steps: list[str], ran: list[bool], why: str) -> str:
+    """Where a line ends well, in words."""
+    if all(ran):
+        return "every step"
+    if not any(ran):
+        return f"{why} at every step"
+    first, last = ran.index(True), len(ran) - 1 - ran[::-1].index(True)
+    if not all(ran[first : last + 1]):
+        return f"{why} at {', '.join(s for s, good in zip(steps, ran, strict=True) if not good)}"
+    if last == len(ran) - 1:
+        return f"from {steps[first]} on; {why} below"
+    if first == 0:
+        return f"up to {steps[last]}; {why} beyond"
+    return f"{steps[first]} to {steps[last]}; {why} elsewhere"
+
+
+def _within(steps: list[str], within: list[bool]) -> str:
+    """Where a line is within tolerance, in words."""
+    if all(within) or not any(within):
+        return f"within: {'every step' if all(within) else 'none'}"
+    first, number = within.index(True), sum(within)
+    if all(within[first:]):
+        return f"within: from {steps[first]} on"
+    if all(within[:number]):
+        return f"within: up to {steps[number - 1]}"
+    return f"within: {', '.join(s for s, good in zip(steps, within, strict=True) if good)}"
+
+
+def _lost(report: Report, row: pd.Series) -> dict[str, object]:
+    """A run that did not end well."""
+    look = report.looks[row["engine"], row["variant"], row["drive"]]
+    return {
+        "scene": row["scene"],
+        "look": look,
+        "steps": row["steps_per_turn"],
+        "status": row["status"],
+        "reason": row["reason"],
+    }

@@ -1,0 +1,177 @@
+"""The verdict: one sentence for all, one for each engine, and the numbers behind them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+from reports.choice.lines import Line
+from reports.choice.recommend import Recommendation
+from reports.page.looks import Look, named
+from reports.page.numbers import count, duration, error_text, listed
+from reports.page.report import Report
+from reports.page.sections.base import Section
+
+ASKED = 1e-4
+"""The target that the sentence of an engine speaks of."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """An engine with its settings over all scenes."""
+
+    look: Look
+    gated: bool
+    cells: int
+    within: int
+    failed: int
+    orders: tuple[float, ...]
+    floors: tuple[float, ...]
+    lines: int
+    best: float
+    best_scene: str
+
+    @property
+    def order(self) -> str:
+        """The fitted orders, from the least to the largest."""
+        return spread([f"{order:.1f}" for order in sorted(self.orders)])
+
+    @property
+    def floor(self) -> str:
+        """The floors that were seen, and on how many scenes."""
+        if not self.floors:
+            return "none seen"
+        told = spread([error_text(floor) for floor in sorted(self.floors)])
+        return f"{told} on {len(self.floors)} of {count(self.lines, 'scene')}"
+
+
+def build(report: Report) -> Section:
+    """The section."""
+    rows = [_row(look, lines) for look, lines in _by_look(report)]
+    gated = report.cells[report.cells["gated"]]
+    return Section(
+        anchor="verdict",
+        title="Verdict",
+        template="verdict.html",
+        words={
+            "verdict": verdict(gated),
+            "level": level(gated),
+            "sentences": [
+                (engine, version, sentence(engine, rows, report.recommendations))
+                for engine, version in report.engines.items()
+            ],
+            "rows": rows,
+            "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
+        },
+    )
+
+
+def level(gated: pd.DataFrame) -> str:
+    """How the verdict is coloured: within, out, or none."""
+    if gated.empty:
+        return "none"
+    return "within" if bool((gated["verdict"] == "within").all()) else "out"
+
+
+def verdict(gated: pd.DataFrame) -> str:
+    """The sentence for all gated cells: those of profile tuned without overrides."""
+    if gated.empty:
+        return "No verdict: the store has no cells of profile tuned, which is what is judged."
+    within, number = int((gated["verdict"] == "within").sum()), len(gated)
+    engines = listed(list(dict.fromkeys(gated["engine"])))
+    if within == number:
+        return f"Within tolerance: all {count(number, 'tuned cell')} of {engines}."
+    worst = gated[gated["verdict"] != "within"]["scene"].value_counts()
+    where = listed([f"{scene} ({n})" for scene, n in worst.head(3).items()])
+    return (
+        f"Out of tolerance: {number - within} of {count(number, 'tuned cell')} of {engines}, "
+        f"most of them on {where}."
+    )
+
+
+def sentence(engine: str, rows: Sequence[Row], chosen: Sequence[Recommendation]) -> str:
+    """What a user takes away of an engine."""
+    own = [row for row in rows if row.look.engine == engine]
+    told = [_held(row) for row in own if row.gated]
+    told.append(_cheapest([one for one in chosen if one.engine == engine]))
+    told += [_shipped(row) for row in own if row.look.variant == "as-shipped" and not row.gated]
+    return " ".join(text for text in told if text)
+
+
+def _held(row: Row) -> str:
+    """Whether an engine holds with settings that are judged."""
+    text = f"With {row.look.variant} settings it is within tolerance in {_share(row)}"
+    if row.failed:
+        text += f", and {count(row.failed, 'run')} of them did not end well"
+    if row.orders:
+        text += f"; its error falls with order {row.order} of the step"
+    return f"{text}, {'with a floor at ' + row.floor if row.floors else 'no floor seen'}."
+
+
+def _shipped(row: Row) -> str:
+    """What an engine does as it comes."""
+    text = f"As shipped it is within tolerance in {_share(row)}"
+    told = []
+    if row.floors:
+        told.append(
+            f"on {len(row.floors)} of {count(row.lines, 'scene')} the error stops falling, at "
+            f"{spread([error_text(f) for f in sorted(row.floors)])}, however small the step"
+        )
+    if row.orders:
+        rest = "on the others it" if told else "its error"
+        told.append(f"{rest} falls with order {row.order} of the step")
+    return text + (f": {'; '.join(told)}." if told else ".")
+
+
+def _cheapest(chosen: Sequence[Recommendation]) -> str:
+    """What reaches the target at least cost."""
+    asked = next((one for one in chosen if one.target == ASKED), None)
+    if asked is None:
+        return ""
+    if asked.variant is None:
+        return f"No timed settings reach {error_text(ASKED, 1)} on every scene."
+    return (
+        f"Cheapest for an error of {error_text(ASKED, 1)} on every scene: {asked.variant} at "
+        f"{asked.steps_per_turn:g} steps a turn, {duration(asked.s_per_turn)} a turn."
+    )
+
+
+def _share(row: Row) -> str:
+    return f"{row.within} of {count(row.cells, 'cell')}"
+
+
+def spread(told: Sequence[str]) -> str:
+    """The first and the last of sorted texts, once where they are the same."""
+    if not told:
+        return "\N{EN DASH}"
+    return told[0] if told[0] == told[-1] else f"{told[0]} to {told[-1]}"
+
+
+def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
+    return [
+        (look, [line for line in report.lines if named(line) == name])
+        for name, look in report.looks.items()
+    ]
+
+
+def _row(look: Look, lines: Sequence[Line]) -> Row:
+    """The numbers of one engine with its settings."""
+    cells = pd.concat([line.cells for line in lines])
+    # Of each scene the finest step that ended well, and of those the worst.
+    finest = [(line.fit.runs[0][1], line.scene) for line in lines if line.fit.runs]
+    worst = max(finest, default=(math.nan, ""))
+    return Row(
+        look=look,
+        gated=bool(cells["gated"].all()),
+        cells=len(cells),
+        within=int((cells["verdict"] == "within").sum()),
+        failed=int((cells["status"] != "ok").sum()),
+        orders=tuple(x.fit.order for x in lines if x.fit.kind == "order"),
+        floors=tuple(x.fit.floor for x in lines if x.fit.kind == "floor"),
+        lines=len(lines),
+        best=worst[0],
+        best_scene=worst[1],
+    )
