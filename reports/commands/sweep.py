@@ -11,9 +11,12 @@ from pathlib import Path
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.choice.recommend import recommendations
+from reports.choice.table import noise_line, recommendation_table
 from reports.commands.names import chosen_engines
 from reports.provenance import provenance
 from reports.store.manifest import Manifest
+from reports.store.reader import Stored, read_store, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.grid import Grid, grid
 from reports.sweep.isolation import Limits
@@ -69,6 +72,8 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
         if request.timing:
             done = running.timings(done)
     _summary(console, request.folder, laid, done)
+    if stored_keys(request.folder, "timings"):
+        _recommend(console, read_store(request.folder))
     return 0
 
 
@@ -153,3 +158,10 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
         for reason, _ in reasons.most_common(2):
             console.print(f"    {reason}", markup=False, highlight=False)
     console.print(f"stored in {folder}; next: crankcheck report {folder} -o report.html")
+
+
+def _recommend(console: Console, stored: Stored) -> None:
+    """What to choose, of all that the store holds."""
+    console.print()
+    console.print(recommendation_table(recommendations(stored), console.width))
+    console.print(noise_line(stored), highlight=False)
