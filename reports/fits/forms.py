@@ -25,9 +25,9 @@ freedom from 1: Student's t for one in fifty (32 for the first, which would see 
 BEYOND_DOUBT = 2.0
 """So many times that far is the finest point off where the line of the others ends before it."""
 FLAT = 0.3
-"""Slopes within this of 0 are none; the lowest order of an integrator is 1."""
-LEVEL = 0.75
-"""A floor is seen where the slope at the finest step is below this; above, it may be an order."""
+"""Slopes within this of 0 are none."""
+LOWEST, LEVEL = 1.0, 0.75
+"""The lowest order of an integrator, and a slope at the finest step that is clearly less."""
 LEAST_REST, MOST_REST = 0.5, 2.0
 """A floor is seen where it is at least half the finest error; more than twice of it is a guess."""
 
@@ -96,15 +96,15 @@ def _curved(dts: Array, errors: Array) -> bool:
     return bool(freedom > 0 and line - parabola > _times(freedom) ** 2 * known)
 
 
-def level(dts: Array, errors: Array) -> bool:
-    """Whether the error has all but stopped to fall, from the finest step to the next."""
+def slower(than: float, dts: Array, errors: Array) -> bool:
+    """Whether the error falls with less than an order between the two finest steps."""
     last = dts <= np.unique(dts)[1]
-    return abs(straight(dts[last], errors[last]).order) <= LEVEL
+    return abs(straight(dts[last], errors[last]).order) < than
 
 
 def floor_seen(curve: Curve, dts: Array, errors: Array) -> bool:
-    """Whether the points of a curve show its floor: it is most of the finest error, where the curve
-    is `level` too, and no power of dt alone goes through the same points."""
+    """Whether the points of a curve show its floor: it is most of the finest error, the curve has
+    all but stopped to fall, and no power of dt alone goes through the same points."""
     if not LEAST_REST <= curve.rest <= MOST_REST or abs(curve.slope) > LEVEL:
         return False
     if curve.scatter > WILD or (curve.freedom == 0 and curve.order >= ORDERS[-1]):
@@ -115,6 +115,8 @@ def floor_seen(curve: Curve, dts: Array, errors: Array) -> bool:
 
 def opposed_seen(dts: Array, errors: Array) -> Curve | None:
     """A floor that works against the step, through as many points as show it; None without."""
+    if not slower(LEVEL, dts, errors):
+        return None
     for number in range(len(dts), OPPOSED.least - 1, -1):
         points = dts[:number], errors[:number]
         curve, added = OPPOSED.fit(*points), FLOOR.fit(*points)

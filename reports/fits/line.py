@@ -22,15 +22,16 @@ from reports.fits.curves import Array, Curve, straight
 from reports.fits.forms import (
     FLAT,
     FLOOR,
+    LOWEST,
     OPPOSED,
     POWER,
     WILD,
     Form,
     floor_seen,
     leaves,
-    level,
     longest,
     opposed_seen,
+    slower,
     uncertainty,
 )
 from reports.fits.points import NEAR_ROUNDING, points
@@ -159,7 +160,7 @@ def fit_line(
 def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
     """The form that goes through the points ``fit`` (indices, finest first)."""
     dts, errors = np.array(line.dt_s)[list(fit)], np.array(line.error)[list(fit)]
-    if not level(dts, errors):
+    if not slower(LOWEST, dts, errors):  # a floor would not be seen: do not look for one
         return _without_floor(line, fit, dts, errors)
     against = opposed_seen(dts, errors)
     if against is not None:

@@ -95,8 +95,7 @@ def _told(fit: LineFit, unit: str) -> str:
 def _order(fit: LineFit) -> str:
     """An order, and that no floor is seen."""
     if fit.order + fit.order_error < LEVEL:
-        slow = f"order {fit.order:.1f} +- {fit.order_error:.1f}"
-        return f"{slow}: slower than any integrator, a floor may be near"
+        return f"order {fit.order:.1f}: slower than any integrator, a floor may be near"
     vague = f" +- {fit.order_error:.1f}" if fit.order_error > VAGUE else ""
     return f"order {fit.order:.1f}{vague}, no floor seen"
 
