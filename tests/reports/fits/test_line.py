@@ -108,8 +108,16 @@ def test_errors_that_jump_about_follow_nothing() -> None:
     assert fit_line(STEPS, [1e-3, 1e-5, 1e-3, 1e-5, 1e-3, 1e-5]).kind == "irregular"
 
 
-def test_three_errors_that_jump_about_are_no_floor() -> None:
-    assert fit_line(STEPS[:3], [1e-3, 5e-4, 9e-4]).kind == "irregular"
+@pytest.mark.parametrize(
+    "errors",
+    [
+        [1e-3, 5e-4, 9e-4],
+        [1.06e-3, 5.7e-4, 3.8e-4, 7.1e-4],
+        [9.6e-4, 1.07e-3, 6.9e-4, 5.4e-4, 9.1e-4],
+    ],
+)
+def test_errors_that_jump_about_one_level_are_no_floor(errors: list[float]) -> None:
+    assert fit_line(STEPS[: len(errors)], errors).kind == "irregular"
 
 
 def test_points_at_rounding_are_left_out() -> None:
