@@ -1,0 +1,170 @@
+"""Convergence plot: the error at every step, and the order or floor that a fit finds.
+
+Points are measured. The curve of a fit goes over the steps that it stands on; the other points
+hang on a hairline. A floor that is seen is drawn on to the left edge. A run that did not end well
+stands in a strip along the top, at its step.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from reports.choice.lines import Line
+from reports.figures.grids import grid
+from reports.figures.marks import Mark, Name, label, marks, name_of
+from reports.figures.notes import notes
+from reports.figures.points import PLACE, around, ends, fitted, measured, of_scene, scenes_of
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
+from reports.page.report import Report
+
+STEP = "time step [s]"
+PER_TURN = "steps per turn"
+STRIP = "#f0f0f0"
+ALONG = 60
+"""Points along the curve of a fit."""
+
+
+def draw(report: Report, scene: str) -> Figure:
+    """The plot of one scene, with steps per turn along the top."""
+    own, known = report.lines_of(scene), marks(report.lines)
+    panels = Panels(top=0.27)
+    title, under = f"Convergence: {scene}", notes(report, own)
+    figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, known), under, columns=1)
+    _limits([axes], own, 1.0)
+    _panel(axes, own, known, 1.0)
+    axes.set_xlabel(STEP)
+    axes.set_ylabel(PLACE)
+    _upper(axes, own)
+    return figure
+
+
+def draw_all(report: Report) -> Figure:
+    """The plots of all scenes side by side, over steps per turn."""
+    lines, scenes, known = report.lines, list(report.scenes), marks(report.lines)
+    entries = [(Line2D([], [], **mark.style), label(name)) for name, mark in known.items()]
+    known = {name: mark.scaled(0.75) for name, mark in known.items()}
+    labels = (PER_TURN, PLACE)
+    figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
+    _limits(axes, lines, 0.0)
+    for scene, one in zip(scenes, axes, strict=True):
+        own = report.lines_of(scene)
+        _panel(one, own, known, own[0].period_s)
+        _count(one, own)
+    return figure
+
+
+def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float) -> None:
+    """Points, fits and floors of one scene; steps in ``unit_s``."""
+    left = axes.get_xlim()[0]
+    for line in lines:
+        mark, rows, fit = known[name_of(line)], measured(line), line.fit
+        x = rows["dt_s"] / unit_s
+        axes.plot(x, rows["place_pure"], color=mark.colour, linewidth=0.35)
+        axes.plot(x, rows["place_pure"], linestyle="none", **mark.points)
+        if fit.curve is not None:
+            dts = np.geomspace(*fit.used_range_s, ALONG)
+            axes.plot(dts / unit_s, [fit.curve.at(dt) for dt in dts], **mark.line)
+        if math.isfinite(fit.floor):
+            ends_at = fit.used_range_s[0] / unit_s
+            axes.plot([left, ends_at], [fit.floor, fit.floor], **mark.line | {"linewidth": 0.6})
+    _failed(axes, lines, known, unit_s)
+
+
+def _failed(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float) -> None:
+    """The runs that did not end well, in rows of the strip above."""
+    strip, across = _strip(lines), axes.get_xaxis_transform()
+    if not strip:
+        return
+    rows = [line for line in lines if ends(line)]
+    box = Rectangle((0.0, 1.0 - strip), 1.0, strip, transform=axes.transAxes, fc=STRIP, zorder=0.5)
+    axes.add_patch(box)
+    axes.text(
+        -0.02,
+        1.0 - strip / 2,
+        "failed",
+        transform=axes.transAxes,
+        size=SMALL,
+        ha="right",
+        va="center",
+    )
+    for at, line in enumerate(rows):
+        steps = line.cells.loc[line.cells["status"] != "ok", "dt_s"] / unit_s
+        high = 1.0 - strip * (at + 0.5) / len(rows)
+        axes.plot(
+            steps, [high] * len(steps), ls="none", transform=across, **known[name_of(line)].points
+        )
+
+
+def _strip(lines: Sequence[Line]) -> float:
+    """The share of a panel's height that failed runs take, where there are any."""
+    by_scene = [sum(bool(ends(line)) for line in of_scene(lines, s)) for s in scenes_of(lines)]
+    return min(0.075 * max(by_scene), 0.3)
+
+
+def _limits(axes: Sequence[Axes], lines: Sequence[Line], unit_s: float) -> None:
+    """The same limits for all panels; steps in ``unit_s``, a share of a turn for 0."""
+    steps = [
+        float(s) / unit_s if unit_s else 1.0 / float(s)
+        for line in lines
+        for s in line.cells["dt_s" if unit_s else "steps_per_turn"]
+    ]
+    low, high = around(float(e) for line in lines for e in measured(line)["place_pure"])
+    strip = _strip(lines)
+    for one in axes:
+        logarithmic(one, "x", *around(steps))
+        logarithmic(one, "y", low, high)
+        one.set_ylim(low, high * (high / low) ** (strip / (1.0 - strip)))
+
+
+def _upper(axes: Axes, lines: Sequence[Line]) -> None:
+    """Steps per turn along the top."""
+    upper = axes.twiny()
+    upper.set_xscale("log")
+    upper.set_xlim(axes.get_xlim())
+    _count(upper, lines, lines[0].period_s)
+    upper.grid(visible=False)
+    upper.set_xlabel(PER_TURN)
+
+
+def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
+    """Ticks of an axis over steps at the steps per turn that were run, as many as have room."""
+    numbers = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
+    low, high = axes.get_xlim()
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    width = axes.get_position().width * figure.get_figwidth() / math.log(high / low)
+    every = next((k for k in range(1, len(numbers)) if _fits(numbers[::k], width)), len(numbers))
+    kept = numbers[::every]
+    axes.xaxis.set_major_locator(FixedLocator([period_s / n for n in kept]))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda step, _: f"{period_s / step:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
+def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
+    """Whether labels stand apart on an axis with so many inches to a factor of e."""
+    return all(
+        math.log(b / a) * per_e_in > 0.5 * (width_in(f"{a:g}") + width_in(f"{b:g}")) + 0.06
+        for a, b in itertools.pairwise(numbers)
+    )
+
+
+def _entries(lines: Sequence[Line], known: Mapping[Name, Mark]) -> list[tuple[Artist, str]]:
+    """The legend: each variant with its fit, and how its other runs ended."""
+    return [
+        (
+            Line2D([], [], **known[name_of(line)].style),
+            ": ".join([label(name_of(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
+        )
+        for line in lines
+    ]

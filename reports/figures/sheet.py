@@ -1,0 +1,151 @@
+"""The sheet of a figure: panels, legend and notes placed in inches, none over another.
+
+::
+
+    title
+    +-------------+  +-------------+
+    | panel       |  | panel       |
+    +-------------+  +-------------+
+    legend, in as many columns as have room
+    notes: versions, processor, study, settings
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from reports.figures.style import LARGE, POINTS, QUIET, SMALL, TINY, cut, width_in
+
+EDGE = 0.04
+"""Room at the edges of the sheet [inch]."""
+HANDLE, GAP = 0.31, 0.08
+"""Width of a sample of a curve in a legend, and between its columns [inch]."""
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Panels of one size [inch] in rows and columns, and the room on their sides for axis labels.
+
+    ``between`` is the room for what stands between two columns and between two rows.
+    """
+
+    rows: int = 1
+    columns: int = 1
+    height: float = 2.3
+    left: float = 0.48
+    right: float = 0.06
+    top: float = 0.2
+    bottom: float = 0.34
+    between: tuple[float, float] = (0.15, 0.25)
+
+
+def sheet(
+    width: float,
+    panels: Panels,
+    title: str,
+    entries: Sequence[tuple[Artist, str]],
+    notes: Sequence[str],
+    columns: int = 0,
+) -> tuple[Figure, list[Axes]]:
+    """An empty figure with its panels, row by row, its legend and its notes.
+
+    ``entries`` are samples and labels of the legend, in ``columns`` (0: as many as have room).
+    """
+    room = width - 2 * EDGE
+    number = columns or _columns([text for _, text in entries], room)
+    in_rows = math.ceil(len(entries) / number)
+    legend = in_rows * SMALL * 1.38 / POINTS + (0.05 if entries else 0.0)
+    lines = [line for note in notes for line in folded(note, room)]
+    foot = len(lines) * TINY * 1.25 / POINTS
+    head = LARGE * 1.5 / POINTS if title else 0.0
+    across, down = panels.between
+    inner = (width - panels.left - panels.right - across * (panels.columns - 1)) / panels.columns
+    grid = panels.rows * panels.height + (panels.rows - 1) * down
+    height = EDGE + head + panels.top + grid + panels.bottom + legend + foot + EDGE
+    figure = Figure(figsize=(width, height), dpi=200)
+    found = []
+    for row in range(panels.rows):
+        for column in range(panels.columns):
+            left = panels.left + column * (inner + across)
+            top = EDGE + head + panels.top + row * (panels.height + down)
+            box = (left, height - top - panels.height, inner, panels.height)
+            found.append(figure.add_axes(_share(box, width, height)))
+    if title:
+        figure.text(
+            EDGE / width,
+            1 - EDGE / height,
+            cut(title, room, LARGE),
+            size=LARGE,
+            va="top",
+        )
+    if entries:
+        _legend(figure, entries, number, (EDGE / width, (EDGE + foot + legend) / height), room)
+    if lines:
+        figure.text(
+            EDGE / width,
+            EDGE / height,
+            "\n".join(lines),
+            size=TINY,
+            color=QUIET,
+            va="bottom",
+            linespacing=1.25,
+        )
+    return figure, found
+
+
+def _share(
+    box: tuple[float, float, float, float], width: float, height: float
+) -> tuple[float, float, float, float]:
+    """A box [inch] as shares of the figure."""
+    left, bottom, across, up = box
+    return left / width, bottom / height, across / width, up / height
+
+
+def _columns(labels: Sequence[str], room: float) -> int:
+    """How many columns of the widest label have room."""
+    widest = max((width_in(text) for text in labels), default=0.0) + HANDLE + GAP
+    return max(1, min(int((room + GAP) / widest), len(labels) or 1))
+
+
+def _legend(
+    figure: Figure,
+    entries: Sequence[tuple[Artist, str]],
+    columns: int,
+    corner: tuple[float, float],
+    room: float,
+) -> None:
+    """The legend with its upper left corner at ``corner`` (shares of the figure)."""
+    each = (room + GAP) / columns - GAP - HANDLE
+    figure.legend(
+        handles=[artist for artist, _ in entries],
+        labels=[cut(text, each) for _, text in entries],
+        loc="upper left",
+        bbox_to_anchor=corner,
+        ncols=columns,
+        frameon=False,
+        borderaxespad=0.0,
+        borderpad=0.0,
+        handlelength=(HANDLE - 0.05) * POINTS / SMALL,
+        handletextpad=0.05 * POINTS / SMALL,
+        columnspacing=GAP * POINTS / SMALL,
+        labelspacing=0.35,
+        numpoints=1,
+    )
+
+
+def folded(text: str, room: float, size: float = TINY) -> list[str]:
+    """A text in lines that have room; a word that has none alone is cut."""
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and width_in(longer, size) <= room:
+            lines[-1] = longer
+        else:
+            lines.append(cut(word, room, size))
+    return lines
