@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from rich.text import Text
 from models.errors import CrankcheckError
 from models.files import find_scene, read_text
 from reports.commands.names import chosen_engines, chosen_scenes
-from reports.commands.steps import counted, positive
+from reports.commands.steps import LEAST_STEPS_PER_TURN, counted, positive
 from reports.convergence import AT_ROUNDING
 from reports.provenance import provenance
 from reports.singular import refuse_singular
@@ -20,7 +21,7 @@ from reports.stopping import Stopped
 from reports.store.key import MEASURE, digest
 from reports.sweep.isolation import Limits
 from reports.sweep.progress import progress_bar
-from reports.tuning.attempt import Attempt, Bench, Goal, LostError, Row
+from reports.tuning.attempt import MOST_STEPS, Attempt, Bench, Goal, LostError, Row
 from reports.tuning.cost import Settings
 from reports.tuning.knobs import Space, space_of
 from reports.tuning.search import Plan, attempts, best_of, nearest_of, plainer, search
@@ -58,8 +59,7 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
     Raises
     ------
     CrankcheckError
-        Anything about the request that can be told before running, and an engine that can not
-        hold a scene.
+        Anything about the request that can be told before the search.
     """
     goal = _goal(request)
     base = resolved(profile_of(engine(goal.engine), goal.profile), None)
@@ -69,6 +69,7 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
     limits = Limits(request.limit_s)
     bench = Bench(goal, [space.work(scene) for scene in goal.scenes], limits)
     try:
+        bench.refuse_unsupported(base)
         found = _searched(request, bench, space, base, progress)
         best = best_of(found)
         tried: list[Attempt] = []
@@ -119,7 +120,10 @@ def _goal(request: Request) -> Goal:
     name = chosen_engines([request.engine])[0]
     goal = Goal(tuple(chosen_scenes(request.scenes)), name, PROFILE, target, request.turns)
     if goal.most < goal.least:
-        raise CrankcheckError(f"--turns {request.turns:g}: too many to be run dozens of times")
+        raise CrankcheckError(
+            f"--turns {request.turns:g}: a run of a search has {MOST_STEPS} steps at most; take "
+            f"{MOST_STEPS / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
+        )
     for scene in goal.scenes:
         dt_s, steps = counted(scene, None, goal.least, goal.turns)
         refuse_singular(scene, dt_s * steps)
@@ -193,6 +197,8 @@ def _unreached(goal: Goal, nearest: Attempt) -> str:
     """What came nearest."""
     if nearest.reason:
         return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
+    if math.isinf(nearest.error):
+        return f"NOTHING REACHES {goal.target:g}: no run came to its end"
     return (
         f"NOTHING REACHES {goal.target:g}: nearest is {nearest.error:.2e} in {nearest.scene} with "
         f"{nearest.tried} steps per turn; take a larger target, or a larger --budget"

@@ -16,7 +16,7 @@ from reports.tuning.coarsest import coarsest
 from reports.tuning.cost import Settings, Work
 from sim.engine import SettingValue
 
-MOST_STEPS = 100_000
+MOST_STEPS = 200_000
 """Of a run: some seconds. A finer step can not be what a search for the cheapest one is after."""
 DEARER = 4.0
 """How many times the cost of the best so far settings may take before they are given up."""
@@ -95,7 +95,7 @@ class Attempt:
 
 
 class LostError(Exception):
-    """A run that came to no end of its own: nothing else is tried with its settings."""
+    """A run that came to nothing: no other step is tried with its settings."""
 
 
 class Bench:
@@ -120,17 +120,23 @@ class Bench:
         Raises
         ------
         LostError
-            The process crashed, or took too long.
-        CrankcheckError
-            The engine can not hold the scene.
+            The process crashed or took too long, or the engine can not hold the scene.
         """
         cell = self.goal.cell(scene, settings, steps_per_turn)
         found = self._isolated.call(measured, cell, False)
         if isinstance(found, Lost):
             raise LostError(f"{scene.name}: {found.status}: {found.reason}")
         if found.row["status"] == "unsupported":
-            raise CrankcheckError(f"{cell.label}: {found.row['reason']}; tune it without this one")
+            raise LostError(f"{scene.name}: unsupported: {found.row['reason']}")
         return found.row
+
+    def refuse_unsupported(self, settings: Settings) -> None:
+        """Raise CrankcheckError for a scene that the engine can not hold."""
+        for scene in self.goal.scenes:
+            cell = self.goal.cell(scene, settings, self.goal.least)
+            found = self._isolated.call(measured, cell, False)
+            if isinstance(found, Outcome) and found.row["status"] == "unsupported":
+                raise CrankcheckError(f"{cell.label}: {found.row['reason']}")
 
     def attempt(self, settings: Settings, best: Attempt | None) -> Attempt:
         """Find the coarsest step that reaches the target.

@@ -20,12 +20,11 @@ from reports.cell import Cell
 from reports.sweep.isolation import Isolated, Limits, Lost
 from reports.sweep.outcome import timed
 from reports.tuning.cost import EVALUATIONS, PYMUNK_PASS, mujoco_counts, pymunk_counts
+from reports.tuning.timing import GUESS_US
 from sim.engine import SettingValue
 
 Array = NDArray[np.float64]
 ROUNDS = 12
-GUESS_US = 50.0
-"""High, so that a repeat is short: the least of many short ones is the least disturbed."""
 STEPS_PER_TURN = 720.0
 ITERATIONS = (2, 10, 50, 150)
 Point = tuple[Scene, str, Mapping[str, SettingValue]]

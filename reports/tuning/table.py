@@ -15,7 +15,7 @@ from reports.tuning.knobs import Space
 from reports.tuning.timing import Taken
 
 OTHERS = {
-    "gap_pure": "pin gap / L",
+    "gap_pure": "gap / L",
     "velocity_pure": "velocity / w",
     "acceleration_pure": "acceleration / w^2",
 }

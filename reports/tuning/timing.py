@@ -9,8 +9,10 @@ from reports.sweep.isolation import Isolated, Limits, Lost
 from reports.sweep.outcome import timed
 from reports.tuning.attempt import Attempt, Goal
 
-ROUNDS = 3
+ROUNDS = 12
 """How often each is timed, one after the other: a slow minute then slows both."""
+GUESS_US = 50.0
+"""Of a step; high, so that a repeat is short: of many short ones the least is hardly disturbed."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken
     try:
         for _ in range(ROUNDS):
             for (i, j), halves in least.items():
-                found = isolated.call(timed, cells[i][j], 5.0)
+                found = isolated.call(timed, cells[i][j], GUESS_US)
                 if isinstance(found, Lost):
                     return None
                 for half, name in enumerate(("us_per_step_a", "us_per_step_b")):
