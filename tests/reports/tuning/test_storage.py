@@ -110,9 +110,3 @@ def test_a_file_that_can_no_more_be_written_is_told_without_a_traceback(tmp_path
 
     with pytest.raises(CrankcheckError, match=r"-o .*kept\.db: .*name another file"):
         broken()
-
-
-def test_optuna_is_silent(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    with study_in(tmp_path / "kept.db", ASKED) as study:
-        study.add_trial(optuna.create_trial(value=1.0))
-    assert capfd.readouterr() == ("", "")
