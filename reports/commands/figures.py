@@ -15,6 +15,7 @@ from models.errors import CrankcheckError
 from reports.figures.registry import FIGURES
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
+from reports.page.numbers import count
 from reports.page.report import Report
 from reports.store.reader import read_store
 from reports.writing import check_folder, write
@@ -32,7 +33,7 @@ def run_figures(
     """Draw the store in ``folder`` into ``output``; returns the exit code, 0.
 
     ``scenes`` and ``only`` (names of figures) choose, all where they are empty. Figures over all
-    scenes are drawn where no scene is chosen.
+    scenes are drawn where no scene is chosen, and where there are several.
 
     Raises
     ------
@@ -54,11 +55,10 @@ def run_figures(
             continue
         for kind in FORMATS:
             write(output / f"{name}.{kind}", saved(figure, kind, f"crankcheck: {name}"))
-    number = len(figures) - len(empty)
+    drawn = count(len(figures) - len(empty), "figure")
     kinds = " and ".join(f".{kind}" for kind in FORMATS)
-    console.print(f"{output}: {number} figures, each as {kinds}", markup=False, highlight=False)
-    for name in empty:
-        console.print(f"  {name}: nothing to draw", markup=False, highlight=False)
+    lines = [f"{output}: {drawn}, each as {kinds}", *(f"  {x}: nothing to draw" for x in empty)]
+    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
     return 0
 
 
@@ -68,7 +68,7 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
     found: dict[str, Drawn] = {}
     for name in names:
         of, over_all = FIGURES[name].of, FIGURES[name].over_all
-        if over_all is not None and not scenes:
+        if over_all is not None and not scenes and (of is None or len(chosen) > 1):
             found[name] = partial(over_all, report)
         if of is not None:
             found |= {f"{name}-{scene}": partial(of, report, scene) for scene in chosen}

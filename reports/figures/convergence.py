@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -43,6 +44,11 @@ def draw(report: Report, scene: str) -> Figure:
     figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, known), under, columns=1)
     _limits([axes], own, 1.0)
     _panel(axes, own, known, 1.0)
+    strip = _strip(own)
+    _failed(axes, own, known, 1.0, strip)
+    if strip:
+        right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
+        axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
     axes.set_xlabel(STEP)
     axes.set_ylabel(PLACE)
     _upper(axes, own)
@@ -52,7 +58,12 @@ def draw(report: Report, scene: str) -> Figure:
 def draw_all(report: Report) -> Figure:
     """The plots of all scenes side by side, over steps per turn."""
     lines, scenes, known = report.lines, list(report.scenes), marks(report.lines)
-    entries = [(Line2D([], [], **mark.style), label(name)) for name, mark in known.items()]
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], **mark.style), label(name)) for name, mark in known.items()
+    ]
+    strip = _strip(lines)
+    if strip:
+        entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     known = {name: mark.scaled(0.75) for name, mark in known.items()}
     labels = (PER_TURN, PLACE)
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
@@ -60,6 +71,7 @@ def draw_all(report: Report) -> Figure:
     for scene, one in zip(scenes, axes, strict=True):
         own = report.lines_of(scene)
         _panel(one, own, known, own[0].period_s)
+        _failed(one, own, known, own[0].period_s, strip)
         _count(one, own)
     return figure
 
@@ -78,26 +90,18 @@ def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s
         if math.isfinite(fit.floor):
             ends_at = fit.used_range_s[0] / unit_s
             axes.plot([left, ends_at], [fit.floor, fit.floor], **mark.line | {"linewidth": 0.6})
-    _failed(axes, lines, known, unit_s)
 
 
-def _failed(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float) -> None:
-    """The runs that did not end well, in rows of the strip above."""
-    strip, across = _strip(lines), axes.get_xaxis_transform()
-    if not strip:
-        return
+def _failed(
+    axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float, strip: float
+) -> None:
+    """The runs that did not end well, in rows of a strip along the top."""
     rows = [line for line in lines if ends(line)]
+    if not rows:
+        return
+    across = axes.get_xaxis_transform()
     box = Rectangle((0.0, 1.0 - strip), 1.0, strip, transform=axes.transAxes, fc=STRIP, zorder=0.5)
     axes.add_patch(box)
-    axes.text(
-        -0.02,
-        1.0 - strip / 2,
-        "failed",
-        transform=axes.transAxes,
-        size=SMALL,
-        ha="right",
-        va="center",
-    )
     for at, line in enumerate(rows):
         steps = line.cells.loc[line.cells["status"] != "ok", "dt_s"] / unit_s
         high = 1.0 - strip * (at + 0.5) / len(rows)

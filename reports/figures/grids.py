@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.figures.sheet import Panels, sheet
-from reports.figures.style import PAGE_IN, SMALL, cut
+from reports.figures.sheet import EDGE, Panels, folded, sheet
+from reports.figures.style import PAGE_IN, SIZE, SMALL, cut
 
 COLUMNS = 4
 
@@ -30,16 +31,11 @@ def grid(
     """
     columns = min(COLUMNS, len(names))
     rows = math.ceil(len(names) / columns)
-    panels = Panels(
-        rows,
-        columns,
-        height,
-        left=0.46,
-        right=0.1,
-        top=0.16,
-        bottom=0.31,
-        between=(0.28 if apart else 0.12, 0.2),
-    )
+    height *= 1.0 if columns > 2 else 1.5
+    across, down = 0.28 if apart else 0.12, 0.2
+    upright = folded(labels[1], rows * height + (rows - 1) * down, SIZE)
+    left = 0.35 + 0.115 * len(upright)
+    panels = Panels(rows, columns, height, left, 0.1, 0.16, 0.31, (across, down))
     figure, axes = sheet(PAGE_IN, panels, title, entries, notes)
     box = axes[0].get_position()
     for at, (name, one) in enumerate(zip(names, axes, strict=False)):
@@ -48,9 +44,11 @@ def grid(
             labelbottom=at + columns >= len(names), labelleft=apart or at % columns == 0
         )
     low, right = axes[-1].get_position().y0, axes[columns - 1].get_position().x1
-    down = 0.15 / figure.get_figheight()
-    figure.text((box.x0 + right) / 2, low - down, labels[0], ha="center", va="top")
-    figure.text(0.04 / PAGE_IN, (low + box.y1) / 2, labels[1], rotation=90, ha="left", va="center")
+    under = low - 0.15 / figure.get_figheight()
+    figure.text((box.x0 + right) / 2, under, labels[0], ha="center", va="top")
+    middle = (low + box.y1) / 2
+    words: dict[str, Any] = {"rotation": 90, "va": "center", "multialignment": "center"}
+    figure.text(EDGE / PAGE_IN, middle, "\n".join(upright), **words)
     for one in axes[len(names) :]:
         one.remove()
     return figure, axes[: len(names)]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 SPECIAL = re.compile(r"([\\`*_\[\]<>|~#&$])")
 """What would start a cell, tag, link, reference, entity, formula or emphasis."""
 JOINER = "\N{WORD JOINER}"
-LONGEST = 300
+LONGEST = 600
 """Characters of a cell: a reason may hold the whole output of an engine."""
 
 

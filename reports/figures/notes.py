@@ -9,6 +9,11 @@ from reports.choice.machines import machine
 from reports.figures.marks import label, name_of
 from reports.page.numbers import count
 from reports.page.report import Report
+from sim.engine import SettingValue
+
+OWN = "the engine's own"
+SHOWN = 10
+"""Variants whose settings a figure tells; Markdown and the page tell all of them."""
 
 
 def notes(report: Report, lines: Sequence[Line], timed: bool = False) -> list[str]:
@@ -36,8 +41,8 @@ def study(lines: Sequence[Line]) -> str:
     steps = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
-    long = ", ".join(f"{n:g}" for n in turns)
-    return f"Study: {where}, {variants}, {to} steps per turn, {long} turns"
+    long = ", ".join(f"{n:g}" for n in turns) + (" turn" if turns == [1.0] else " turns")
+    return f"Study: {where}, {variants}, {to} steps per turn, {long}"
 
 
 def made(report: Report, timed: bool) -> str:
@@ -49,14 +54,45 @@ def made(report: Report, timed: bool) -> str:
 
 
 def settings(report: Report, lines: Sequence[Line]) -> list[str]:
-    """What the variants set, in one paragraph; empty where all is as the engines are shipped."""
-    told = {
-        label(name_of(line)): report.settings_told(line)
-        for line in lines
-        if line.variant != "as-shipped"
-    }
-    words = [f"{name}: {each}" for name, each in told.items()]
-    return [f"Settings other than as shipped: {'; '.join(words)}."] if words else []
+    """What the variants set, in one paragraph; none where all of it is the engines' own."""
+    told = {name: each for name, each in settings_of(report, lines).items() if each != OWN}
+    words = [f"{name}: {each}" for name, each in list(told.items())[:SHOWN]]
+    more = len(told) - len(words)
+    words += [f"and {count(more, 'more variant')} (crankcheck report tells)"] if more > 0 else []
+    return [f"Settings, where not the engine's own: {'; '.join(words)}."] if words else []
+
+
+def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
+    """The settings of each variant, by its label.
+
+    Those of an engine as shipped go without saying; where it was not run so, its first variant is
+    told in full, and of the others what differs from that.
+    """
+    found: dict[str, str] = {}
+    for engine in dict.fromkeys(line.engine for line in lines):
+        own = {label(name_of(x)): x for x in report.lines if x.engine == engine}
+        usual = next((name for name, x in own.items() if x.variant == "as-shipped"), None)
+        first = usual or next(iter(own))
+        told = {name: _differing(line, own[first]) for name, line in own.items()}
+        told[first] = OWN if usual else _differing(own[first], None)
+        prefix = "" if usual else f"as {first}, but "
+        found |= {name: each if name == first else prefix + each for name, each in told.items()}
+    shown = {label(name_of(line)) for line in lines}
+    return {name: each for name, each in found.items() if name in shown}
+
+
+def _differing(line: Line, usual: Line | None) -> str:
+    """The settings of a line that differ from those of another; all of them for None."""
+    known = {} if usual is None else usual.settings
+    return ", ".join(
+        f"{name} {_value(value)}"
+        for name, value in line.settings.items()
+        if name not in known or known[name] != value
+    )
+
+
+def _value(value: SettingValue) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value) or "none"
 
 
 def facts_of(report: Report) -> Mapping[str, str]:

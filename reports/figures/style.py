@@ -48,7 +48,7 @@ RC: dict[str, object] = {
     "xtick.color": INK,
     "xtick.direction": "in",
     "xtick.labelsize": SMALL,
-    "xtick.major.pad": 2.0,
+    "xtick.major.pad": 3.2,
     "ytick.color": INK,
     "ytick.direction": "in",
     "ytick.labelsize": SMALL,

@@ -10,9 +10,9 @@ from reports.choice.snippets import LANGUAGE
 from reports.choice.table import noise_line, short_target
 from reports.figures.markdown import code, fitted, folded, plain, table
 from reports.figures.marks import label, name_of
-from reports.figures.notes import made, study, versions
+from reports.figures.notes import made, settings_of, study, versions
 from reports.fits.words import short
-from reports.page.numbers import count
+from reports.page.numbers import count, listed
 from reports.page.report import Report
 from reports.page.sections.verdict import level, verdict
 from reports.rules import RULES
@@ -62,8 +62,8 @@ def summary(stored: Stored) -> str:
 def _ended(report: Report) -> str:
     """How many runs ended well."""
     number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
-    rest = f"{bad} of them did not end well" if bad else "all ended well"
-    return f"With all other settings there are {count(number, 'cell')}; {rest}."
+    rest = f"{bad} did not end well" if bad else "none failed to end well"
+    return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
 
 
 def _outside(report: Report) -> Iterator[str]:
@@ -125,13 +125,18 @@ def _remark(one: Recommendation) -> str:
 
 
 def _snippets(report: Report) -> Iterator[str]:
-    """Text to be copied, each behind a click."""
-    told: list[str] = []
+    """Text to be copied, each behind a click; once where it is for several targets."""
+    groups: dict[tuple[str, str, str, float], list[Recommendation]] = {}
     for one in report.recommendations:
-        if text := one.snippet():
-            title = f"{one.engine} {one.variant}, {one.steps_per_turn:g} steps per turn"
-            title += f" (error up to {short_target(one.target)})"
-            told.append(folded(title, code(text, LANGUAGE.get(one.engine, ""))))
+        if one.variant is not None:
+            same = (one.engine, one.variant, one.drive, one.steps_per_turn)
+            groups.setdefault(same, []).append(one)
+    told = []
+    for (engine, variant, _, steps), group in groups.items():
+        tightest = min(group, key=lambda one: one.target)
+        targets = listed([short_target(one.target) for one in group])
+        title = f"{engine} {variant}, {steps:g} steps per turn (error up to {targets})"
+        told.append(folded(title, code(tightest.snippet(), LANGUAGE.get(engine, ""))))
     kept, left = fitted(told, ROOM["snippets"])
     yield from kept
     if left:
@@ -179,6 +184,6 @@ def _footer(report: Report) -> str:
     lines = report.lines
     texts = [f"{versions(report, lines)}.", f"{made(report, report.timed)}.", f"{study(lines)}."]
     texts += [noise_line(report.stored)]
-    told = {label(name_of(line)): report.settings_told(line) for line in lines}
+    told = settings_of(report, lines)
     settings = table(("variant", "settings"), told.items(), ROOM["settings"])
     return "\n\n".join(["  \n".join(map(plain, texts)), folded("Settings", settings)])

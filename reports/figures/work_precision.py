@@ -30,9 +30,11 @@ ALL = "all scenes: worst error, mean time"
 Point = tuple[float, float]
 
 
-def draw(report: Report, scene: str) -> Figure:
-    """The diagram of one scene."""
+def draw(report: Report, scene: str) -> Figure | None:
+    """The diagram of one scene; None where none of its cells was timed."""
     own, known = report.lines_of(scene), marks(report.lines)
+    if not _points(own):
+        return None
     entries = [*_entries(own, known), _front_entry()]
     title, under = f"Work and precision: {scene}", notes(report, own, timed=True)
     figure, (axes,) = sheet(COLUMN_IN, Panels(top=0.05), title, entries, under)
@@ -43,9 +45,11 @@ def draw(report: Report, scene: str) -> Figure:
     return figure
 
 
-def draw_all(report: Report) -> Figure:
-    """The diagrams of all scenes side by side, and one over all of them."""
+def draw_all(report: Report) -> Figure | None:
+    """The diagrams of all scenes side by side, and one over all of them; None as for `draw`."""
     lines, scenes = report.lines, list(report.scenes)
+    if not _points(lines):
+        return None
     known = marks(lines)
     names = [ALL, *scenes]
     entries = [*_entries(lines, known), _front_entry()]
