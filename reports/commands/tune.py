@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -34,7 +34,7 @@ from sim.settings import profile_of, resolved
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""
 MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
-TRIAL_S = 20.0
+RUN_S = 20.0
 """The longest time for a run [s]."""
 
 
@@ -49,7 +49,7 @@ class Request:
     seed: int = 0
     turns: float = 2.0
     output: Path | None = None
-    limit_s: float = TRIAL_S
+    limit_s: float = RUN_S
     timing: bool = True
 
 
@@ -75,30 +75,35 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
         tried: list[Attempt] = []
         if best is not None:
             best, tried = plainer(space, base, best, bench.attempt)
-        chosen = best or nearest_of(found)
-        columns = [(f"profile {goal.profile}", _of(found, base)), ("found", chosen)]
-        rows = [_rows(bench, one) for _, one in columns]
+        columns = {
+            f"profile {goal.profile}": _of(found, base),
+            "found": best or nearest_of(found),
+        }
+        sides = [Side(title, one, _rows(bench, one)) for title, one in columns.items()]
     finally:
         bench.close()
-    taken = times(goal, [one for _, one in columns], limits) if request.timing else None
-    sides = [
-        Side(title, one, row, taken[i] if taken else None)
-        for i, ((title, one), row) in enumerate(zip(columns, rows, strict=True))
-    ]
+    if request.timing and (taken := times(goal, list(columns.values()), limits)):
+        sides = [replace(side, taken=one) for side, one in zip(sides, taken, strict=True)]
     show(console, goal, space, sides)
     if best is not None:
         _snippet(console, goal, best)
     else:
-        console.print(Text(_unreached(goal, chosen), "bold red"))
-    runs = sum(one.runs for one in (*found, *tried)) + sum(map(len, rows))
-    how = (
-        f"Seed {request.seed}: {len(found)} trials, of which {sum(a.reached for a in found)} reach "
-        f"the target; {runs} runs in all, {sum(a.runs for a in tried)} of them to set back what "
-        "gains nothing."
-    )
+        console.print(Text(_unreached(goal, columns["found"]), "bold red"))
+    around = len(goal.scenes) + sum(len(side.rows) for side in sides)
     facts = provenance({goal.engine: engine(goal.engine).version()})
+    how = _how(request, found, tried, around)
     console.print(Text(footer(goal, how, facts), "dim"), highlight=False)
     return 0 if best else 1
+
+
+def _how(request: Request, found: Sequence[Attempt], tried: Sequence[Attempt], around: int) -> str:
+    """How many trials and runs it took; ``around`` are the runs before and after the search."""
+    after = sum(one.runs for one in tried)
+    return (
+        f"Seed {request.seed}: {len(found)} trials, of which {sum(a.reached for a in found)} reach "
+        f"the target; {sum(one.runs for one in found) + after + around} runs in all, {after} of "
+        "them to set back what gains nothing."
+    )
 
 
 def _goal(request: Request) -> Goal:

@@ -18,7 +18,7 @@ from sim.engine import SettingValue
 
 MOST_STEPS = 200_000
 """Of a run: some seconds. A finer step can not be what a search for the cheapest one is after."""
-DEARER = 4.0
+DEARER = 2.0
 """How many times the cost of the best so far settings may take before they are given up."""
 NONE_KNOWN = 30.0
 """How far, in decades, settings are off whose runs give no error at all."""
@@ -65,9 +65,9 @@ class Goal:
 class Attempt:
     """What came of some settings.
 
-    ``steps_per_turn`` is None where no step reached the target: ``error`` is then the least that
-    was found, at ``tried`` steps in a turn. ``cost_us`` is what a turn takes by the model, all
-    scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
+    ``steps_per_turn`` is None where no step reached the target for good: ``error`` is then the
+    least that is over it, at ``tried`` steps in a turn. ``cost_us`` is what a turn takes by the
+    model, all scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
     """
 
     settings: Mapping[str, SettingValue]
@@ -85,9 +85,9 @@ class Attempt:
 
     def over(self, target: float) -> float:
         """By how many decades the error is over the target; 0 or less where it is not."""
-        if self.reached:
-            return min(math.log10(max(self.error, 1e-300) / target), 0.0)
-        return min(max(math.log10(self.error / target), 1e-6), NONE_KNOWN)
+        if self.error == 0.0:
+            return -NONE_KNOWN
+        return min(math.log10(self.error / target), NONE_KNOWN)
 
     def plain(self) -> dict[str, object]:
         """As plain values, to be kept."""
@@ -171,8 +171,9 @@ class Bench:
             steps = found.steps
         except LostError as lost:
             reason = str(lost)
-        tried = steps or min(worst, key=lambda n: (worst[n][0], n), default=start)
-        error, scene = worst.get(tried, (math.inf, ""))
+        over = [n for n, (error, _) in worst.items() if not error <= goal.target]
+        tried = steps or min(over, key=lambda n: (worst[n][0], n), default=start)
+        error, scene = worst[tried] if tried in (steps, *over) else (math.inf, "")
         cost_us = tried * each
         return Attempt(dict(settings), steps, tried, error, scene, cost_us, runs, reason)
 

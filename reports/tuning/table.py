@@ -29,7 +29,7 @@ class Side:
     title: str
     attempt: Attempt
     rows: Sequence[Row]
-    taken: Taken | None
+    taken: Taken | None = None
 
 
 def show(console: Console, goal: Goal, space: Space, sides: Sequence[Side]) -> None:

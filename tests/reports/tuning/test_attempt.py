@@ -13,8 +13,17 @@ from models.files import load_scene
 from models.scene import Scene
 from reports.sweep.isolation import Limits
 from reports.sweep.outcome import measured
-from reports.tuning.attempt import DEARER, NONE_KNOWN, Attempt, Bench, Goal, LostError, error_of
-from reports.tuning.cost import mujoco_work
+from reports.tuning.attempt import (
+    DEARER,
+    NONE_KNOWN,
+    Attempt,
+    Bench,
+    Goal,
+    LostError,
+    Row,
+    error_of,
+)
+from reports.tuning.cost import Settings, mujoco_work
 from reports.tuning.timing import times
 from sim.engine import SettingValue
 from sim.mujoco_settings import TUNED
@@ -98,6 +107,23 @@ def test_settings_that_the_engine_refuses_cost_one_attempt(two: Bench) -> None:
     assert not found.reached
     assert found.reason.startswith("fourbar-lecture-1: unsupported: setting solimp_dmin: found 2")
     assert two.attempt(SETTINGS, None).reached
+
+
+class Planted(Bench):
+    """A bench whose errors follow a law, not an engine."""
+
+    def row(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Row:
+        lucky = steps_per_turn == 160
+        return {"status": "ok", "place_pure": 1e-9 if lucky else 1e-3 + 1.0 / steps_per_turn**2}
+
+
+def test_an_error_that_was_small_by_luck_is_not_told_as_the_nearest() -> None:
+    found = Planted(goal_of("fourbar-lecture-1"), [lambda settings: 1.0], Limits()).attempt(
+        SETTINGS, None
+    )
+    assert not found.reached
+    assert found.error == pytest.approx(1e-3, rel=1e-3)
+    assert found.over(1e-4) == pytest.approx(1.0, rel=1e-3)
 
 
 def test_a_run_that_came_apart_has_no_error() -> None:
