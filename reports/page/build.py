@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -87,7 +88,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {"error": error_text, "duration": duration}
-    environment.globals["dash"] = NONE
+    environment.globals |= {"dash": NONE, "infinite": math.inf}
     return environment
 
 

@@ -92,7 +92,7 @@ def displacements(scene: Scene, trace: Trace, time_s: Array) -> dict[str, object
     ]
     rows = np.vstack([_rows(off, len(own)), _stacked(turned, len(own))])
     period = scene.driver.law.period_s
-    shift = period * round((time_s[-1] - own[-1]) / period)
+    shift = period * round((time_s[0] - own[0]) / period)
     rows = np.array([_at(time_s, own + shift, row, period) for row in rows])
     reach = FARTHEST * scene.longest_m
     return packed(np.clip(rows, -reach, reach))

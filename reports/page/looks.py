@@ -13,6 +13,8 @@ FAMILIES = 3
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "star")
 """Plotly's names of the markers; the legends draw the same."""
 DASHES = ("solid", "dash", "dot", "dashdot")
+SIZES = (11.0, 9.5, 8.0, 6.5)
+"""Of markers: equal curves of one engine are seen as rims around each other."""
 Named = tuple[str, str, str]
 """Engine, variant and drive."""
 
@@ -32,6 +34,7 @@ class Look:
     colour: int
     symbol: str
     dash: str
+    size: float
 
     @property
     def name(self) -> str:
@@ -60,5 +63,6 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             colour=family % FAMILIES * FAMILY + place % FAMILY,
             symbol=SYMBOLS[family % len(SYMBOLS)],
             dash=DASHES[place % len(DASHES)],
+            size=SIZES[place % len(SIZES)],
         )
     return found

@@ -17,7 +17,7 @@ crankcheck.folded = (text, width = 58) => {
 
 /** A logarithmic axis; decades as powers of ten, or as plain numbers. */
 crankcheck.logAxis = (title, powers) => ({
-  title: { text: title, standoff: 8 },
+  title: { text: title },
   type: "log",
   exponentformat: powers ? "power" : "none",
   ...(powers ? { dtick: 1 } : {}),
@@ -27,22 +27,27 @@ crankcheck.logAxis = (title, powers) => ({
 crankcheck.ticks = (values) => {
   const known = values.filter((value) => value > 0);
   if (!known.length) return {};
-  const [low, high] = [Math.floor(Math.log10(Math.min(...known))), Math.ceil(Math.log10(Math.max(...known)))];
+  const [least, most] = [Math.log10(Math.min(...known)), Math.log10(Math.max(...known))];
   const tickvals = [];
-  for (let decade = low; decade <= high; decade += 1) {
-    for (const first of high - low > 3 ? [1] : [1, 2, 5]) tickvals.push(Number(`${first}e${decade}`));
+  for (let decade = Math.floor(least); decade <= Math.ceil(most); decade += 1) {
+    for (const first of most - least > 3 ? [1] : [1, 2, 5]) tickvals.push(Number(`${first}e${decade}`));
   }
   return { tickvals, ticktext: tickvals.map(String) };
 };
 
 crankcheck.chart = (() => {
   const { colour } = crankcheck;
+  // Plotly stands after this script, so that the page is laid out before its megabytes are read.
+  const loaded = new Promise((resolve) => {
+    if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", resolve, { once: true });
+    else resolve();
+  });
   const finger = matchMedia("(pointer: coarse)").matches;
 
   function axis(own) {
     return {
       gridcolor: colour("line"), linecolor: colour("rule"), zerolinecolor: colour("rule"), tickcolor: colour("rule"),
-      ticks: "outside", ticklen: 4, automargin: true, ...own,
+      ticks: "outside", ticklen: 4, ...own,
     };
   }
 
@@ -50,10 +55,12 @@ crankcheck.chart = (() => {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
       font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-      margin: { l: 56, r: 14, t: 12, b: 48 },
+      margin: { l: own.yaxis.type === "log" ? 66 : 82, r: 14, t: 12, b: 50 },
       hoverlabel: {
-        bgcolor: colour("panel"), bordercolor: colour("rule"), font: { color: colour("ink"), size: 13 }, align: "left",
+        bgcolor: colour("panel"), bordercolor: colour("rule"), align: "left",
+        font: { family: getComputedStyle(document.body).fontFamily, color: colour("ink"), size: 13 },
       },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("ink") },
       dragmode: finger ? false : "zoom", // a finger scrolls the page
       ...own,
       xaxis: axis(own.xaxis),
@@ -62,24 +69,29 @@ crankcheck.chart = (() => {
   }
 
   const config = {
-    responsive: true, displaylogo: false, displayModeBar: finger ? false : "hover",
+    responsive: true, displaylogo: false, showSendToCloud: false, displayModeBar: finger ? false : "hover",
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"], scrollZoom: false,
     toImageButtonOptions: { format: "svg", filename: "crankcheck" },
   };
 
-  /** A diagram in `element`; `figure()` gives its data and layout. Returns what draws it anew. */
-  return (element, figure) => {
+  /**
+   * A diagram in `element`; `figure()` gives its data and layout, and `after` is called when it is
+   * drawn. Returns what draws it anew.
+   */
+  return (element, figure, after = () => {}) => {
     let seen = false;
     const draw = () => {
       if (!seen) return;
       const { data, layout: own } = figure();
-      Plotly.react(element, data, layout(own), config);
+      Plotly.react(element, data, layout(own), config).then(after);
     };
     new IntersectionObserver((entries, observer) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
       observer.disconnect();
-      seen = true;
-      draw();
+      loaded.then(() => {
+        seen = true;
+        draw();
+      });
     }, { rootMargin: "300px" }).observe(element);
     crankcheck.onTheme(draw);
     return draw;

@@ -23,7 +23,7 @@
       },
       {
         x: line.steps, y: line.error, visible, mode: "markers", name: look.name,
-        marker: { color: paint, size: 8.5, symbol: look.symbol },
+        marker: { color: paint, size: look.size, symbol: look.symbol },
         text: line.steps.map((steps, i) => `${head}${steps} steps a turn: ${short(line.error[i])}${tail}`),
         hovertemplate: "%{text}<extra></extra>",
       },

@@ -36,7 +36,7 @@ crankcheck.mechanism = (() => {
 
   /**
    * Draw into an SVG element. Gives `samples`, `degrees(position)`, and
-   * `show(position, overlays, factor)`, which draws overlays `{off, paint, dash}` and tells
+   * `show(position, overlays, factor)`, which draws overlays `{rows, paint}` and tells
    * whether any of them was cut off.
    */
   return (element, drawing) => {
@@ -146,8 +146,9 @@ crankcheck.mechanism = (() => {
       const runs = overlays.map((overlay) => ({ ...overlay, factor, cut: false }));
       guides.replaceChildren(...scene.sliders.map((slider) => guide(slider, position)));
       reference.replaceChildren(...bodies(position));
-      over.replaceChildren(...runs.map((run) =>
-        svg("g", { class: `run ${run.paint}`, "data-dash": run.dash }, ...bodies(position, run))));
+      // Runs that lie on each other are seen as rims: the first is the widest.
+      over.replaceChildren(...runs.map((run, i) =>
+        svg("g", { class: `run ${run.paint}`, "stroke-width": Math.min(2 + 2 * (runs.length - 1 - i), 6.5) }, ...bodies(position, run))));
       const names = [...Object.keys(scene.ground), ...scene.points];
       pins.replaceChildren(...names.flatMap((name) => pin(name, position)));
       return runs.some((run) => run.cut);

@@ -27,7 +27,7 @@
       if (!cell?.off) return [];
       cell.rows ??= unpacked(cell.off);
       const look = looks[line.look];
-      return [{ look, rows: cell.rows, paint: `c${look.colour}`, dash: look.dash }];
+      return [{ look, rows: cell.rows, paint: `c${look.colour}` }];
     });
   }
 
@@ -50,11 +50,14 @@
     const chart = part("chart");
     const axes = chart._fullLayout;
     const line = part("cursor");
-    line.hidden = !axes?.xaxis;
-    if (line.hidden) return;
+    line.hidden = true;
+    if (!axes?.xaxis) return;
     const turning = shown.drawing.turning;
     const x = turning ? mechanism.degrees(position) : (100 * position) / (mechanism.samples - 1);
-    line.style.left = `${axes.xaxis._offset + axes.xaxis.l2p(x)}px`;
+    const place = axes.xaxis.l2p(x);
+    if (!(place >= 0 && place <= axes.xaxis._length)) return;
+    line.hidden = false;
+    line.style.left = `${axes.xaxis._offset + place}px`;
     line.style.top = `${axes.yaxis._offset}px`;
     line.style.height = `${axes.yaxis._length}px`;
   }
@@ -84,14 +87,21 @@
   }
 
   const parts = crankcheck.legend(part("parts"), crankcheck.parts.groups(), () => curves());
-  const curves = crankcheck.chart(part("chart"), () => {
-    const line = shown.lines.find((each) => String(each.look) === settings.value);
-    const found = line && cellAt(line)?.parts;
-    const axis = found ? shown.axes[found.axis] : null;
-    floor.textContent = found ? line.floor : "No curve of this run: see Stability.";
-    parts.offer(found ? found.names : []);
+  const lineChosen = () => shown.lines.find((each) => String(each.look) === settings.value);
+  const partsChosen = () => (lineChosen() && cellAt(lineChosen())?.parts) ?? null;
+  const plot = crankcheck.chart(part("chart"), () => {
+    const found = partsChosen();
+    const axis = found && shown.axes[found.axis];
     return crankcheck.parts.figure(found, axis, shown.body, shown.drawing.turning, scale.value === "log", parts.on);
-  });
+  }, cursor);
+
+  /** The curves of the run that is chosen, with their legend and what is said of its floor. */
+  function curves() {
+    const found = partsChosen();
+    floor.textContent = found ? lineChosen().floor : "No curve of this run: see Stability.";
+    parts.offer(found ? found.names : []);
+    plot();
+  }
 
   const option = (value, text) => crankcheck.html("option", { value: String(value) }, text);
 

@@ -61,13 +61,24 @@ const crankcheck = (() => {
     return `${Number((seconds / size).toPrecision(3))} ${unit}`;
   }
 
-  const dark = () =>
-    (document.documentElement.dataset.theme ??
-      (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+  const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  const dark = () => (document.documentElement.dataset.theme ?? system()) === "dark";
 
   /** Calls `draw` whenever the theme has changed. */
   const onTheme = (draw) => themed.push(draw);
   const retheme = () => themed.forEach((draw) => draw());
+
+  /** Take a theme and keep it; that of the system is followed, and not kept. */
+  function choose(theme) {
+    if (theme === system()) delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
+    try {
+      if (theme === system()) localStorage.removeItem("crankcheck-theme");
+      else localStorage.setItem("crankcheck-theme", theme);
+    } catch {
+      // Kept for this visit only.
+    }
+  }
 
   function themeButton() {
     const button = document.getElementById("theme");
@@ -77,12 +88,7 @@ const crankcheck = (() => {
     button.hidden = false;
     label();
     button.addEventListener("click", () => {
-      document.documentElement.dataset.theme = dark() ? "light" : "dark";
-      try {
-        localStorage.setItem("crankcheck-theme", document.documentElement.dataset.theme);
-      } catch {
-        // Kept for this visit only.
-      }
+      choose(dark() ? "light" : "dark");
       label();
       retheme();
     });

@@ -44,12 +44,12 @@ crankcheck.parts = (() => {
       layout: {
         hovermode: "x",
         xaxis: {
-          title: { text: turning ? "crank angle [deg]" : "part of the period [%]", standoff: 8 },
+          title: { text: turning ? "crank angle [deg]" : "part of the period [%]" },
           ...(turning ? turns(x) : {}), zeroline: false,
         },
         yaxis: logarithmic
           ? crankcheck.logAxis(crankcheck.escaped(title), true)
-          : { title: { text: crankcheck.escaped(title), standoff: 8 }, exponentformat: "power", zeroline: true },
+          : { title: { text: crankcheck.escaped(title) }, exponentformat: "power", zeroline: true },
       },
     };
   }

@@ -10,7 +10,8 @@ for (const table of document.querySelectorAll("table.sortable")) {
     const cell = row.cells[column];
     const text = cell.dataset.value ?? cell.textContent.trim();
     const number = Number(text);
-    return text === "" || text === "nan" ? null : Number.isNaN(number) ? text : number;
+    if (text === "" || text === "nan" || text === "–") return null;
+    return text === "inf" ? Infinity : Number.isNaN(number) ? text : number;
   }
 
   function compare(a, b, sign) {

@@ -58,11 +58,12 @@ def _drawn(report: Report, line: Line) -> dict[str, object]:
     runs = [(dt, e) for dt, e in fit.runs if e > 0.0]
     low, high = fit.used_range_s
     steps = np.geomspace(low, high, CURVE) if math.isfinite(low) else np.zeros(0)
-    curve = [(line.period_s / dt, fit.error_at(float(dt))) for dt in steps]
+    period_s = line.period_s
+    curve = [(period_s / dt, fit.error_at(float(dt))) for dt in steps]
     return {
         "scene": line.scene,
         "look": report.look(line).number,
-        "steps": [line.period_s / dt for dt, _ in runs],
+        "steps": [period_s / dt for dt, _ in runs],
         "error": [e for _, e in runs],
         "curve": [list(point) for point in curve if point[1] is not None],
         "floor": fit.floor,

@@ -21,7 +21,7 @@ RULES = (
     (
         "One start",
         "Every run starts from the same state: angles, places and velocities of the closed form "
-        "at the first instant. A fault at the start is no fault of an engine.",
+        "at the first instant, with all pins closed.",
     ),
     (
         "One drive",
@@ -51,7 +51,7 @@ RULES = (
     (
         "Errors and times apart",
         "Runs that are measured for error record every step; runs that are timed record nothing. "
-        "Timed runs go one by one, warmed up, alone on the machine, several times over.",
+        "Timed runs go one by one, warmed up, with no other run beside them, several times over.",
     ),
     (
         "Time is advice",

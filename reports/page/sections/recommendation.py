@@ -18,7 +18,9 @@ Row = dict[str, object]
 def build(report: Report) -> Section:
     """The section."""
     period_s = _usual_period(report)
-    rows = [row for one in report.recommendations for row in _rows(report, one, period_s)]
+    # Engines side by side for each target, the least demanding first.
+    ordered = sorted(report.recommendations, key=lambda one: -one.target)
+    rows = [row for one in ordered for row in _rows(report, one, period_s)]
     return Section(
         anchor="recommendation",
         title="What to set",
@@ -40,7 +42,7 @@ def _usual_period(report: Report) -> float:
 
 def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Row]:
     """A recommendation, and after it the one that is steadier."""
-    yield _row(report, one, period_s)
+    yield {**_row(report, one, period_s), "cheapest": _cheapest(report, one)}
     if one.steadier is not None:
         yield {**_row(report, one.steadier, period_s), "steadier": True}
 
@@ -53,9 +55,22 @@ def _row(report: Report, one: Recommendation, period_s: float) -> Row:
         "look": report.looks.get(name),
         "called": called(one.variant or one.nearest, one.drive),
         "steadier": False,
+        "cheapest": False,
         "equal": _first(one.equal_to),
         "snippet": one.snippet(period_s),
     }
+
+
+def _cheapest(report: Report, one: Recommendation) -> bool:
+    """Whether no other engine reaches the target in less or, within the noise, the same time."""
+    others = [
+        other.s_per_turn
+        for other in report.recommendations
+        if other.target == one.target and other.engine != one.engine and other.variant is not None
+    ]
+    if one.variant is None or len(report.engines) < 2:
+        return False
+    return one.s_per_turn * (1.0 + report.noise) < min(others, default=math.inf)
 
 
 def _first(names: Sequence[str], most: int = 2) -> str:

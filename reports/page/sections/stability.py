@@ -78,12 +78,12 @@ def _runs(steps: list[str], ran: list[bool], why: str) -> str:
 def _within(steps: list[str], within: list[bool]) -> str:
     """Where a line is within tolerance, in words."""
     if all(within) or not any(within):
-        return f"within: {'every step' if all(within) else 'none'}"
+        return f"within: {'all' if all(within) else 'none'}"
     first, number = within.index(True), sum(within)
     if all(within[first:]):
-        return f"within: from {steps[first]} on"
+        return f"within: from {steps[first]}"
     if all(within[:number]):
-        return f"within: up to {steps[number - 1]}"
+        return f"within: to {steps[number - 1]}"
     return f"within: {', '.join(s for s, good in zip(steps, within, strict=True) if good)}"
 
 

@@ -31,8 +31,8 @@ class Row:
     orders: tuple[float, ...]
     floors: tuple[float, ...]
     lines: int
-    best: float
-    best_scene: str
+    finest: float
+    worst_scene: str
 
     @property
     def order(self) -> str:
@@ -160,9 +160,7 @@ def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
 def _row(look: Look, lines: Sequence[Line]) -> Row:
     """The numbers of one engine with its settings."""
     cells = pd.concat([line.cells for line in lines])
-    # Of each scene the finest step that ended well, and of those the worst.
-    finest = [(line.fit.runs[0][1], line.scene) for line in lines if line.fit.runs]
-    worst = max(finest, default=(math.nan, ""))
+    finest = [_finest(line) for line in lines]
     return Row(
         look=look,
         gated=bool(cells["gated"].all()),
@@ -172,6 +170,13 @@ def _row(look: Look, lines: Sequence[Line]) -> Row:
         orders=tuple(x.fit.order for x in lines if x.fit.kind == "order"),
         floors=tuple(x.fit.floor for x in lines if x.fit.kind == "floor"),
         lines=len(lines),
-        best=worst[0],
-        best_scene=worst[1],
+        finest=max(error for error, _ in finest),
+        worst_scene=max(finest)[1],
     )
+
+
+def _finest(line: Line) -> tuple[float, str]:
+    """The error at the finest step, infinite where that run did not end well, and the scene."""
+    last = line.cells.iloc[-1]
+    good = last["status"] == "ok" and math.isfinite(last["place_pure"])
+    return (float(last["place_pure"]) if good else math.inf), line.scene

@@ -1,0 +1,231 @@
+"""The page as a file: whole, escaped, small enough, also for odd stores."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import StringIO
+from pathlib import Path
+from types import ModuleType
+
+import pandas as pd
+import pytest
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.commands.report import run_report
+from reports.page.build import HERE, page
+from reports.page.sections import SECTIONS
+from reports.series import Array
+from reports.store.manifest import Manifest
+from reports.store.reader import Stored
+
+MEGABYTES_8 = 8_000_000
+VOID = {"meta", "link", "input", "br", "img"}
+EVIL = '</script><img src=x onerror="window.hacked=1"><b>\'&amp;{{ 7 * 7 }}'
+
+
+class Outline(HTMLParser):
+    """The elements of a page with their attributes; every element is closed by its own end."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag, f"</{tag}> closes another element"
+
+    def named(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def part_of(stored: Stored, keep: pd.Series) -> Stored:
+    """The store with some of its cells."""
+    found = Stored(
+        stored.folder, stored.manifest, stored.cells[keep].reset_index(drop=True), stored.timings
+    )
+    vars(found)["_traces"] = stored._traces
+    return found
+
+
+@pytest.fixture(scope="module")
+def text(small_page: Path) -> str:
+    return small_page.read_text(encoding="utf-8")
+
+
+def test_every_section_is_there_in_its_order_and_named(text: str) -> None:
+    outline = Outline(text)
+    assert outline.open == []
+    assert [each["id"] for each in outline.named("section")] == list(SECTIONS)
+    links = [each["href"] for each in outline.named("a") if (each["href"] or "").startswith("#")]
+    ids = [attributes["id"] for _, attributes in outline.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    assert {link[1:] for link in links if link} <= set(ids)
+    targets = [each["for"] for each in outline.named("label") if "for" in each]
+    assert set(targets) <= set(ids)
+
+
+def test_the_page_needs_nothing_from_outside(text: str) -> None:
+    outline = Outline(text)
+    for tag, attributes in outline.elements:
+        for name in ("src", "href", "action", "data", "poster", "srcset"):
+            value = attributes.get(name) or "#"
+            assert value.startswith(("#", "data:")), f"{tag} {name}={value}"
+        assert not [name for name in attributes if name.startswith("on")]
+    style = text[text.index("<style>") : text.index("</style>")]
+    assert "url(" not in style
+    assert "@import" not in style
+
+
+def test_our_scripts_make_no_html_of_strings() -> None:
+    for path in sorted((HERE / "assets").glob("*.js")):
+        script = path.read_text(encoding="utf-8")
+        for way in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval("):
+            assert way not in script, f"{path.name}: {way}"
+        assert "https:" not in script
+
+
+def evil(stored: Stored) -> Stored:
+    """The store with hostile text wherever a file may have it; drawings keep the scenes' names."""
+    cells = stored.cells.copy()
+    for column in ("variant", "reason", "status", "version", "warnings"):
+        cells[column] = [f"{EVIL}{value}" if value != "ok" else value for value in cells[column]]
+    cells["scene"] = [f"{EVIL}{name}" for name in cells["scene"]]
+    cells["asked"] = [json.dumps({EVIL: EVIL, **json.loads(asked)}) for asked in cells["asked"]]
+    scenes = {
+        f"{EVIL}{name}": text.replace("Crank-rocker", "</script><script>window.hacked=1//")
+        for name, text in stored.manifest.scenes.items()
+    }
+    runs = (
+        {"command": [EVIL], "started": EVIL, "study": {EVIL: EVIL}, "provenance": {EVIL: EVIL}},
+    )
+    found = Stored(stored.folder, Manifest(scenes, runs), cells, stored.timings)
+    vars(found)["_traces"] = stored._traces
+    return found
+
+
+def test_hostile_text_is_shown_and_not_read(small: Stored) -> None:
+    outline = Outline(page(evil(small)))
+    assert outline.open == []
+    assert outline.named("img") == []
+    ours = [each for each in outline.named("script") if each.get("type") != "application/json"]
+    assert len(ours) == 3  # the theme, Plotly, ours
+    assert not [each for _, each in outline.elements if "onerror" in each]
+
+
+def test_a_store_of_one_scene_one_engine_and_no_times_has_a_page(small: Stored) -> None:
+    cells = small.cells
+    keep = (cells["scene"] == "fourbar-lecture-1") & (cells["engine"] == "pymunk")
+    alone = part_of(small, keep & (cells["variant"] == "tuned"))
+    untimed = alone.cells.copy()
+    times = [c for c in untimed if c.startswith("us_per_step") or c == "s_per_turn"]
+    untimed[times] = float("nan")
+    outline = Outline(page(replace(alone, cells=untimed)))
+    assert [each["id"] for each in outline.named("section")] == list(SECTIONS)
+
+
+def test_a_store_in_which_everything_failed_has_a_page(small: Stored) -> None:
+    found = part_of(small, small.cells["status"] != "ok")
+    assert not found.cells.empty
+    outline = Outline(page(found))
+    assert "stability" in [each["id"] for each in outline.named("section")]
+
+
+def test_a_store_without_the_text_of_its_scenes_has_a_page_without_drawings(small: Stored) -> None:
+    outline = Outline(page(replace(small, manifest=Manifest({}, small.manifest.runs))))
+    sections = [each["id"] for each in outline.named("section")]
+    assert sections == [name for name in SECTIONS if name != "motion"]
+
+
+class Large(Stored):
+    """A store as large as that of the default study: the small one, over and over."""
+
+    def trace(self, key: str) -> Mapping[str, Array]:
+        return super().trace(key.partition(" ")[0])
+
+
+def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> None:
+    one = small.cells[(small.cells["scene"] == "shaper") & (small.cells["status"] == "ok")]
+    lines = one[one["variant"] == "tuned"].iloc[[0, 1, 2, 0, 1, 2, 0]]
+    rows = []
+    for scene in range(10):
+        for variant in range(8):
+            copied = lines.copy()
+            copied["key"] = [f"{key} {scene} {variant} {i}" for i, key in enumerate(copied["key"])]
+            copied["line"] = f"{scene} {variant}"
+            copied["scene"], copied["variant"] = f"shaper{scene}", f"variant {variant}"
+            copied["steps_per_turn"] = [90.0 * 2**i for i in range(7)]
+            copied["dt_s"] = [0.6283185307179586 / n for n in copied["steps_per_turn"]]
+            rows.append(copied)
+    scene = small.manifest.scenes["shaper"]
+    texts = {f"shaper{n}": scene.replace('"shaper"', f'"shaper{n}"') for n in range(10)}
+    cells = pd.concat(rows, ignore_index=True)
+    large = Large(small.folder, replace(small.manifest, scenes=texts), cells, small.timings)
+    found = page(large)
+    assert len(cells) == 560
+    assert len(re.findall('"base64"', found)) > 560
+    assert len(found.encode()) < MEGABYTES_8
+
+
+def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
+    said = StringIO()
+    target = tmp_path / "report.html"
+    assert run_report(small_folder, target, "html", Console(file=said, width=200)) == 0
+    assert target.read_text(encoding="utf-8").startswith("<!doctype html>")
+    assert re.search(r"report\.html: 24 cells, \d\.\d MB", said.getvalue())
+
+
+def test_the_command_without_a_file_names_one(
+    small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    run_report(small_folder, None, "html", Console(file=StringIO()))
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_the_command_gives_text_to_the_terminal_or_to_a_file(
+    small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    summary = ModuleType("reports.figures.summary")
+    summary.summary = lambda stored: f"# {len(stored.cells)} cells [red]\n"  # type: ignore[attr-defined]
+    monkeypatch.setitem(__import__("sys").modules, "reports.figures.summary", summary)
+    said = StringIO()
+    run_report(small_folder, None, "md", Console(file=said, width=200))
+    assert said.getvalue() == "# 24 cells [red]\n"
+    run_report(small_folder, tmp_path / "a.md", "md", Console(file=StringIO()))
+    assert (tmp_path / "a.md").read_text() == "# 24 cells [red]\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "format", "message"),
+    [
+        ("report.pdf", "html", "found '.pdf'; use .html"),
+        ("report.html", "md", "found '.html'; use .md"),
+        ("nowhere/report.html", "html", "create it first"),
+    ],
+)
+def test_a_file_that_can_not_be_written_is_refused_before_the_work(
+    name: str, format: str, message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(CrankcheckError, match=re.escape(message)):
+        run_report(tmp_path / "no store", tmp_path / name, format, Console(file=StringIO()))
+
+
+def test_a_folder_without_a_store_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CrankcheckError, match="no store of a sweep there"):
+        run_report(tmp_path, tmp_path / "report.html", "html", Console(file=StringIO()))
+    assert not (tmp_path / "report.html").exists()

@@ -1,0 +1,192 @@
+"""What the sections say, on made-up stores."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import pandas as pd
+import pytest
+
+from reports.page.report import Report
+from reports.page.sections.recommendation import build as build_recommendation
+from reports.page.sections.stability import holds
+from reports.page.sections.verdict import build as build_verdict
+from reports.page.thinning import chosen, steps_held
+from tests.reports.choice.made import Row, cell, stored, untimed
+
+STEPS = (90, 180, 360, 720)
+
+
+def line(scene: str, variant: str, errors: Sequence[float], **other: object) -> list[Row]:
+    """The cells of a line; an error that is not finite has come apart."""
+    judged = other.pop("gated", variant == "tuned")
+    limit = other.pop("limit", 1.0)
+    return [
+        cell(
+            scene,
+            variant,
+            steps,
+            error,
+            2.0,
+            **{
+                "gated": judged,
+                "verdict": "within" if error <= limit else "out",
+                "status": "ok" if math.isfinite(error) else "diverged",
+                **other,
+            },
+        )
+        for steps, error in zip(STEPS, errors, strict=True)
+    ]
+
+
+def second_order(first: float) -> list[float]:
+    return [first / 4.0**n for n in range(4)]
+
+
+def sentences(*rows: list[Row]) -> dict[str, str]:
+    """The verdict and the sentence of each engine."""
+    words = build_verdict(Report(stored(row for part in rows for row in part))).words
+    found = {engine: text for engine, _, text in words["sentences"]}
+    return {"verdict": words["verdict"], "level": words["level"], **found}
+
+
+def test_the_verdict_counts_what_is_judged() -> None:
+    tuned, shipped = line("a", "tuned", second_order(1e-3)), line("a", "as-shipped", [2.0] * 4)
+    found = sentences(tuned, shipped)
+    assert found["level"] == "within"
+    assert found["verdict"] == "Within tolerance: all 4 tuned cells of mujoco."
+    found = sentences(tuned, line("b", "tuned", [2.0, 1e-3, 1e-3, 1e-3]))
+    assert found["level"] == "out"
+    assert found["verdict"].startswith("Out of tolerance: 1 of 8 tuned cells of mujoco")
+    assert "b (1)" in found["verdict"]
+    found = sentences(shipped)
+    assert found["level"] == "none"
+    assert found["verdict"].startswith("No verdict")
+
+
+def test_the_sentence_of_an_engine_tells_order_cost_and_floor() -> None:
+    found = sentences(
+        line("a", "as-shipped", [3e-3, 2.1e-3, 2.01e-3, 2e-3], limit=0.0),
+        line("a", "tuned", second_order(1e-3)),
+    )["mujoco"]
+    assert "With tuned settings it is within tolerance in 4 of 4 cells" in found
+    assert "its error falls with order 2.0 of the step, no floor seen." in found
+    assert "Cheapest for an error of 1e-4 on every scene: tuned at 360 steps a turn" in found
+    assert "720 µs a turn" in found
+    assert "As shipped it is within tolerance in 0 of 4 cells: on 1 of 1 scene" in found
+    assert "the error stops falling, at 2.0e-3, however small the step" in found
+
+
+def test_what_reaches_nothing_and_what_fails_is_said() -> None:
+    found = sentences(line("a", "tuned", [1e-2, 5e-3, math.inf, math.inf]))["mujoco"]
+    assert "2 runs of them did not end well" in found
+    assert "No timed settings reach 1e-4 on every scene." in found
+
+
+def test_a_variant_that_fails_at_its_finest_step_has_no_error_there() -> None:
+    rows = [
+        *line("a", "tuned", second_order(1e-3)),
+        *line("b", "tuned", [1e-3, 1e-3, 1e-3, math.inf]),
+    ]
+    (row,) = build_verdict(Report(stored(rows))).words["rows"]
+    assert row.finest == math.inf
+    assert row.worst_scene == "b"
+
+
+def test_engines_stand_side_by_side_for_each_target_and_the_cheapest_is_named() -> None:
+    rows = [
+        *line("a", "tuned", second_order(1e-3)),
+        *line("a", "tuned", second_order(1e-1), engine="pymunk"),
+    ]
+    found = build_recommendation(Report(stored(rows))).words["rows"]
+    told = [(row["one"].target, row["one"].engine, row["cheapest"]) for row in found]
+    assert told[:2] == [(1e-2, "mujoco", True), (1e-2, "pymunk", False)]
+    assert told[2:4] == [(1e-3, "mujoco", True), (1e-3, "pymunk", False)]
+    assert found[3]["one"].variant is None  # 1.6e-3 is the best of it
+
+
+def test_one_engine_alone_is_not_called_the_cheapest() -> None:
+    found = build_recommendation(Report(stored(line("a", "tuned", second_order(1e-3))))).words
+    assert not any(row["cheapest"] for row in found["rows"])
+
+
+def test_without_times_nothing_is_recommended_and_that_is_said() -> None:
+    rows = [untimed(row) for row in line("a", "tuned", second_order(1e-3))]
+    section = build_recommendation(Report(stored(rows)))
+    assert section.words["timed"] is False
+    assert section.words["noise"] is None
+    assert all(row["one"].variant is None for row in section.words["rows"])
+
+
+@pytest.mark.parametrize(
+    ("ran", "within", "level", "runs", "within_told"),
+    [
+        ("1111", "1111", "all", "every step", "within: all"),
+        ("1111", "0000", "all", "every step", "within: none"),
+        ("1111", "0011", "all", "every step", "within: from 360"),
+        ("1111", "1100", "all", "every step", "within: to 180"),
+        ("1111", "1010", "all", "every step", "within: 90, 360"),
+        ("0011", "0011", "some", "from 360 on; diverged below", "within: from 360"),
+        ("1100", "0000", "some", "up to 180; diverged beyond", "within: none"),
+        ("0110", "0000", "some", "180 to 360; diverged elsewhere", "within: none"),
+        ("1011", "0000", "some", "diverged at 180", "within: none"),
+        ("0000", "0000", "none", "diverged at every step", "within: none"),
+    ],
+)
+def test_stability_says_from_which_step_on_a_line_holds(
+    ran: str, within: str, level: str, runs: str, within_told: str
+) -> None:
+    cells = pd.DataFrame(
+        {
+            "steps_per_turn": STEPS,
+            "status": ["ok" if mark == "1" else "diverged" for mark in ran],
+            "verdict": ["within" if mark == "1" else "out" for mark in within],
+        }
+    )
+    found = holds(cells)
+    assert (found.level, found.runs, found.within) == (level, runs, within_told)
+
+
+def test_pages_that_would_grow_too_large_keep_the_ends_of_each_line() -> None:
+    report = Report(stored(line("a", "tuned", second_order(1e-3))))
+    (only,) = report.lines
+    sizes = {str(key): 100 for key in only.cells["key"]}
+    keys = list(sizes)
+    assert steps_held(sizes, report.lines, budget=400) == 4
+    assert steps_held(sizes, report.lines, budget=399) == 3
+    assert steps_held(sizes, report.lines, budget=1) == 2
+    assert chosen(only, sizes, 2) == [keys[0], keys[-1]]
+    assert chosen(only, sizes, 4) == keys
+    assert chosen(only, {keys[1]: 100}, 4) == [keys[1]]
+
+
+def test_settings_are_told_as_what_differs_from_the_engine_as_shipped() -> None:
+    usual = {"iterations": 10, "bias": 0.5, "close": ""}
+    rows = [
+        *line("a", "as-shipped", [1e-3] * 4, asked=usual),
+        *line("a", "tuned", [1e-4] * 4, asked={**usual, "iterations": 50, "close": "C"}),
+        *line("a", "alone", [1e-4] * 4, asked={"x": 1.0, "y": ""}, engine="pymunk"),
+    ]
+    report = Report(stored(rows))
+    told = {one.variant: report.settings_told(one) for one in report.lines}
+    assert told == {
+        "as-shipped": "every setting as the engine is shipped",
+        "tuned": "iterations 50, close C",
+        "alone": "x 1, y none",
+    }
+
+
+def test_looks_differ_in_marker_between_engines_and_in_colour_and_dash_within() -> None:
+    rows = [
+        row
+        for engine in ("mujoco", "pymunk")
+        for variant in ("a", "b", "c")
+        for row in line("s", variant, [1e-3] * 4, engine=engine)
+    ]
+    found = list(Report(stored(rows)).looks.values())
+    assert len({(look.symbol, look.colour) for look in found}) == 6
+    assert len({look.colour for look in found}) == 6
+    assert {look.symbol for look in found if look.engine == "mujoco"} == {"circle"}
+    assert len({look.dash for look in found if look.engine == "mujoco"}) == 3
+    assert [look.number for look in found] == list(range(6))
