@@ -117,6 +117,7 @@ def _panel(axes: Axes, cell: Cell, unit: str) -> None:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.16 * (high - low))  # room for the words
-    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes}
+    paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
+    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
     axes.text(0.03, 0.96, f"[{power_of_ten(cell.scale)} {unit}]", ha="left", **words)
     axes.text(0.97, 0.96, cell.floor, ha="right", **words)
