@@ -121,7 +121,13 @@ def _remark(one: Recommendation) -> str:
     which = f"{one.engine}, {short_target(one.target)}"
     if one.reason:
         return f"{which}: none; {one.reason}"
-    return f"{which}: holds at this step, {one.caution}" if one.caution else ""
+    if not one.caution:
+        return ""
+    other = one.steadier
+    instead = (
+        f"; {other.nearest} at {other.steps_per_turn:g} holds at finer ones too" if other else ""
+    )
+    return f"{which}: holds at this step, {one.caution}{instead}"
 
 
 def _snippets(report: Report) -> Iterator[str]:
