@@ -32,8 +32,8 @@ COLOURS = ("#d1495b", "#2e6f9e", "#3a7d44", "#b7791f", "#6b4e9b", "#00798c")
 
 def animation(scene: Scene) -> bytes:
     """One turn of the scene as a GIF that repeats."""
-    path = _motion(scene, PATH_SAMPLES)
-    motion = _motion(scene, FRAMES + 1)
+    path = turn_of(scene, PATH_SAMPLES)
+    motion = turn_of(scene, FRAMES + 1)
     figure = _figure(path, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_subplot()
@@ -55,8 +55,8 @@ def animation(scene: Scene) -> bytes:
 
 def strip(scene: Scene) -> bytes:
     """Six positions over one turn, side by side, as a PNG."""
-    path = _motion(scene, PATH_SAMPLES)
-    motion = _motion(scene, STRIP + 1)
+    path = turn_of(scene, PATH_SAMPLES)
+    motion = turn_of(scene, STRIP + 1)
     columns, rows = STRIP // 2, 2
     figure = _figure(path, columns, rows, width=4.0)
     for index in range(STRIP):
@@ -69,7 +69,7 @@ def strip(scene: Scene) -> bytes:
 
 def _figure(path: Motion, columns: int, rows: int, width: float) -> Figure:
     """A figure whose panels of ``width`` [inch] have the shape of what they show."""
-    low, high = _box(path)
+    low, high = box_of(path)
     left, right, top, bottom, legend = 0.65, 0.15, 0.35, 0.5, 0.35
     inner = width - left - right
     height = min(max(inner * (high[1] - low[1]) / (high[0] - low[0]), 1.2), 6.0)
@@ -88,14 +88,14 @@ def _figure(path: Motion, columns: int, rows: int, width: float) -> Figure:
 
 def _legend(figure: Figure, scene: Scene) -> None:
     """The links by colour, below everything that moves."""
-    colours = _colours(scene)
+    colours = colours_of(scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
     figure.legend(
         handles=handles, loc="lower center", ncols=len(handles), fontsize=8, frameon=False
     )
 
 
-def _motion(scene: Scene, samples: int) -> Motion:
+def turn_of(scene: Scene, samples: int) -> Motion:
     """One turn, both ends included; a driver that swings begins at an end of its swing, so that an
     even number of equal parts of its period shows the other end as well."""
     law = scene.driver.law
@@ -107,7 +107,7 @@ def _motion(scene: Scene, samples: int) -> Motion:
 
 def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) -> None:
     """One position with the paths of the points behind it."""
-    low, high = _box(path)
+    low, high = box_of(path)
     size = float(np.max(high - low)) / (1 + 2 * MARGIN)
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -115,17 +115,17 @@ def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) ->
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=0.8, zorder=1)
-    colours = _colours(scene)
+    colours = colours_of(scene)
     for slider in scene.sliders.values():
         rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        _slider(axes, slider, rail, motion, path, index, size)
+        draw_slider(axes, slider, rail, motion, path, index, size)
     for name, link in scene.links.items():
         corners = [motion.points[point].position[index] for point in link.points]
-        _link(axes, corners, colours[name])
+        draw_link(axes, corners, colours[name])
     blocks = {slider.point for slider in scene.sliders.values()}
     for name, point in motion.points.items():
         letter = (0.055 if name in blocks else 0.025) * size  # clear of the block
-        _pin(axes, name, point.position[index], name in scene.ground, size, letter)
+        draw_pin(axes, name, point.position[index], name in scene.ground, size, letter)
     theta = math.degrees(motion.links[scene.driver.link].theta[index])
     axes.set_title(f"{scene.name}   {scene.driver.link} {theta:.0f} deg", fontsize=9, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
@@ -135,13 +135,13 @@ def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) ->
     axes.set_axisbelow(True)
 
 
-def _colours(scene: Scene) -> dict[str, str]:
+def colours_of(scene: Scene) -> dict[str, str]:
     """A colour for every link, the driver's first."""
     names = [scene.driver.link, *(name for name in scene.links if name != scene.driver.link)]
     return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
 
 
-def _box(path: Motion) -> tuple[Array, Array]:
+def box_of(path: Motion) -> tuple[Array, Array]:
     """The corners of the box that is shown: all points at all times, and a margin."""
     places = np.concatenate([point.position for point in path.points.values()])
     low, high = places.min(axis=0), places.max(axis=0)
@@ -151,7 +151,7 @@ def _box(path: Motion) -> tuple[Array, Array]:
     return np.asarray(low - spare), np.asarray(high + spare)
 
 
-def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
+def draw_link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
     """A bar between two points; with more points a plate."""
     places = np.array(corners)
     if len(places) > 2:
@@ -160,7 +160,9 @@ def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
     axes.plot(*places.T, color=colour, linewidth=4, solid_capstyle="round", zorder=3)
 
 
-def _pin(axes: Axes, name: str, place: Array, grounded: bool, size: float, letter: float) -> None:
+def draw_pin(
+    axes: Axes, name: str, place: Array, grounded: bool, size: float, letter: float
+) -> None:
     """A pin with its letter aside; one of the ground stands on a triangle."""
     if grounded:
         foot = 0.035 * size
@@ -171,7 +173,7 @@ def _pin(axes: Axes, name: str, place: Array, grounded: bool, size: float, lette
     axes.annotate(name, aside, fontsize=8, color=INK, zorder=6)
 
 
-def _slider(
+def draw_slider(
     axes: Axes,
     slider: Slider,
     colour: str,

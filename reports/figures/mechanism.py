@@ -27,12 +27,12 @@ from reports.picture import (
     GUIDE,
     MARGIN,
     PATH_SAMPLES,
-    _box,
-    _colours,
-    _link,
-    _motion,
-    _pin,
-    _slider,
+    box_of,
+    colours_of,
+    draw_link,
+    draw_pin,
+    draw_slider,
+    turn_of,
 )
 from reports.series import Array
 
@@ -49,8 +49,8 @@ def draw(report: Report, scene: str) -> Figure | None:
     known = report.scenes[scene]
     if known is None:
         return None
-    path = _motion(known, PATH_SAMPLES)
-    low, high = _box(path)
+    path = turn_of(known, PATH_SAMPLES)
+    low, high = box_of(path)
     panels = Panels(top=0.05, right=0.1)
     wide = COLUMN_IN - panels.left - panels.right
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
@@ -78,19 +78,19 @@ def clearest(path: Motion) -> int:
 
 def _bodies(axes: Axes, scene: Scene, path: Motion, at: int) -> None:
     """Paths, guides, blocks, links and pins, without a letter."""
-    low, high = _box(path)
+    low, high = box_of(path)
     size = float(np.max(high - low)) / (1.0 + 2.0 * MARGIN)
-    colours = _colours(scene)
+    colours = colours_of(scene)
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=0.5, zorder=1)
     for slider in scene.sliders.values():
         rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        _slider(axes, slider, rail, path, path, at, size)
+        draw_slider(axes, slider, rail, path, path, at, size)
     for name, link in scene.links.items():
-        _link(axes, [path.points[point].position[at] for point in link.points], colours[name])
+        draw_link(axes, [path.points[point].position[at] for point in link.points], colours[name])
     for name, point in path.points.items():
-        _pin(axes, "", point.position[at], name in scene.ground, size, 0.0)
+        draw_pin(axes, "", point.position[at], name in scene.ground, size, 0.0)
 
 
 def _names(
