@@ -38,11 +38,11 @@ def known(settings: Settings, best: Attempt | None) -> Attempt:
     return Attempt(dict(settings), steps, 100, 0.9 if reached else 5.0, "a scene", cost, 3)
 
 
-def plan(budget: int = 18, seed: int = 0) -> Plan:
+def plan(budget: int = 14, seed: int = 0) -> Plan:
     return Plan(SPACE, PROFILE, target=1.0, budget=budget, seed=seed)
 
 
-def done(budget: int = 18, seed: int = 0, attempt: Try = known) -> list[Attempt]:
+def done(budget: int = 14, seed: int = 0, attempt: Try = known) -> list[Attempt]:
     with study_in(None, {}) as study:
         return search(study, plan(budget, seed), attempt)
 
@@ -120,7 +120,7 @@ def interrupted(after: int) -> Try:
     return attempt
 
 
-@pytest.mark.parametrize("at", [0, 7, 15])
+@pytest.mark.parametrize("at", [0, 7, 12])
 def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
     tmp_path: Path, at: int
 ) -> None:
@@ -145,13 +145,13 @@ def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
 
 def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(tmp_path: Path) -> None:
     path = tmp_path / "kept.db"
-    for budget in (12, 18):
+    for budget in (7, 14):
         with study_in(path, {}) as study:
             found = search(study, plan(budget), known)
             assert len(found) == budget
-    assert found == done(18)
+    assert found == done(14)
     with study_in(path, {}) as study:
-        assert search(study, plan(12), interrupted(0)) == found
+        assert search(study, plan(7), interrupted(0)) == found
 
 
 def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> None:

@@ -42,6 +42,14 @@ def whole() -> tuple[int, str]:
     return told(SMALL)
 
 
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a search that was begun."""
+    path = tmp_path_factory.mktemp("kept") / "kept.db"
+    told(replace(SMALL, budget=1, output=path))
+    return path
+
+
 def test_one_seed_gives_the_same_settings_twice(whole: tuple[int, str]) -> None:
     assert told(SMALL) == whole
     assert told(replace(SMALL, seed=4)) != whole
@@ -89,16 +97,17 @@ def test_a_search_in_two_halves_finds_what_a_whole_one_does(
     ],
 )
 def test_a_file_of_another_search_is_refused(
-    tmp_path: Path, change: dict[str, object], words: str
+    kept: Path, change: dict[str, object], words: str
 ) -> None:
-    path = tmp_path / "kept.db"
-    told(replace(SMALL, budget=1, output=path))
     with pytest.raises(CrankcheckError, match=words):
-        told(replace(SMALL, output=path, **change))  # type: ignore[arg-type]
+        told(replace(SMALL, output=kept, **change))  # type: ignore[arg-type]
 
 
-def test_nothing_that_reaches_is_told_with_what_came_nearest() -> None:
-    request = replace(SMALL, engine="pymunk", target=1e-10, turns=20.0, budget=1)
+def test_nothing_that_reaches_is_told_with_what_came_nearest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("reports.tuning.attempt.MOST_STEPS", 4000)
+    request = replace(SMALL, engine="pymunk", target=1e-10, budget=1)
     code, text = told(request)
     assert code == 1
     assert "NOTHING REACHES 1e-10: nearest is" in text
@@ -172,8 +181,8 @@ calls = 0
 def attempt(bench, settings, best, real=Bench.attempt):
     global calls
     calls += 1
-    if calls == 4:
-        threading.Timer(0.02, os.killpg, (os.getpgid(0), signal.SIGINT)).start()
+    if calls == 3:
+        threading.Timer(0.01, os.killpg, (os.getpgid(0), signal.SIGINT)).start()
     return real(bench, settings, best)
 
 if __name__ == "__main__":
@@ -181,7 +190,7 @@ if __name__ == "__main__":
     Bench.attempt = attempt
     with guarded():
         install()
-        request = Request(("shaper",), "mujoco", 1e-6, budget=1000, output=path)
+        request = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=1000, output=path)
         run_tune(request, terminal(), terminal(stderr=True))
 """
 
