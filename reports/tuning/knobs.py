@@ -84,6 +84,7 @@ SPACES: Mapping[str, Space] = {
             Knob("integrator", ("RK4", "implicitfast", "Euler", "implicit", "discrete")),
             # MuJoCo itself takes 2 steps for anything shorter (refsafe).
             Knob("solref_timeconst_steps", rungs(2.0, 20.0, 1.06)),
+            # Above 5 pins come apart slowly, over tens of turns, which no short run sees.
             Knob("solref_dampratio", rungs(0.2, 5.0, 1.08)),
             Knob(
                 "solimp",
