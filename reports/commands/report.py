@@ -7,6 +7,7 @@ from typing import Literal
 
 from rich.console import Console
 
+from models.errors import CrankcheckError
 from reports.store.reader import read_store
 from reports.writing import check_file, write
 
@@ -15,6 +16,14 @@ ENDINGS: dict[Format, tuple[str, ...]] = {
     "html": (".html", ".htm"),
     "md": (".md", ".markdown", ".txt"),
 }
+
+
+def format_of(text: str) -> Format:
+    """A format by its name. Raises CrankcheckError for one that there is not."""
+    for known in ENDINGS:
+        if text.lower() == known:
+            return known
+    raise CrankcheckError(f"--format {text!r}: unknown; use {' or '.join(ENDINGS)}")
 
 
 def run_report(folder: Path, output: Path | None, format: Format, console: Console) -> int:

@@ -16,7 +16,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands.report import run_report
+from reports.commands.report import format_of, run_report
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
 from reports.series import Array
@@ -223,6 +223,12 @@ def test_a_file_that_can_not_be_written_is_refused_before_the_work(
 ) -> None:
     with pytest.raises(CrankcheckError, match=re.escape(message)):
         run_report(tmp_path / "no store", tmp_path / name, format, Console(file=StringIO()))
+
+
+def test_a_format_is_known_by_its_name() -> None:
+    assert [format_of("html"), format_of("MD")] == ["html", "md"]
+    with pytest.raises(CrankcheckError, match="--format 'pdf': unknown; use html or md"):
+        format_of("pdf")
 
 
 def test_a_folder_without_a_store_is_refused(tmp_path: Path) -> None:
