@@ -2,6 +2,7 @@
 #
 #   make verify       compare the engines with the reference on all shipped scenes
 #   make test         lint, types and tests
+#   make report       run the shipped study into out/, with its page, figures and summary
 #   make slow         the long checks that `make test` leaves out
 #   make benchmarks   speed of the reference and of logging, as ratios
 #   make models       write the MJCF files in models/canonical/ anew
@@ -12,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test browser slow benchmarks models format clean
+.PHONY: verify test browser report slow benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -29,6 +30,12 @@ browser:
 	@command -v chromium >/dev/null || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || \
 		{ apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium; } \
 		>/dev/null || echo "chromium could not be installed: apt-get install chromium"
+
+report: $(VENV)/crankcheck
+	$(BIN)/crankcheck sweep -o out/study
+	$(BIN)/crankcheck report out/study -o out/report.html
+	$(BIN)/crankcheck report out/study --format md -o out/summary.md
+	$(BIN)/crankcheck figures out/study -o out/figures
 
 slow: $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 -m slow $(PYTEST)

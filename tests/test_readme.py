@@ -19,6 +19,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```console\n(.*?)```", README, flags=re.DOTALL)
+SCRIPTS = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -62,25 +63,41 @@ def follows(shown: list[str], printed: list[str]) -> str:
     return ""
 
 
-@pytest.mark.parametrize(
-    ("command", "shown", "code"), commands(), ids=[command for command, _, _ in commands()]
-)
-def test_command_prints_what_the_readme_shows(
-    command: str, shown: list[str], code: int, tmp_path: Path
-) -> None:
-    words = shlex.split(command)
-    if words[0] == "crankcheck":
-        words = [str(Path(sys.executable).with_name("crankcheck")), *words[1:]]
-    elif words[0] == "python":
-        words = [sys.executable, *words[1:]]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert done.returncode == code, done.stdout + done.stderr
-    printed = [line.rstrip() for line in done.stdout.splitlines()]
-    assert not follows([line.rstrip() for line in shown], printed)
+def test_readme_is_true_from_top_to_bottom(tmp_path: Path) -> None:
+    """One after the other in one folder, as a reader would: later commands use what earlier ones
+    left."""
+    faults = []
+    for command, shown, code in commands():
+        done = ran(words(command), tmp_path)
+        if done.returncode != code:
+            faults.append(f"$ {command}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
+        printed = [line.rstrip() for line in done.stdout.splitlines()]
+        if fault := follows([line.rstrip() for line in shown], printed):
+            faults.append(f"$ {command}\n{fault}")
+    for script in SCRIPTS:
+        done = ran([sys.executable, "-c", script], tmp_path)
+        if done.returncode != 0:
+            faults.append(f"{script}\n{done.stderr}")
+    assert not faults, "\n\n".join(faults)
+
+
+def words(command: str) -> list[str]:
+    """The command, with the programs of this environment."""
+    name, *rest = shlex.split(command)
+    programs = {
+        "crankcheck": str(Path(sys.executable).with_name("crankcheck")),
+        "python": sys.executable,
+    }
+    return [programs.get(name, name), *rest]
+
+
+def ran(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
 
 
 def test_readme_shows_commands() -> None:
     assert len(commands()) >= 3
+    assert len(SCRIPTS) >= 3
 
 
 def test_the_two_commands_stand_in_the_readme_and_in_the_makefile() -> None:

@@ -66,3 +66,78 @@ def sweep(
         )
         code = command.sweep(request, terminal(), terminal(stderr=True))
     raise typer.Exit(code)
+
+
+@app.command()
+def tune(
+    scenes: Annotated[
+        list[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
+    ],
+    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")],
+    target: Annotated[
+        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
+    ],
+    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60,
+    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0,
+    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Keep the search (.db), to go on later.")
+    ] = None,
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0,
+    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True,
+) -> None:
+    """Search an engine's settings for the cheapest that reach a target error."""
+    with guarded():
+        from reports.commands import tune as command
+
+        request = command.Request(
+            scenes=scenes,
+            engine=engine,
+            target=target,
+            budget=budget,
+            seed=seed,
+            turns=turns,
+            output=output,
+            limit_s=limit_s,
+            timing=timing,
+        )
+        code = command.run_tune(request, terminal(), terminal(stderr=True))
+    raise typer.Exit(code)
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a sweep.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="File to write (default report.html; md: none)."),
+    ] = None,
+    format_: Annotated[
+        str, typer.Option("--format", metavar="html|md", help="A page, or text in Markdown.")
+    ] = "html",
+) -> None:
+    """Write a sweep as one page that works offline, or as Markdown for a pull request."""
+    with guarded():
+        from reports.commands import report as command
+
+        code = command.run_report(folder, output, command.format_of(format_), terminal())
+    raise typer.Exit(code)
+
+
+@app.command()
+def figures(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a sweep.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the figures.")],
+    scene: Annotated[
+        list[str] | None, typer.Option(help="Scene to draw; may be repeated; all if none.")
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="FIGURE", help="Figure to draw; may be repeated.")
+    ] = None,
+) -> None:
+    """Draw the diagrams of a sweep as SVG and PDF, for a paper."""
+    with guarded():
+        from reports.commands import figures as command
+
+        code = command.run_figures(folder, output, terminal(), scene or (), only or ())
+    raise typer.Exit(code)
