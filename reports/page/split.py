@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,9 +74,9 @@ class Parts:
 class Split:
     """The parts of every cell of a line that has a trace, by key.
 
-    ``floor`` is the largest of the extrapolated error, and ``doubt`` what it is uncertain by as the
-    order is (both NaN where there is none; ``why`` then says why). A floor below its doubt is not
-    seen.
+    ``floor`` is the largest of the extrapolated error, and ``doubt`` what it is uncertain by: as
+    the order is, as the next coarser steps tell otherwise, and all of it where the line shows no
+    floor (both NaN where there is none; ``why`` then says why). Only a floor above is seen.
     """
 
     cells: Mapping[str, Parts]
@@ -143,7 +143,10 @@ def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: floa
     cells = {key: _parts(one, body, longest_m, told, line.period_s) for key, one in traces.items()}
     if told is None:
         return Split(cells, why=str(limit))
-    return Split(cells, floor=float(np.max(np.abs(told.error))), doubt=told.doubt)
+    floor = float(np.max(np.abs(told.error)))
+    # A line that falls as far as it was run has no floor: what is left is doubt.
+    doubt = told.doubt if line.fit.kind == "floor" else max(told.doubt, floor)
+    return Split(cells, floor=floor, doubt=doubt)
 
 
 def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
@@ -152,26 +155,50 @@ def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
     if order is None:
         return "the error follows no order of the step"
     name = f"geometric.{body.series}"
-    # A fit stands on the finest runs of a line: these two ended well.
+    # A fit stands on the three finest runs of a line at least: these ended well.
     finest = [
-        (float(dt), traces[key][name], traces[key]["time_s"])
-        for key, dt in line.cells[["key", "dt_s"]].iloc[:-3:-1].itertuples(index=False)
+        _Logged(float(dt), traces[key][name] / body.scale, traces[key]["time_s"])
+        for key, dt in line.cells[["key", "dt_s"]].iloc[:-4:-1].itertuples(index=False)
         if name in traces.get(key, {})
     ]
-    if len(finest) < 2:
+    if len(finest) < 3:
         return "the logged crank left the reach of the mechanism"
-    (dt1, g1, t1), (dt2, g2, t2) = finest
-    here, there = shared(t1, t2, line.period_s)
-    if len(here) < SHARED:
+    fine = _extrapolated(finest[0], finest[1], order, line.period_s)
+    coarse = _extrapolated(finest[1], finest[2], order, line.period_s)
+    if fine is None:
         return "the two finest steps were logged at different instants"
-    g1, g2 = g1[here] / body.scale, g2[there] / body.scale
+    if coarse is None:
+        return fine
+    # What the next coarser steps tell otherwise is doubt as well.
+    here, there = shared(fine.time_s, coarse.time_s, line.period_s)
+    other = float(np.max(np.abs(fine.error[here] - coarse.error[there]), initial=0.0))
+    return replace(fine, doubt=max(fine.doubt, other))
+
+
+@dataclass(frozen=True)
+class _Logged:
+    """The geometric error of one run [pure] at the instants of its log, (T,), and its step."""
+
+    dt_s: float
+    error: Array
+    time_s: Array
+
+
+def _extrapolated(
+    fine: _Logged, coarse: _Logged, order: tuple[float, float], period_s: float
+) -> _Limit | None:
+    """Richardson's extrapolation of two runs; None where they share too few instants."""
+    here, there = shared(fine.time_s, coarse.time_s, period_s)
+    if len(here) < SHARED:
+        return None
     p, more = order
-    ratio = dt2 / dt1
+    ratio = coarse.dt_s / fine.dt_s
     growth = ratio**p
+    step = fine.error[here] - coarse.error[there]
     # d floor / d p, times what p is uncertain by
     slope = growth * math.log(ratio) / (growth - 1.0) ** 2
-    doubt = slope * more * float(np.max(np.abs(g1 - g2)))
-    return _Limit(t1[here], g1 + (g1 - g2) / (growth - 1.0), doubt)
+    doubt = slope * more * float(np.max(np.abs(step)))
+    return _Limit(fine.time_s[here], fine.error[here] + step / (growth - 1.0), doubt)
 
 
 def _order(fit: LineFit) -> tuple[float, float] | None:

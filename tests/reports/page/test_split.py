@@ -95,6 +95,55 @@ def test_without_a_floor_the_extrapolation_is_within_its_doubt() -> None:
     assert not found.seen
 
 
+def test_what_coarser_steps_tell_otherwise_is_doubt() -> None:
+    """A phase at which the error falls with another order leaves something behind at dt = 0."""
+    line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2)
+
+    def error(phase: Array, dt_s: float) -> Array:
+        return 1e-4 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(phase) + 0.05 * dt_s
+
+    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    parts = found.cells[str(line.cells["key"].iloc[0])]
+    assert parts.floor is not None
+    off = np.max(np.abs(parts.floor - 1e-4 * np.sin(parts.driver_rad)))
+    assert 1e-5 < off < 1.2 * found.doubt
+    assert found.seen
+
+
+def test_a_line_that_falls_throughout_has_no_floor_whatever_is_left() -> None:
+    """What is far below the finest error is nothing to be told from so few curves."""
+    line = line_of(lambda dt_s: 40.0 * dt_s**2)
+    assert line.fit.kind == "order"
+
+    def error(phase: Array, dt_s: float) -> Array:
+        return 40.0 * dt_s**2 * np.cos(phase) + 1e-6 * np.sin(phase)
+
+    found = split(line, of(traces_of(line, error)), BODY, LENGTH)
+    assert found.floor == pytest.approx(1e-6, rel=0.1)
+    assert found.doubt >= found.floor
+    assert not found.seen
+
+
+def test_an_order_that_is_not_well_known_is_doubt() -> None:
+    """Also where the third step can not be asked, as it was logged at other instants."""
+    line = line_of(lambda dt_s: 1e-4 + 40.0 * dt_s**2 * (1.0 + 0.05 * math.sin(1e4 * dt_s)))
+
+    def error(phase: Array, dt_s: float) -> Array:
+        return 1e-4 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(phase)
+
+    traces = traces_of(line, error)
+    third = str(line.cells["key"].iloc[-3])
+    traces[third] = {**traces[third], "time_s": traces[third]["time_s"] + 1e-3}
+    found = split(line, of(traces), BODY, LENGTH)
+    parts = found.cells[str(line.cells["key"].iloc[-1])]
+    assert parts.floor is not None
+    assert parts.discretisation is not None
+    off = np.max(np.abs(parts.floor - 1e-4 * np.sin(parts.driver_rad)))
+    assert 0.0 < off < found.doubt
+    assert found.cells[third].floor is None
+    assert found.seen
+
+
 def test_a_floor_that_is_all_of_the_error_needs_no_order() -> None:
     line = line_of(lambda dt_s: 1e-3)
     assert math.isnan(line.fit.order)
