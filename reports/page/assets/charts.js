@@ -55,7 +55,7 @@ crankcheck.chart = (() => {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", showlegend: false, hovermode: "closest",
       font: { family: getComputedStyle(document.body).fontFamily, size: 13, color: colour("ink") },
-      margin: { l: own.yaxis.type === "log" ? 66 : 82, r: 14, t: 12, b: 50 },
+      margin: { l: 80, r: 16, t: 12, b: 50 },
       hoverlabel: {
         bgcolor: colour("panel"), bordercolor: colour("rule"), align: "left",
         font: { family: getComputedStyle(document.body).fontFamily, color: colour("ink"), size: 13 },
@@ -64,7 +64,7 @@ crankcheck.chart = (() => {
       dragmode: finger ? false : "zoom", // a finger scrolls the page
       ...own,
       xaxis: axis(own.xaxis),
-      yaxis: axis(own.yaxis),
+      yaxis: axis({ ...own.yaxis, title: { standoff: 6, ...own.yaxis.title } }),
     };
   }
 

@@ -36,7 +36,8 @@
     const cut = mechanism.show(position, each, Number(factor.value));
     const degrees = mechanism.degrees(position);
     slider.value = String(Math.round(position));
-    const told = (((Math.round(degrees) % 360) + 360) % 360).toFixed(0);
+    const turned = shown.drawing.turning ? ((Math.round(degrees) % 360) + 360) % 360 : Math.round(degrees);
+    const told = turned.toFixed(0);
     slider.setAttribute("aria-valuetext", `crank at ${told} degrees`);
     part("angle").textContent = `${told}°`;
     const off = each.map(({ look, rows }) => `${look.name} ${short(mechanism.farthest(rows, position))} m`);

@@ -132,7 +132,7 @@ def _cheapest(chosen: Sequence[Recommendation]) -> str:
     if asked is None:
         return ""
     if asked.variant is None:
-        return f"No timed settings reach {error_text(ASKED, 1)} on every scene."
+        return f"For an error of {error_text(ASKED, 1)} on every scene: {asked.reason}."
     return (
         f"Cheapest for an error of {error_text(ASKED, 1)} on every scene: {asked.variant} at "
         f"{asked.steps_per_turn:g} steps a turn, {duration(asked.s_per_turn)} a turn."
