@@ -108,6 +108,8 @@ def test_closed_form_and_newton_agree_over_a_period(name: str) -> None:
     scene = load_scene(name)
     closed, newton = both(scene, swing_times(scene, SAMPLES))
     assert disagreement(scene, closed, newton) <= 1.0
+    if {group.kind for group in analyse(scene).groups} == {"RPP"}:
+        return  # linear in its coordinates: on some processors Newton's step ends on the same bits
     same = [np.array_equal(a, b) for a, b in zip(_numbers(closed), _numbers(newton), strict=True)]
     assert not all(same), "bit for bit the same: is it the same computation?"
 

@@ -62,7 +62,7 @@ def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
     assert code == 0
     tuned, found = line(text, "error of place")
     assert max(float(tuned), float(found)) <= 1e-5
-    assert line(text, "solref_timeconst_steps")[0] == "4"
+    assert line(text, "solref_timeconst_steps")[0] == "5"
     if line(text, "integrator") == ["RK4", "RK4"]:
         assert int(line(text, "steps per turn")[1]) <= int(line(text, "steps per turn")[0])
 
