@@ -85,14 +85,16 @@ crankcheck.chart = (() => {
       const { data, layout: own } = figure();
       Plotly.react(element, data, layout(own), config).then(after);
     };
+    const show = () => loaded.then(() => {
+      seen = true;
+      draw();
+    });
     new IntersectionObserver((entries, observer) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
       observer.disconnect();
-      loaded.then(() => {
-        seen = true;
-        draw();
-      });
+      show();
     }, { rootMargin: "300px" }).observe(element);
+    addEventListener("beforeprint", show);
     crankcheck.onTheme(draw);
     return draw;
   };

@@ -407,3 +407,11 @@ def test_a_page_without_times_and_with_one_scene_works(
     assert not opened.page.locator("#precision-cost").is_visible()
     assert drawn(opened.page, "precision-chart") == {"pymunk tuned": True}
     assert opened.said == []
+
+
+def test_printing_draws_what_was_not_scrolled_to(open_page: Open, small_page: Path) -> None:
+    found = open_page(small_page).page
+    found.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    found.wait_for_function(
+        "() => [...document.querySelectorAll('.chart')].every(each => each.querySelector('svg'))"
+    )
