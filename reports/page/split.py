@@ -34,6 +34,7 @@ UNTOLD_ORDER = 1.0
 the two finest errors hardly differ, and the order hardly matters."""
 LEAST_ORDER = 0.3
 """Below this there is nothing that falls with the step."""
+LEFT = "the logged crank left the reach of the mechanism"
 
 
 @dataclass(frozen=True)
@@ -155,14 +156,16 @@ def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
     if order is None:
         return "the error follows no order of the step"
     name = f"geometric.{body.series}"
-    # A fit stands on the three finest runs of a line at least: these ended well.
+    # Not the finest cells: one that timed out, or is at rounding, is none that the fit stands on.
+    stood_on = line.cells.loc[list(line.fit.used), ["key", "dt_s"]]
     finest = [
         _Logged(float(dt), traces[key][name] / body.scale, traces[key]["time_s"])
-        for key, dt in line.cells[["key", "dt_s"]].iloc[:-4:-1].itertuples(index=False)
+        for key, dt in stood_on.iloc[::-1].itertuples(index=False)
         if name in traces.get(key, {})
-    ]
+    ][:3]
     if len(finest) < 3:
-        return "the logged crank left the reach of the mechanism"
+        left = any(key in traces for key in stood_on["key"])
+        return LEFT if left else "no run that the fit stands on was logged"
     fine = _extrapolated(finest[0], finest[1], order, line.period_s)
     coarse = _extrapolated(finest[1], finest[2], order, line.period_s)
     if fine is None:

@@ -203,6 +203,45 @@ def test_a_run_that_did_not_end_well_is_split_but_not_extrapolated_from(
     assert all((parts.floor is not None) == told for parts in found.cells.values())
 
 
+def test_a_finest_run_that_timed_out_leaves_the_floor_to_the_others() -> None:
+    """The fit names a floor without it, and so do the curves."""
+    rows = [cell("s", "v", n, 1e-3 + 40.0 * (PERIOD_S / n) ** 2, 1.0) for n in STEPS]
+    rows.append(cell("s", "v", 1440, math.nan, 1.0, status="timeout"))
+    (line,) = lines(stored(rows))
+    assert line.fit.kind == "floor"
+
+    def error(phase: Array, dt_s: float) -> Array:
+        return 1e-3 * np.sin(phase) + 40.0 * dt_s**2 * np.cos(2 * phase)
+
+    traces = traces_of(line, error)
+    del traces[str(line.cells["key"].iloc[-1])]
+    found = split(line, of(traces), BODY, LENGTH)
+    assert (found.why, found.seen) == ("", True)
+    assert found.floor == pytest.approx(line.fit.floor, rel=0.05)
+
+
+def test_runs_at_rounding_are_not_extrapolated_from() -> None:
+    """The fit leaves them out; what they would tell is the noise of the finest three."""
+    rows = [cell("s", "v", n, max((45 / n) ** 4 * 1e-7, 5e-12), 1.0) for n in (*STEPS, 1440)]
+    (line,) = lines(stored(rows))
+    assert list(line.fit.used) == [True, True, True, False, False]
+    traces = traces_of(line, lambda phase, dt: 1e-7 * (45 * dt / PERIOD_S) ** 4 * np.cos(phase))
+    for key in line.cells["key"].iloc[-2:]:
+        noise = 5e-12 * np.sign(np.sin(40.0 * np.arange(91)))
+        traces[str(key)] = {**traces[str(key)], "geometric.angle.rocker": noise}
+    found = split(line, of(traces), BODY, LENGTH)
+    third = line.cells["dt_s"].iloc[2]
+    parts = found.cells[str(line.cells["key"].iloc[2])]
+    assert parts.discretisation is not None
+    most = float(np.max(np.abs(parts.discretisation)))
+    assert most == pytest.approx(1e-7 * (45 * third / PERIOD_S) ** 4, rel=1e-3)
+
+
+def test_a_line_whose_logs_are_gone_says_so() -> None:
+    line, _ = second_order(1e-3)
+    assert split(line, of({}), BODY, LENGTH).why == "no run that the fit stands on was logged"
+
+
 def test_sliders_are_over_the_longest_link() -> None:
     line = line_of(lambda dt_s: 40.0 * dt_s**2)
     traces = traces_of(line, lambda phase, dt: 40.0 * dt**2 * np.cos(phase))
