@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from reports.choice.recommend import Recommendation
 from reports.choice.snippets import LANGUAGE
 from reports.choice.table import noise_line, short_target
-from reports.figures.markdown import code, fitted, folded, plain, table
 from reports.figures.marks import label, name_of
 from reports.figures.notes import made, settings_of, study, versions
 from reports.fits.words import short
+from reports.markdown import code, fitted, folded, plain, table
 from reports.page.numbers import count, listed
 from reports.page.report import Report
 from reports.page.sections.verdict import level, verdict

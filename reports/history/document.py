@@ -11,6 +11,7 @@ from reports.history.changes import Change, changes, headlines, steps
 from reports.history.measured import QUANTITIES, Found, Outcome
 from reports.history.overview import overview
 from reports.history.table import compared
+from reports.markdown import plain, table
 
 COLUMNS = (
     "engine",
@@ -51,26 +52,24 @@ def page(outcomes: Sequence[Outcome], footer: str) -> str:
     engine = outcomes[0].one.engine
     heads, rows = overview(outcomes)
     parts = [f"# {engine} {', '.join(outcome.version for outcome in outcomes)}", ""]
-    parts += _markdown([" ".join(head.split()) for head in heads], rows)
+    parts.append(table([" ".join(head.split()) for head in heads], rows))
     for before, after in steps(outcomes):
         parts += ["", f"## {after.version} against {before.version}", ""]
-        parts += [f"- {_plain(line.text)}" for line in headlines(before, after)]
+        parts += [f"- {plain(line.text)}" for line in headlines(before, after)]
     found = _by_cell(outcomes)
     measured = [outcome for outcome in outcomes if outcome.cells]
     for profile in dict.fromkeys(cell.profile for outcome in measured for cell in outcome.cells):
         parts += ["", f"## Profile {profile}, largest errors", ""]
         names = [f"{quantity.name} [{quantity.unit}]" for quantity in QUANTITIES]
-        parts += _markdown(
-            ["scene", "version", *names, "against the version before"],
-            [
-                _row(cell, outcome.version, found)
-                for scene in dict.fromkeys(c.scene for o in measured for c in o.cells)
-                for outcome in measured
-                for cell in outcome.cells
-                if (cell.scene, cell.profile) == (scene, profile)
-            ],
-        )
-    return "\n".join([*parts, "", _plain(footer).replace("\n", "  \n"), ""])
+        rows = [
+            _row(cell, outcome.version, found)
+            for scene in dict.fromkeys(c.scene for o in measured for c in o.cells)
+            for outcome in measured
+            for cell in outcome.cells
+            if (cell.scene, cell.profile) == (scene, profile)
+        ]
+        parts.append(table(["scene", "version", *names, "against the version before"], rows))
+    return "\n".join([*parts, "", "  \n".join(map(plain, footer.splitlines())), ""])
 
 
 Key = tuple[str, str, str]
@@ -120,16 +119,3 @@ def _row(cell: Found, version: str, found: dict[Key, list[Change]]) -> list[str]
     changed = found.get((version, cell.scene, cell.profile), [])
     last = compared(changed).plain if cell.status == "ok" else f"{cell.status}: {cell.reason}"
     return [cell.scene, version, *texts, last]
-
-
-def _markdown(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """A table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return ["| " + " | ".join(_plain(text) for text in line) + " |" for line in lines]
-
-
-def _plain(text: str) -> str:
-    """A text that Markdown shows as it is."""
-    for mark in "\\|*_<>`":
-        text = text.replace(mark, f"\\{mark}")
-    return text

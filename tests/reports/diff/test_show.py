@@ -79,7 +79,7 @@ def test_names_can_not_break_markdown(cell: Make, run: Group) -> None:
     old = run(cell("a|b", "x<b>*y*\n[z](u)", angle=1e-3))
     new = run(cell("a|b", "x<b>*y*\n[z](u)", angle=2e-3))
     (row,) = [line for line in markdown(compare(old, new)).splitlines() if "e-03" in line]
-    assert row.startswith(r"| a\|b | mujoco x\<b>\*y\* \[z\](u) | 720 | angle |")
+    assert row.startswith(r"| a\|b | mujoco x\<b\>\*y\* \[z\](u) | 720 | angle |")
 
 
 def test_names_can_not_break_the_terminal_or_junit(cell: Make, run: Group) -> None:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from reports.figures.markdown import code, folded, plain, table
 from reports.figures.summary import summary
 from reports.store.reader import Stored, read_store
 from tests.reports.choice.made import Row, cell, stored
@@ -106,31 +105,3 @@ def test_what_is_out_of_tolerance_is_named_with_its_rules() -> None:
     inside = summary(made(2))
     assert "### Out of tolerance" not in inside
     assert inside.startswith("## crankcheck: no verdict")
-
-
-def test_names_mean_themselves() -> None:
-    text = plain(NASTY)
-    assert re.sub(r"\\(.)", r"\1", text).replace("\N{WORD JOINER}", "") == NASTY
-    assert "@team" not in text
-    for special in "|`<[*$#":
-        assert not re.search(rf"(?<!\\){re.escape(special)}", text), special
-    assert plain("a\n\n| b") == r"a \| b"
-
-
-def test_a_table_counts_what_it_has_no_room_for() -> None:
-    text = table(("name", "number:"), [("x" * 50, i) for i in range(100)], 2000)
-    assert len(text.encode()) < 2000
-    shown = len(tables(text)[0]) - 2
-    assert text.endswith(f"\n\nand {100 - shown} more")
-    assert shown > 20
-
-
-def test_a_fence_is_longer_than_any_in_the_code() -> None:
-    assert code("a\n````\nb\n", "xml") == "`````xml\na\n````\nb\n`````"
-    assert code("a", "") == "```\na\n```"
-
-
-def test_a_title_to_click_on_is_no_markup() -> None:
-    assert folded("<b> & @team", "x").startswith(
-        "<details><summary>&lt;b&gt; &amp; @\N{WORD JOINER}team</summary>\n\nx\n\n</details>"
-    )

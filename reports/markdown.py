@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 
@@ -19,19 +20,30 @@ def plain(text: object) -> str:
     return SPECIAL.sub(r"\\\1", words).replace("@", f"@{JOINER}")
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence[object]], room: int) -> str:
+def table(
+    heads: Sequence[str],
+    rows: Iterable[Sequence[object]],
+    room: float = math.inf,
+    what: str = "",
+) -> str:
     """A table whose cells mean themselves, in ``room`` bytes; what has none is counted below it.
 
-    A head that ends in a colon is over numbers, and stands on the right.
+    A head that ends in a colon is over numbers, and stands on the right. ``what`` the rows are
+    called where they are counted.
     """
     rules = ["--:" if head.endswith(":") else "---" for head in heads]
     lines = [_row(head.removesuffix(":") for head in heads), _row(rules)]
-    kept, left = fitted((_row(plain(cell) for cell in row) for row in rows), room - 200)
-    more = [f"\nand {left} more"] if left else []
-    return "\n".join([*lines, *kept, *more])
+    body = (_row(plain(cell) for cell in row) for row in rows)
+    return "\n".join([*lines, *counted(body, room - 200, what)])
 
 
-def fitted(texts: Iterable[str], room: int) -> tuple[list[str], int]:
+def counted(texts: Iterable[str], room: float, what: str = "") -> list[str]:
+    """The first of the texts that have ``room`` bytes together, then how many others there are."""
+    kept, left = fitted(texts, room)
+    return [*kept, f"\nand {left} more {what}".rstrip()] if left else kept
+
+
+def fitted(texts: Iterable[str], room: float) -> tuple[list[str], int]:
     """The first of the texts that have ``room`` bytes together, and the number of the others."""
     kept: list[str] = []
     left = 0
