@@ -20,20 +20,30 @@ SHARE = 0.95
 
 
 def pairs(stored: Stored) -> pd.Series[float]:
-    """|a - b| / min(a, b) of the A/A pair of every timed cell: nothing differs but the moment."""
+    """How far apart the A/A pair of every timed cell is: two timings of one run in one sweep."""
     cells = comparable(stored.cells)
     a, b = cells["us_per_step_a"], cells["us_per_step_b"]
     both = a.notna() & b.notna()
-    return (a[both] - b[both]).abs() / np.minimum(a[both], b[both])
+    return pd.Series([apart(*pair) for pair in zip(a[both], b[both], strict=True)], dtype=float)
 
 
 def noise(stored: Stored) -> float:
     """The relative difference up to which two costs are called equal; NaN where nothing was timed.
 
-    95 of 100 pairs of repeats of the same thing differ by less.
+    95 of 100 pairs of timings of the same thing differ by less.
     """
-    found = pairs(stored)
-    return float(found.quantile(SHARE)) if len(found) else math.nan
+    return noise_of(pairs(stored))
+
+
+def apart(a: float, b: float) -> float:
+    """The relative difference of two costs: |a - b| / min(a, b)."""
+    return abs(a - b) / min(a, b)
+
+
+def noise_of(differences: Iterable[float]) -> float:
+    """The difference that 95 of 100 stay below; NaN of none."""
+    found = list(differences)
+    return float(np.quantile(found, SHARE)) if found else math.nan
 
 
 def equal(a: float, b: float, within: float) -> bool:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Sequence
 from dataclasses import dataclass
 
+from reports.choice.cost import equal, noise_of
 from reports.diff.changes import Diff
 from reports.diff.runs import counted, few
 
 LEAST_NOISE = 0.1
-"""Two sweeps are further apart than two repeats within one: another machine of the same kind, or
-one that does something else beside. Up to this, costs are equal however near the repeats were."""
-SHARE = 0.95
-"""The part of the repeats that lie within the noise."""
+"""Two sweeps are further apart than two timings within one: another machine of the same kind, or
+one that does something else beside. Up to this, costs are equal however near those were."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +24,12 @@ class CostChange:
     cells: int
 
     def equal(self, noise: float) -> bool:
-        return 1.0 / (1.0 + noise) <= self.ratio <= 1.0 + noise
+        return equal(self.ratio, 1.0, noise)
 
 
 def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
     """The change of every engine and variant whose cells were timed on the same processor, and
-    the relative difference up to which costs are equal, from pairs of repeats of one cell."""
+    the relative difference up to which costs are equal, from the pairs of timings of each cell."""
     ratios: dict[tuple[str, str], list[float]] = {}
     noises: list[float] = []
     for pair in diff.pairs:
@@ -41,7 +39,7 @@ def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
             ratios.setdefault(key, []).append(now.us_per_step / was.us_per_step)
             noises += [was.noise, now.noise]
     found = [CostChange(*key, statistics.median(each), len(each)) for key, each in ratios.items()]
-    return found, _noise(noises)
+    return found, max([LEAST_NOISE, *([noise_of(noises)] if noises else [])])
 
 
 def cost_text(diff: Diff) -> str:
@@ -59,10 +57,3 @@ def cost_text(diff: Diff) -> str:
         return f"time of a step, as advice: equal {rest}"
     others = f"; the others equal {rest}" if len(told) < len(found) else ""
     return f"time of a step, new over old, as advice: {few(told, 6)}{others}"
-
-
-def _noise(found: Sequence[float]) -> float:
-    """The difference that all but a few of the repeats stay below."""
-    ordered = sorted(found)
-    share = ordered[int(SHARE * (len(ordered) - 1))] if ordered else 0.0
-    return max(share, LEAST_NOISE)

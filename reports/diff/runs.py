@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from reports.cell import Cell, Checked
+from reports.choice.cost import apart
 from reports.rows import cell_row
 from reports.tolerance import DEFAULTS
 
@@ -43,7 +44,7 @@ class Name:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a step took [microseconds], by how much two measurements of it differed (relative),
+    """What a step took [microseconds], how far apart two timings of it were (relative),
     and where it was measured."""
 
     us_per_step: float
@@ -177,7 +178,7 @@ def _cost(row: Row) -> Cost | None:
     least, a, b = (number(row.get(f"us_per_step{part}")) for part in ("", "_a", "_b"))
     if not (least and a and b):
         return None
-    return Cost(least, abs(a - b) / min(a, b), text(row.get("processor")))
+    return Cost(least, apart(a, b), text(row.get("processor")))
 
 
 def same(value: float) -> float:

@@ -56,7 +56,7 @@ RULES = (
     (
         "Time is advice",
         "The least of the repeats is shown. Times are compared within one processor only, and "
-        "called equal where they differ by less than the same run timed twice.",
+        "called equal where they differ by less than two timings of one run.",
     ),
     (
         "Nothing left out",
