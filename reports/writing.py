@@ -98,7 +98,10 @@ def write(path: Path, content: bytes | str) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")
         try:
-            aside.write_bytes(raw)
+            with aside.open("wb") as file:
+                file.write(raw)
+                file.flush()
+                os.fsync(file.fileno())  # a name that stands for nothing is all that a crash leaves
             aside.replace(path)
         finally:
             with contextlib.suppress(OSError):

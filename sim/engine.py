@@ -141,6 +141,10 @@ class Engine(Protocol):
         """The installed version; EngineError with the command that installs it if it is missing."""
         ...
 
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """Raise SettingError for a value, of a complete set of settings, that it does not take."""
+        ...
+
     def open(
         self,
         scene: Scene,

@@ -34,7 +34,14 @@ from sim.engine import (
     Profile,
     SettingValue,
 )
-from sim.mujoco_settings import AS_SHIPPED, INTEGRATORS, TUNED, velocity_shift, writing
+from sim.mujoco_settings import (
+    AS_SHIPPED,
+    INTEGRATORS,
+    TUNED,
+    checked,
+    velocity_shift,
+    writing,
+)
 from sim.settings import SettingError
 
 Array = NDArray[np.float64]
@@ -55,6 +62,10 @@ class MujocoEngine:
     def version(self) -> str:
         """The version of the C library."""
         return str(mujoco.mj_versionString())
+
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """Raise SettingError for a value that MuJoCo does not take."""
+        checked(settings)
 
     def open(
         self,

@@ -99,12 +99,17 @@ TUNED = Profile(
 )
 
 
+def checked(settings: Mapping[str, SettingValue]) -> None:
+    """Refuse values that MuJoCo does not take. Raises SettingError."""
+    check_choices(settings, CHOICES)
+    check_ranges(settings, RANGES)
+
+
 def writing(
     scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
 ) -> mjcf_options.Writing:
     """The choices of the MJCF text that the settings amount to."""
-    check_choices(settings, CHOICES)
-    check_ranges(settings, RANGES)
+    checked(settings)
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
     servo = None
     if drive == "servo":

@@ -45,6 +45,10 @@ class PymunkEngine:
         """The version of pymunk."""
         return str(pymunk.version)
 
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """Raise SettingError for a value that Chipmunk does not take."""
+        checked(settings)
+
     def open(
         self,
         scene: Scene,

@@ -53,6 +53,9 @@ class FakeEngine:
     def version(self) -> str:
         return "1.0"
 
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """It takes everything."""
+
     def open(
         self,
         scene: Scene,

@@ -43,6 +43,9 @@ def sweep(
     keep_trajectories: Annotated[
         bool, typer.Option("--keep-trajectories", help="Keep the whole motion of every cell.")
     ] = False,
+    again: Annotated[
+        bool, typer.Option("--again", help="Run cells again that timed out or crashed.")
+    ] = False,
 ) -> None:
     """Run a grid of scenes, engines, settings and steps; keep and time every cell."""
     with guarded():
@@ -63,6 +66,7 @@ def sweep(
             dask=dask,
             timing=timing,
             keep_trajectories=keep_trajectories,
+            again=again,
         )
         code = command.sweep(request, terminal(), terminal(stderr=True))
     raise typer.Exit(code)

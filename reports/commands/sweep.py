@@ -24,6 +24,8 @@ from reports.sweep.parallel import backend
 from reports.sweep.running import Done, Running
 from reports.sweep.study import Study, Value, Variant, load_study
 
+MOST_S, MOST_GB = 1e6, 1e4
+
 
 @dataclass(frozen=True)
 class Request:
@@ -43,6 +45,7 @@ class Request:
     dask: str | None = None
     timing: bool = True
     keep_trajectories: bool = False
+    again: bool = False
 
 
 def sweep(request: Request, console: Console, progress: Console) -> int:
@@ -65,10 +68,12 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "study": study.model_dump(exclude_defaults=True),
         "provenance": facts,
+        # What the cells are called in this run, which may not be what they were called before.
+        "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
     }
     with Writer(request.folder, Manifest(laid.texts, (run,))) as writer:
         running = Running(writer, laid.tasks, limits, facts, progress)
-        done = running.errors(request.keep_trajectories, where)
+        done = running.errors(request.keep_trajectories, where, request.again)
         if request.timing:
             done = running.timings(done)
     _summary(console, request.folder, laid, done)
@@ -139,10 +144,13 @@ def _steps(text: str | None) -> list[float]:
 
 
 def _limits(request: Request) -> Limits:
-    if not (request.limit_s > 0.0 and request.memory_gb > 0.0):
-        raise CrankcheckError(
-            f"--limit-s {request.limit_s:g} --memory-gb {request.memory_gb:g}: both are above 0"
-        )
+    """What a cell may take. Raises CrankcheckError for numbers that are no limits."""
+    for option, value, most, unit in (
+        ("--limit-s", request.limit_s, MOST_S, "seconds"),
+        ("--memory-gb", request.memory_gb, MOST_GB, "GB"),
+    ):
+        if not 0.0 < value <= most:
+            raise CrankcheckError(f"{option} {value:g}: give a number above 0 to {most:g} {unit}")
     return Limits(request.limit_s, request.memory_gb)
 
 
@@ -150,7 +158,7 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
     """What was run now, what there is, and what to do with it."""
     number = len(laid.tasks)
     console.print(
-        f"{number} cells: {done.ran} run now, {number - done.ran} were there; "
+        f"{number} cell{'s' * (number != 1)}: {done.ran} run now, {number - done.ran} were there; "
         f"{done.timed} timed now"
     )
     for status, reasons in sorted(done.failed.items()):

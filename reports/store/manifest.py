@@ -57,4 +57,6 @@ def read_manifest(folder: Path) -> Manifest:
         raise CrankcheckError(
             f"{path}: format {found}; this version of crankcheck reads format {FORMAT}"
         )
+    if not (isinstance(raw.get("scenes"), dict) and isinstance(raw.get("runs"), list)):
+        raise CrankcheckError(f"{path}: has no scenes or no runs; is it cut short?")
     return Manifest(raw["scenes"], tuple(raw["runs"]))

@@ -75,14 +75,48 @@ def read_store(folder: Path) -> Stored:
     timings = _frame(folder, "timings")
     if timings.empty:
         timings = pd.DataFrame({"key": pd.Series(dtype="str"), "us_per_step": []})
-    joined = cells.merge(timings, on="key", how="left", validate="one_to_one")
+    joined = _named(cells, manifest).merge(timings, on="key", how="left", validate="one_to_one")
     return Stored(folder, manifest, joined, timings)
+
+
+def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
+    """The cells under the names of the last run that asked for them, those of later runs later."""
+    names: dict[str, tuple[int, str, str, bool]] = {}
+    for index, run in enumerate(manifest.runs):
+        lines = run.get("lines")
+        for line, name in lines.items() if isinstance(lines, Mapping) else ():
+            names[line] = (index, *name)
+    known = cells["line"].isin(list(names))
+    for at, column in enumerate(("variant", "profile", "gated"), 1):
+        found = [names[line][at] for line in cells.loc[known, "line"]]
+        cells.loc[known, column] = pd.Series(
+            found, index=cells.index[known], dtype=cells[column].dtype
+        )
+    asked = [names[line][0] if line in names else -1 for line in cells["line"]]
+    return cells.iloc[np.argsort(asked, kind="stable")].reset_index(drop=True)
 
 
 def stored_keys(folder: Path, name: str) -> set[str]:
     """The keys that a table holds already."""
     found = _parts(folder, name, ["key"])
     return set() if found is None else set(found.column("key").to_pylist())
+
+
+@dataclass(frozen=True)
+class Ending:
+    """A cell that was ended: the limits of time [s] and memory [GB] that it had."""
+
+    limit_s: float
+    memory_gb: float
+
+
+def stored_endings(folder: Path) -> dict[str, Ending]:
+    """The cells that timed out or crashed, by key."""
+    found = _parts(folder, "cells", ["key", "status", "limit_s", "memory_gb"])
+    if found is None:
+        return {}
+    rows = zip(*(found.column(name).to_pylist() for name in found.column_names), strict=True)
+    return {k: Ending(t, m) for k, status, t, m in rows if status in ("timeout", "crashed")}
 
 
 def stored_costs(folder: Path) -> dict[str, float]:
@@ -107,7 +141,8 @@ def _parts(folder: Path, name: str, columns: list[str] | None = None) -> pa.Tabl
             found.append(pq.read_table(path, columns=columns))
         except (OSError, pa.ArrowInvalid) as error:
             raise CrankcheckError(
-                f"{path}: can not be read ({error}); delete this file and run the sweep again: "
-                "only its cells are then missing"
+                f"{path}: can not be read ({error}); delete all files of this name "
+                f"({folder}/*/{path.name}) and run the sweep again: only their cells are then "
+                "missing"
             ) from None
     return pa.concat_tables(found, promote_options="default") if found else None

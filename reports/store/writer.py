@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -94,6 +94,19 @@ class Writer:
         for name, gap in gaps.items():
             frame[f"{name}_gap_m"] = gap
         write(self.folder / "trajectories" / f"{key}.parquet", _parquet(frame))
+
+    def forget(self, keys: Collection[str]) -> None:
+        """Take cells out of the store, part by part, each of which is whole at every moment.
+
+        Only cells that were ended before they had errors or a trace may be forgotten.
+        """
+        for path in sorted((self.folder / "cells").glob("part-*.parquet")) if keys else ():
+            content = pq.read_table(path)
+            kept = content.filter([key not in keys for key in content.column("key").to_pylist()])
+            if kept.num_rows == 0:
+                path.unlink()
+            elif kept.num_rows < content.num_rows:
+                write(path, _table_bytes(kept))
 
     def flush(self) -> None:
         """Write what waits, the cells last: they are what says that a part is whole."""

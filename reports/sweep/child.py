@@ -95,7 +95,3 @@ def receive(stream: IO[bytes]) -> bytes:
     size = int.from_bytes(head, "little")
     raw = stream.read(size)
     return raw if len(raw) == size else b""
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from models.errors import CrankcheckError
 from models.files import find_scene, parse_scene, read_text, shipped
 from reports.cell import Cell
 from reports.commands.names import chosen_engines, chosen_scenes
@@ -61,6 +62,7 @@ def grid(study: Study) -> Grid:
         name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
     }
     complete = [(v, _complete(v)) for v in variants]
+    _refuse_twins(complete)
     tasks: dict[str, Task] = {}
     for scene in scenes:
         name = digest(texts[scene.name])
@@ -80,15 +82,41 @@ def grid(study: Study) -> Grid:
                     settings=variant.chosen,
                 )
                 version = versions[variant.engine]
-                line = line_key(cell, name, version, settings)
+                line = line_key(cell, study.turns, name, version, settings)
                 key = cell_key(line, cell)
                 tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
     return Grid(tuple(tasks.values()), texts)
 
 
 def _complete(variant: Variant) -> dict[str, SettingValue]:
-    """All settings of a variant. Raises CrankcheckError for one that the engine lacks."""
-    return resolved(profile_of(engine(variant.engine), variant.profile), variant.chosen)
+    """All settings of a variant.
+
+    Raises
+    ------
+    CrankcheckError
+        A setting that the engine lacks, a value that it does not take, or a name that readers would
+        take for another profile.
+    """
+    chosen = engine(variant.engine)
+    settings = resolved(profile_of(chosen, variant.profile), variant.chosen)
+    chosen.check(settings)
+    if variant.name in chosen.profiles and (variant.name != variant.profile or variant.chosen):
+        raise CrankcheckError(
+            f"variant {variant.name!r} of {variant.engine}: that is the name of a profile, and "
+            "these are other settings; give it another name"
+        )
+    return settings
+
+
+def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]) -> None:
+    """Refuse two variants of an engine that share a name and differ in settings."""
+    seen: dict[tuple[str, str], Mapping[str, SettingValue]] = {}
+    for variant, settings in complete:
+        if seen.setdefault((variant.engine, variant.name), settings) != settings:
+            raise CrankcheckError(
+                f"variant {variant.name!r}: two of {variant.engine} have that name, and other "
+                "settings; give each a name of its own"
+            )
 
 
 def _texts(names: Sequence[str]) -> dict[str, str]:

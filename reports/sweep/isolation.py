@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import IO, Generic, TypeVar, cast
 
@@ -17,11 +17,17 @@ from reports.sweep.child import receive, send
 Result = TypeVar("Result")
 LIMIT_S = 60.0
 MEMORY_GB = 2.0
+START_S = 60.0
+"""How long a child may take to import what it needs."""
+START = (
+    "import sys; sys.path[:] = sys.argv[2:]; from reports.sweep.child import main; "
+    "main(int(sys.argv[1]))"
+)
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a cell may take: wall time [s] and memory beyond the imported packages [GB]."""
+    """What a cell may take: wall time [s] and memory [GB] beyond that of a child at its start."""
 
     time_s: float = LIMIT_S
     memory_gb: float = MEMORY_GB
@@ -62,27 +68,19 @@ class Isolated(Generic[Result]):
         if self.closed:
             return Lost("crashed", "the sweep was ended")
         child = self._child or self._started()
+        if self.closed:  # while it started
+            return Lost("crashed", "the sweep was ended")
         jobs, answers = _pipes(child)
-        late = threading.Event()
-
-        def end() -> None:
-            late.set()
-            child.kill()
-
-        clock = threading.Timer(self.limits.time_s, end)
-        clock.daemon = True
-        clock.start()
-        try:
-            send(jobs, (function, arguments))
-            raw = receive(answers)
-        except OSError:
-            raw = b""
-        finally:
-            clock.cancel()
+        with _watched(child, self.limits.time_s) as late:
+            try:
+                send(jobs, (function, arguments))
+                raw = receive(answers)
+            except OSError:
+                raw = b""
         if not raw:
             return self._lost(child, late.is_set())
         how, value, worn = pickle.loads(raw)
-        if worn:
+        if worn or late.is_set():  # an answer in the last moment stands; the child is gone
             self._end(child)
         return cast(Result, value) if how == "done" else Lost(how, str(value))
 
@@ -98,17 +96,21 @@ class Isolated(Generic[Result]):
     def _started(self) -> subprocess.Popen[bytes]:
         """A new child, in a session of its own: Ctrl-C at the terminal is not for it."""
         child = self._child = subprocess.Popen(
-            [sys.executable, "-m", "reports.sweep.child", str(int(1e9 * self.limits.memory_gb))],
+            # The packages of this process, whatever stands in the folder that it works in.
+            [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
-        receive(_pipes(child)[1])  # it is ready, or has ended: the first job will tell
+        with _watched(child, START_S):
+            receive(_pipes(child)[1])  # it is ready, or has ended: the first job will tell
         return child
 
     def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:
         """Why a child gave no answer."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(1.0)  # it is about to end by itself, which tells more than being killed
         code = self._end(child)
         if late:
             return Lost("timeout", f"no end within {self.limits.time_s:g} s")
@@ -123,6 +125,25 @@ class Isolated(Generic[Result]):
             with contextlib.suppress(OSError):
                 pipe.close()
         return code
+
+
+@contextlib.contextmanager
+def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threading.Event]:
+    """Kill the child when the block takes longer; the event says whether that happened."""
+    late = threading.Event()
+
+    def end() -> None:
+        late.set()
+        child.kill()
+
+    clock = threading.Timer(limit_s, end)
+    clock.daemon = True
+    clock.start()
+    try:
+        yield late
+    finally:
+        clock.cancel()
+        clock.join()  # it may be at it: the next job must not be what it kills
 
 
 def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:

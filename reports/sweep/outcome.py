@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,13 +11,14 @@ import numpy as np
 from analytic.kinematics import solve
 from models.motion import Motion
 from reports.cell import Cell, examined
+from reports.provenance import crankcheck_version
 from reports.rows import cell_row, error_rows
 from reports.series import Array
 from reports.store.trace import trace
 from sim.run import time_run
 
-REPEATS = 6
-"""Timed repeats of a cell: every second one belongs to A, the others to B."""
+REPEATS = 3
+"""Timed repeats of a cell in one pass."""
 REPEAT_S = 0.02
 """About how long a repeat lasts: long over the clock's resolution, short enough for hundreds."""
 UNMEASURED: Mapping[str, object] = {"logged_us_per_step": None, "wall_s": None}
@@ -28,11 +29,12 @@ LEAST_TIMED, MOST_TIMED = 200, 50_000
 @dataclass(frozen=True)
 class Outcome:
     """A cell that was run: its row, the rows of its errors, its last turn, and the whole motion
-    where that was asked for."""
+    where that was asked for. ``crankcheck`` is the version that ran it."""
 
     row: Mapping[str, object]
     errors: tuple[Mapping[str, object], ...] = ()
     trace: Mapping[str, Array] = field(default_factory=dict)
+    crankcheck: str = ""
     motion: Motion | None = None
     gaps: Mapping[str, Array] = field(default_factory=dict)
 
@@ -51,17 +53,16 @@ def measured(cell: Cell, keep_motion: bool) -> Outcome:
         row=row,
         errors=tuple(error_rows(checked)),
         trace=trace(cell.scene, run) if run and checked.errors else {},
+        crankcheck=crankcheck_version(),
         motion=motion if keep_motion else None,
         gaps=run.gaps if run and keep_motion else {},
     )
 
 
-def timed(cell: Cell, us_per_step: float) -> dict[str, object]:
-    """Time the stepping of a cell without logging.
+def timed(cell: Cell, us_per_step: float) -> tuple[float, ...]:
+    """What a step of a cell costs without logging, in several repeats [microseconds].
 
-    ``us_per_step`` is a first guess [microseconds], which sets how many steps a repeat has. Half
-    of the repeats, alternately, are A and B of the same thing: how far their minima lie apart is
-    the noise of the measurement.
+    ``us_per_step`` is a first guess, which sets how many steps a repeat has.
     """
     steps = int(np.clip(1e6 * REPEAT_S / max(us_per_step, 0.1), LEAST_TIMED, MOST_TIMED))
     state = solve(cell.scene, np.zeros(1)).state()
@@ -76,13 +77,19 @@ def timed(cell: Cell, us_per_step: float) -> dict[str, object]:
         drive=cell.drive,
         settings=cell.settings,
     )
-    each = [1e6 * wall / steps for wall in found.walls_s]
+    return tuple(1e6 * wall / steps for wall in found.walls_s)
+
+
+def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:
+    """The columns of a timing, from two passes A and B over the same cells, some time apart.
+
+    How far their minima lie apart is the noise of comparing cells with each other.
+    """
     return {
-        "us_per_step": min(each),
-        "us_per_step_median": statistics.median(each),
-        "us_per_step_a": min(each[0::2]),
-        "us_per_step_b": min(each[1::2]),
-        "s_per_turn": 1e-6 * min(each) * cell.steps_per_turn,
-        "timed_steps": float(steps),
-        "repeats": float(REPEATS),
+        "us_per_step": min(*a, *b),
+        "us_per_step_median": statistics.median([*a, *b]),
+        "us_per_step_a": min(a),
+        "us_per_step_b": min(b),
+        "s_per_turn": 1e-6 * min(*a, *b) * cell.steps_per_turn,
+        "repeats": float(len(a) + len(b)),
     }

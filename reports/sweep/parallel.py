@@ -41,6 +41,10 @@ def run_all(
         for isolated in _all:
             isolated.close()
         _all.clear()
+        if where["backend"] == "dask":
+            from distributed import default_client
+
+            default_client().close()  # type: ignore[no-untyped-call]  # not annotated
 
 
 def backend(jobs: int, dask: str | None) -> Backend:
@@ -75,7 +79,9 @@ def backend(jobs: int, dask: str | None) -> Backend:
 def _one(index: int, task: Task, limits: Limits, keep_motion: bool) -> Found:
     """One cell in the child process of this thread."""
     isolated = cast("Isolated[Outcome] | None", getattr(_own, "isolated", None))
-    if isolated is None or isolated.closed or isolated.limits != limits:
+    if isolated is not None and isolated.limits != limits:
+        isolated.close()
+    if isolated is None or isolated.closed:
         isolated = _own.isolated = Isolated(limits)
         _all.append(isolated)
     return index, isolated.call(measured, task.cell, keep_motion)

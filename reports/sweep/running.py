@@ -12,13 +12,17 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from reports.cell import unfinished
 from reports.rows import cell_row
-from reports.store.reader import stored_costs, stored_keys
+from reports.store.reader import Ending, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.grid import Task
 from reports.sweep.isolation import Isolated, Limits, Lost
-from reports.sweep.outcome import UNMEASURED, Outcome, timed
+from reports.sweep.outcome import UNMEASURED, Outcome, timed, timing_row
 from reports.sweep.parallel import Backend, run_all
 from reports.sweep.progress import progress_bar
+
+BLOCK = 150
+"""Cells between the two passes of timing, which is about a quarter of a minute; it is also what is
+lost of the timings when a sweep is ended."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +44,11 @@ class Running:
     facts: Mapping[str, str]
     progress: Console
 
-    def errors(self, keep_motion: bool, where: Backend) -> Done:
-        """Run every cell that the store has not."""
+    def errors(self, keep_motion: bool, where: Backend, again: bool = False) -> Done:
+        """Run every cell that the store has not, and those that a limit ended which is wider now;
+        with ``again`` all that timed out or crashed."""
+        ended = stored_endings(self.writer.folder)
+        self.writer.forget({key for key, end in ended.items() if again or self._was_tighter(end)})
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
         failed: dict[str, Counter[str]] = {}
@@ -63,22 +70,43 @@ class Running:
         there = stored_keys(self.writer.folder, "timings")
         guesses = stored_costs(self.writer.folder)
         missing = [t for t in self.tasks if t.key in guesses and t.key not in there]
-        isolated: Isolated[dict[str, object]] = Isolated(self.limits)
+        isolated: Isolated[tuple[float, ...]] = Isolated(self.limits)
+        count = 0
         try:
-            with progress_bar(self.progress, "timings", len(missing)) as advance:
-                for task in missing:
-                    found = isolated.call(timed, task.cell, guesses[task.key])
-                    if not isinstance(found, Lost):
-                        where = {"processor": self.facts["processor"], "made": self.facts["made"]}
-                        self.writer.timing({"key": task.key, **found, **where})
-                    advance()
+            with progress_bar(self.progress, "timings", 2 * len(missing)) as advance:
+                for at in range(0, len(missing), BLOCK):
+                    block = missing[at : at + BLOCK]
+                    passes: list[list[tuple[float, ...] | Lost]] = []
+                    for _ in ("A", "B"):
+                        passes.append([])
+                        for task in block:
+                            passes[-1].append(isolated.call(timed, task.cell, guesses[task.key]))
+                            advance()
+                    count += self._keep_timings(block, *passes)
         finally:
             isolated.close()
+        return replace(done, timed=count)
+
+    def _keep_timings(
+        self,
+        block: Sequence[Task],
+        a: Sequence[tuple[float, ...] | Lost],
+        b: Sequence[tuple[float, ...] | Lost],
+    ) -> int:
+        """Add the timings of two passes over the same cells; how many were not lost."""
+        where = {"processor": self.facts["processor"], "made": self.facts["made"]}
+        count = 0
+        for task, first, second in zip(block, a, b, strict=True):
+            if not isinstance(first, Lost) and not isinstance(second, Lost):
+                row = timing_row(task.cell, first, second)
+                self.writer.timing({"key": task.key, **row, **where})
+                count += 1
         self.writer.flush()
-        return replace(done, timed=len(missing))
+        return count
 
     def _keep(self, task: Task, outcome: Outcome, run_on: str) -> None:
         """Add a cell to the store, with the names that it has in the study."""
+        self._refuse_other_versions(task, outcome)
         names = {
             "key": task.key,
             "line": task.line,
@@ -87,17 +115,41 @@ class Running:
             "asked": task.settings,
             "crankcheck": self.facts["crankcheck"],
             "run_on": run_on,
+            "limit_s": self.limits.time_s,
+            "memory_gb": self.limits.memory_gb,
         }
         if outcome.motion is not None:
             self.writer.trajectory(task.key, outcome.motion, outcome.gaps)
-        found = outcome.row["version"]
-        if found and found != task.version:
-            raise CrankcheckError(
-                f"a worker has {task.cell.engine} {found}, here it is {task.version}; install the "
-                "same version there"
-            )
         row = {**names, **outcome.row, "version": task.version}
         self.writer.cell(row, outcome.errors, outcome.trace)
+
+    def _was_tighter(self, end: Ending) -> bool:
+        """Whether a cell that was ended would have more time or memory now."""
+        return end.limit_s < self.limits.time_s or end.memory_gb < self.limits.memory_gb
+
+    def _refuse_other_versions(self, task: Task, outcome: Outcome) -> None:
+        """A worker elsewhere may have other packages than the key of the cell says.
+
+        Raises
+        ------
+        CrankcheckError
+            An engine, or crankcheck itself, of another version there, or not installed.
+        """
+        engine, row = task.cell.engine, outcome.row
+        for name, found, here in (
+            (engine, str(row["version"] or ""), task.version),
+            ("crankcheck", outcome.crankcheck, self.facts["crankcheck"]),
+        ):
+            if found and found != here:
+                raise CrankcheckError(
+                    f"a worker has {name} {found}, here it is {here}; install the same there"
+                )
+        if row["status"] == "unsupported" and f"engine {engine}: not installed" in str(
+            row["reason"]
+        ):
+            raise CrankcheckError(
+                f"a worker has no {engine}; install {engine}=={task.version} there"
+            )
 
 
 def _lost(task: Task, lost: Lost) -> Outcome:

@@ -23,14 +23,14 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, ValidationError
 
 from models.errors import CrankcheckError
 from models.files import read_text
 from sim.engine import SettingValue
 
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"
-Value = float | int | str
+Value = StrictInt | StrictFloat | str
 Name = Annotated[str, Field(min_length=1, max_length=80)]
 
 
@@ -41,9 +41,11 @@ class Variant(BaseModel):
 
     engine: Name
     profile: Name
-    name: str = Field(default="", max_length=80)
+    name: str = Field(default="", max_length=80, pattern=r"^[^\x00-\x1f\x7f]*$")
     reason: str = ""
-    settings: dict[str, Value | list[Value]] = Field(default_factory=dict)
+    settings: dict[str, Value | Annotated[list[Value], Field(min_length=1)]] = Field(
+        default_factory=dict
+    )
 
     def each(self) -> list[Variant]:
         """One variant per combination of the listed values, named after them."""

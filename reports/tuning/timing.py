@@ -30,21 +30,20 @@ class Taken:
 def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken] | None:
     """Time each attempt at its step; the least time of all rounds counts. None where one is lost.
 
-    The A/A noise is that of the least times of odd and even repeats over all rounds and scenes.
+    The A/A noise is that of the least times of odd and even rounds over all scenes.
     """
-    isolated: Isolated[dict[str, object]] = Isolated(limits)
+    isolated: Isolated[tuple[float, ...]] = Isolated(limits)
     cells = [
         [goal.cell(scene, one.settings, one.tried) for scene in goal.scenes] for one in attempts
     ]
     least = {(i, j): [float("inf")] * 2 for i, row in enumerate(cells) for j in range(len(row))}
     try:
-        for _ in range(ROUNDS):
+        for turn in range(ROUNDS):
             for (i, j), halves in least.items():
                 found = isolated.call(timed, cells[i][j], GUESS_US)
                 if isinstance(found, Lost):
                     return None
-                for half, name in enumerate(("us_per_step_a", "us_per_step_b")):
-                    halves[half] = min(halves[half], float(str(found[name])))
+                halves[turn % 2] = min(halves[turn % 2], *found)
     finally:
         isolated.close()
     return [

@@ -37,6 +37,35 @@ def filled(folder: Path, outcome: Outcome, *keys: str) -> None:
             writer.cell({**names(key), **outcome.row}, outcome.errors, outcome.trace)
 
 
+LIMITS = {"limit_s": 60.0, "memory_gb": 2.0}
+
+
+def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: Outcome) -> None:
+    folder = tmp_path / "s"
+    with Writer(folder, Manifest({}, ({"lines": {"l1": ["old", "tuned", False]}},))) as writer:
+        for key, line in (("k1", "l1"), ("k2", "l2")):
+            row = {**names(key), "line": line, "variant": "old", **outcome.row}
+            writer.cell(row, outcome.errors, {})
+    with Writer(folder, Manifest({}, ({"lines": {"l2": ["mid", "tuned", False]}},))):
+        pass
+    with Writer(folder, Manifest({}, ({"lines": {"l1": ["new", "as-shipped", True]}},))):
+        pass
+    cells = read_store(folder).cells
+    assert list(cells.key) == ["k2", "k1"]  # what was asked for last stands last
+    assert list(cells.variant) == ["mid", "new"]
+    assert list(cells.profile) == ["tuned", "as-shipped"]
+    assert list(cells.gated) == [False, True]
+
+
+def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: Outcome) -> None:
+    folder = tmp_path / "s"
+    filled(folder, outcome, "k1", "k2")
+    filled(folder, outcome, "k3")
+    with Writer(folder, Manifest()) as writer:
+        writer.forget({"k1", "k3", "k9"})
+    assert list(read_store(folder).cells.key) == ["k2"]
+
+
 def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None:
     filled(tmp_path / "s", outcome, "k1", "k2")
     found = read_store(tmp_path / "s")
@@ -128,7 +157,7 @@ def test_a_damaged_part_is_named_with_what_to_do(tmp_path: Path, outcome: Outcom
     filled(tmp_path / "s", outcome, "k1")
     (path,) = (tmp_path / "s" / "cells").glob("*.parquet")
     path.write_bytes(path.read_bytes()[:100])
-    with pytest.raises(CrankcheckError, match="delete this file and run the sweep again"):
+    with pytest.raises(CrankcheckError, match=r"delete all files of this name .* and run the sweep again"):
         read_store(tmp_path / "s")
 
 

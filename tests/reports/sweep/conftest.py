@@ -29,6 +29,8 @@ class BadEngine(MujocoEngine):
         fault = settings["fault"]
         if fault == "abort":
             os.abort()
+        elif fault == "slow":
+            time.sleep(5)
         elif fault == "hang":
             time.sleep(1000)
         elif fault == "fill":
@@ -50,12 +52,15 @@ Started = Callable[..., "subprocess.Popen[str]"]
 def start() -> Started:
     """Starts `crankcheck` with arguments; its output is to be read from the process."""
 
-    def begin(*arguments: object, more: Mapping[str, str] | None = None) -> subprocess.Popen[str]:
+    def begin(
+        *arguments: object, more: Mapping[str, str] | None = None, cwd: Path | None = None
+    ) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [COMMAND, *map(str, arguments)],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
+            cwd=cwd,
             env={**os.environ, **(more or {})},
         )
 

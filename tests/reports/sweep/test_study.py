@@ -158,6 +158,58 @@ def test_a_study_file_that_is_not_there(tmp_path: Path) -> None:
         load_study(tmp_path / "none.toml")
 
 
+def test_turns_that_the_steps_do_not_divide_leave_one_line() -> None:
+    study = Study(
+        scenes=["fourbar-lecture-1"],
+        variants=[Variant(engine="pymunk", profile="tuned")],
+        steps_per_turn=[90.0, 185.0, 365.0],
+        turns=1.23,
+    )
+    tasks = grid(study).tasks
+    assert len({task.cell.turns for task in tasks}) == 3
+    assert len({task.line for task in tasks}) == 1
+    longer = grid(study.model_copy(update={"turns": 1.24})).tasks
+    assert {task.line for task in longer} != {task.line for task in tasks}
+
+
+@pytest.mark.parametrize(
+    ("variants", "words"),
+    [
+        ([("x", "tuned", {}), ("x", "as-shipped", {})], "two of pymunk have that name"),
+        ([("tuned", "as-shipped", {})], "that is the name of a profile"),
+        ([("as-shipped", "as-shipped", {"iterations": 9})], "that is the name of a profile"),
+        ([("x", "tuned", {"iterations": -1})], "it takes 1 to 1e"),
+        ([("x", "tuned", {"lines": "loose"})], "use groove or exact"),
+    ],
+)
+def test_variants_that_would_mislead_are_refused(
+    variants: list[tuple[str, str, dict[str, int | float | str]]], words: str
+) -> None:
+    study = Study(
+        scenes=["fourbar-lecture-1"],
+        variants=[
+            Variant(engine="pymunk", name=name, profile=profile, settings=dict(settings))
+            for name, profile, settings in variants
+        ],
+        steps_per_turn=[90.0],
+    )
+    with pytest.raises(CrankcheckError, match=words):
+        grid(study)
+
+
+@pytest.mark.parametrize("values", ["[]", "true", "[1, false]"])
+def test_a_setting_has_values_and_no_switches(tmp_path: Path, values: str) -> None:
+    text = TOML.replace("solref_timeconst_steps = [2, 4]", f"iterations = {values}")
+    with pytest.raises(CrankcheckError, match=r"settings\.iterations"):
+        load_study(written(tmp_path, "s.toml", text))
+
+
+def test_the_order_of_links_makes_another_scene() -> None:
+    from reports.store.key import digest
+
+    assert digest("[a]\nx = 1\n[b]\nx = 2") != digest("[b]\nx = 2\n[a]\nx = 1")
+
+
 def test_comments_in_a_scene_do_not_make_another_scene() -> None:
     from reports.store.key import digest
 
