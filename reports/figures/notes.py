@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from reports.choice.held import OWN
 from reports.choice.lines import Line
 from reports.choice.machines import machine
 from reports.figures.marks import label, name_of
 from reports.page.numbers import count
 from reports.page.report import Report
-from sim.engine import SettingValue
 
-OWN = "the engine's own"
 SHOWN = 10
 """Variants whose settings a figure tells; Markdown and the page tell all of them."""
 
@@ -59,40 +58,13 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
     words = [f"{name}: {each}" for name, each in list(told.items())[:SHOWN]]
     more = len(told) - len(words)
     words += [f"and {count(more, 'more variant')} (crankcheck report tells)"] if more > 0 else []
-    return [f"Settings, where not the engine's own: {'; '.join(words)}."] if words else []
+    return [f"Settings, where not as shipped: {'; '.join(words)}."] if words else []
 
 
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
-    """The settings of each variant, by its label.
-
-    Those of an engine as shipped go without saying; where it was not run so, its first variant is
-    told in full, and of the others what differs from that.
-    """
-    found: dict[str, str] = {}
-    for engine in dict.fromkeys(line.engine for line in lines):
-        own = {label(name_of(x)): x for x in report.lines if x.engine == engine}
-        usual = next((name for name, x in own.items() if x.variant == "as-shipped"), None)
-        first = usual or next(iter(own))
-        told = {name: _differing(line, own[first]) for name, line in own.items()}
-        told[first] = OWN if usual else _differing(own[first], None)
-        prefix = "" if usual else f"as {first}, but "
-        found |= {name: each if name == first else prefix + each for name, each in told.items()}
-    shown = {label(name_of(line)) for line in lines}
-    return {name: each for name, each in found.items() if name in shown}
-
-
-def _differing(line: Line, usual: Line | None) -> str:
-    """The settings of a line that differ from those of another; all of them for None."""
-    known = {} if usual is None else usual.settings
-    return ", ".join(
-        f"{name} {_value(value)}"
-        for name, value in line.settings.items()
-        if name not in known or known[name] != value
-    )
-
-
-def _value(value: SettingValue) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value) or "none"
+    """The settings of each variant, by its label (see `reports.choice.held`)."""
+    shown = dict.fromkeys(name_of(line) for line in lines)
+    return {label(name): report.settings_told[name] for name in shown}
 
 
 def facts_of(report: Report) -> Mapping[str, str]:

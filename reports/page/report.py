@@ -13,6 +13,7 @@ from models.files import parse_scene
 from models.scene import Scene
 from reports.choice.across import Candidate, candidates
 from reports.choice.cost import noise
+from reports.choice.held import settings_told
 from reports.choice.lines import Line, lines
 from reports.choice.recommend import Recommendation, recommendations
 from reports.page.looks import Look, Named, looks, named
@@ -82,23 +83,10 @@ class Report:
         """The lines of a scene."""
         return tuple(line for line in self.lines if line.scene == scene)
 
-    def settings_told(self, line: Line) -> str:
-        """The settings of a line, as what differs from the engine as shipped, where that was run.
-
-        A store without a line of the engine as shipped gives all settings.
-        """
-        shipped = next(
-            (x for x in self.lines if x.engine == line.engine and x.variant == "as-shipped"), None
-        )
-        if shipped is not None and shipped.settings == line.settings:
-            return "every setting as the engine is shipped"
-        usual = {} if shipped is None else shipped.settings
-        told = [
-            f"{name} {_told(value)}"
-            for name, value in line.settings.items()
-            if name not in usual or usual[name] != value
-        ]
-        return ", ".join(told)
+    @cached_property
+    def settings_told(self) -> Mapping[Named, str]:
+        """The settings of each variant, as what differs from the engine as shipped."""
+        return settings_told(self.lines)
 
 
 def _parsed(text: str | None, name: str) -> Scene | None:
@@ -109,7 +97,3 @@ def _parsed(text: str | None, name: str) -> Scene | None:
         return parse_scene(text, name)
     except CrankcheckError:
         return None
-
-
-def _told(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value) or "none"

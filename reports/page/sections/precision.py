@@ -35,7 +35,9 @@ def build(report: Report) -> Section:
         },
         embedded={
             "timed": report.timed,
-            "settings": {report.look(x).number: report.settings_told(x) for x in report.lines},
+            "settings": {
+                report.looks[name].number: told for name, told in report.settings_told.items()
+            },
             "scenes": scenes,
         },
         scripts=("legend.js", "charts.js", "precision.js"),

@@ -6,6 +6,7 @@ import json
 import shlex
 from collections.abc import Mapping, Sequence
 
+from reports.choice.held import usual, value_text
 from reports.choice.lines import Line
 from reports.choice.machines import left_out
 from reports.page.looks import Look
@@ -52,16 +53,13 @@ def _settings(report: Report, engine: str) -> dict[str, object]:
     for line in report.lines:
         if line.engine == engine:
             variants.setdefault(report.look(line), line)
-    names = dict.fromkeys(name for line in variants.values() for name in line.settings)
+    first = usual(report.lines, engine)
     rows = []
-    for name in names:
-        values = [_value(line.settings.get(name)) for line in variants.values()]
-        rows.append((name, [(value, value != values[0]) for value in values]))
-    return {"engine": engine, "looks": list(variants), "rows": rows}
-
-
-def _value(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else "" if value is None else str(value)
+    for name in dict.fromkeys(name for line in variants.values() for name in line.settings):
+        known = value_text(first.settings.get(name))
+        values = [value_text(line.settings.get(name)) for line in variants.values()]
+        rows.append((name, [(value, value != known) for value in values]))
+    return {"engine": engine, "looks": list(variants), "usual": first.name, "rows": rows}
 
 
 def _rows(line: Line) -> list[dict[str, object]]:

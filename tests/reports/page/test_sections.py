@@ -168,12 +168,27 @@ def test_settings_are_told_as_what_differs_from_the_engine_as_shipped() -> None:
         *line("a", "alone", [1e-4] * 4, asked={"x": 1.0, "y": ""}, engine="pymunk"),
     ]
     report = Report(stored(rows))
-    told = {one.variant: report.settings_told(one) for one in report.lines}
+    told = {variant: told for (_, variant, _), told in report.settings_told.items()}
     assert told == {
         "as-shipped": "every setting as the engine is shipped",
         "tuned": "iterations 50, close C",
         "alone": "x 1, y none",
     }
+
+
+def test_settings_are_told_as_what_differs_from_the_first_where_none_is_as_shipped() -> None:
+    usual = {"iterations": 10, "bias": 0.5}
+    rows = [
+        *line("a", "first", [1e-3] * 4, asked=usual),
+        *line("a", "other", [1e-4] * 4, asked={**usual, "iterations": 50}),
+        *line("a", "twin", [1e-4] * 4, asked=usual),
+    ]
+    told = Report(stored(rows)).settings_told
+    assert list(told.values()) == [
+        "iterations 10, bias 0.5",
+        "as first, but iterations 50",
+        "as first",
+    ]
 
 
 def test_looks_differ_in_marker_between_engines_and_in_colour_and_dash_within() -> None:
