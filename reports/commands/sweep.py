@@ -11,6 +11,7 @@ from pathlib import Path
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.choice.lines import lines
 from reports.choice.recommend import recommendations
 from reports.choice.table import noise_line, recommendation_table
 from reports.commands.names import chosen_engines
@@ -171,5 +172,9 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
 def _recommend(console: Console, stored: Stored) -> None:
     """What to choose, of all that the store holds."""
     console.print()
+    older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
+    if older:
+        told = "cells of earlier runs, whose names stand for others now"
+        console.print(f"left out: {older} {told}")
     console.print(recommendation_table(recommendations(stored), console.width))
     console.print(noise_line(stored), highlight=False)
