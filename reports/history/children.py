@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import signal
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -50,6 +53,7 @@ def run_child(
                 stderr=subprocess.PIPE,
                 encoding="utf-8",
                 errors="replace",
+                start_new_session=True,  # so that all that it starts can be ended with it
             )
         output, complaint = child.communicate()
     except OSError as error:
@@ -64,14 +68,13 @@ def run_child(
 
 
 def _end(child: subprocess.Popen[str], patience_s: float) -> None:
-    """Tell a child to end, and see that it does."""
+    """Tell a child to end, and see that it does, with all that it has started."""
     if patience_s:
         child.terminate()
-        try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
             child.wait(patience_s)
-        except subprocess.TimeoutExpired:
-            pass
-        else:
-            return
+    if hasattr(os, "killpg"):
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(child.pid, signal.SIGKILL)
     child.kill()
     child.wait()
