@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -14,11 +14,14 @@ from reports.page.embed import embedded, policy
 from reports.page.looks import Look
 from reports.page.numbers import NONE, count, duration, error_text
 from reports.page.report import Report
-from reports.page.sections import SECTIONS
+from reports.page.sections import SECTIONS, motion
 from reports.page.sections.base import Section
+from reports.page.thinning import BUDGET
 from reports.store.reader import Stored
 
 HERE = Path(__file__).parent
+MOST_BYTES = 7_900_000
+"""Over this, drawings and curves give way: fewer steps of each line are drawn."""
 FIRST = ("page.js", "tables.js")
 """Scripts that every page has, before those of its sections."""
 
@@ -32,8 +35,18 @@ def page(stored: Stored) -> str:
         A store that can not be read, part by part.
     """
     report = Report(stored)
-    found = (build(report) for build in SECTIONS.values())
-    return render(report, [section for section in found if section is not None])
+    found = {name: build(report) for name, build in SECTIONS.items()}
+    text = _rendered(report, found)
+    over = len(text.encode()) - MOST_BYTES
+    if over > 0 and found["motion"] is not None:
+        found["motion"] = motion(report, BUDGET - over)
+        text = _rendered(report, found)
+    return text
+
+
+def _rendered(report: Report, found: Mapping[str, Section | None]) -> str:
+    """The page of the sections that have something to show."""
+    return render(report, [section for section in found.values() if section is not None])
 
 
 def render(report: Report, sections: Sequence[Section]) -> str:

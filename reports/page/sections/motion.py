@@ -22,20 +22,20 @@ from reports.page.numbers import error_text
 from reports.page.report import Report
 from reports.page.sections.base import Section
 from reports.page.split import Body, Parts, Split, split, worst_body
-from reports.page.thinning import chosen, steps_held
+from reports.page.thinning import BUDGET, chosen, steps_held
 from reports.series import Array
 
 CURVES = 5
 """Total, drive, floor, discretisation and gap."""
 
 
-def build(report: Report) -> Section | None:
+def build(report: Report, room: int = BUDGET) -> Section | None:
     """The section; None where no scene of the store can be drawn."""
     scenes = [scene for scene in report.scenes.values() if scene is not None]
     if not scenes:
         return None
     sizes = {key: size for scene in scenes for key, size in _sizes(report, scene).items()}
-    held = steps_held(sizes, report.lines)
+    held = steps_held(sizes, report.lines, room)
     return Section(
         anchor="motion",
         title="Scene by scene",

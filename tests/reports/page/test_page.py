@@ -181,6 +181,17 @@ def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> No
     assert len(found.encode()) < MEGABYTES_8
 
 
+def test_drawings_give_way_where_the_page_gets_too_large(
+    small: Stored, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports.page import build
+
+    whole = page(small)
+    monkeypatch.setattr(build, "MOST_BYTES", len(whole.encode()) - build.BUDGET + 1000)
+    thinned = page(small)
+    assert len(re.findall('"base64"', thinned)) < len(re.findall('"base64"', whole))
+
+
 def test_the_command_writes_the_page_and_says_so(small_folder: Path, tmp_path: Path) -> None:
     said = StringIO()
     target = tmp_path / "report.html"
