@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 
 from reports.convergence import AT_ROUNDING
+from reports.fits.aligned import aligned_within
 from reports.fits.bent import ORDERS
 from reports.fits.curves import Array, Curve, straight
 from reports.fits.forms import (
@@ -51,11 +52,13 @@ class LineFit:
     finest run that did not end well, "" where all did, and ``fails_from_s`` its step.
 
     ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` and ``coefficient``
-    where the error follows no power of the step. Uncertainties hold the true value about two times
-    in three. ``floor_below`` is the largest floor that two such uncertainties allow, NaN where the
-    line says nothing about it; a floor that works against the step, rather than adds to it, may
-    hide up to about the finest error. ``scatter`` is by what share of itself an error is off its
-    curve. ``curve`` is None where no curve goes through the points.
+    where the error follows no power of the step. Uncertainties hold the true value two times in
+    three, and more often next to a floor, where they allow floor and step to add or to oppose in
+    any proportion (`reports.fits.aligned`). ``floor_below`` is the largest floor that two such
+    uncertainties allow, NaN where the line says nothing about it; a floor that works against the
+    step, rather than adds to it, may hide up to about the finest error where none is seen.
+    ``scatter`` is by what share of itself an error is off its curve. ``curve`` is None where no
+    curve goes through the points.
     """
 
     dt_s: tuple[float, ...]
@@ -172,18 +175,20 @@ def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
 
 
 def _with_floor(line: LineFit, form: Form, dts: Array, errors: Array, curve: Curve) -> LineFit:
-    """A floor; its order where the points tell it."""
+    """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
-    near = form.within(dts, errors, curve, more**2)
-    far = form.within(dts, errors, curve, (2.0 * more) ** 2)
-    told = near.order[0] > ORDERS[0] or near.order[1] < ORDERS[-1]
+    alone = form.within(dts, errors, curve, more**2)
+    told = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
+    near = alone.joined(aligned_within(dts, errors, curve, more**2))
+    wide = (2.0 * more) ** 2
+    far = form.within(dts, errors, curve, wide).joined(aligned_within(dts, errors, curve, wide))
     return replace(
         line,
         kind="floor",
         order=curve.order if told else math.nan,
-        order_error=_half(near.order) if told else math.nan,
+        order_error=_farthest(curve.order, near.order) if told else math.nan,
         floor=curve.floor,
-        floor_error=_half(near.floor),
+        floor_error=_farthest(curve.floor, near.floor),
         floor_below=far.floor[1],
         coefficient=curve.coefficient if told else math.nan,
     )
@@ -218,5 +223,6 @@ def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
     return tuple(i in there for i in range(number))
 
 
-def _half(bounds: tuple[float, float]) -> float:
-    return 0.5 * (bounds[1] - bounds[0])
+def _farthest(found: float, bounds: tuple[float, float]) -> float:
+    """How far the farther bound is off what was found."""
+    return max(bounds[1] - found, found - bounds[0])

@@ -1,4 +1,4 @@
-"""What a fitted line says, in words: the verdict, the numbers behind it, why no step will do."""
+"""What a fitted line says, in words: the verdict, and the numbers behind it."""
 
 from __future__ import annotations
 
@@ -51,19 +51,6 @@ def numbers(fit: LineFit, unit: str, period_s: float) -> str:
         texts.append(f"no floor down to {short(fit.finest_error)} {unit}")
     texts.append(f"{sum(fit.used)} steps, {period_s / coarse:.4g} to {_per_turn(fine, period_s)}")
     return ", ".join(texts)
-
-
-def why_no_step(fit: LineFit, target: float, unit: str) -> str:
-    """Why `LineFit.dt_for` names no step for a target; "" where it does."""
-    if fit.dt_for(target) is not None:
-        return ""
-    if not fit.runs:
-        return "no run ended well"
-    if all(error <= target for _, error in fit.runs):
-        return "every step that was run reaches it"
-    if fit.kind == "floor" and target <= fit.floor:
-        return f"below the floor of {short(fit.floor)} {unit}"
-    return "no step that was run reaches it"
 
 
 def short(number: float) -> str:

@@ -216,6 +216,23 @@ def test_the_stated_uncertainty_of_a_floor_holds_two_times_in_three() -> None:
     assert below / 120 > 0.9
 
 
+@pytest.mark.parametrize("order", [1.0, 2.0])
+@pytest.mark.parametrize("alignment", [-0.6, 0.0, 0.3, 0.6, 1.0])
+def test_it_holds_two_times_in_three_however_floor_and_step_are_aligned(
+    alignment: float, order: float
+) -> None:
+    """Up to an alignment of 0.6 the floor is read low, since full alignment is what is fitted."""
+    rng = np.random.default_rng(23)
+    step = (STEPS / STEPS[-1]) ** order
+    exact = np.sqrt(9.0 + 2.0 * alignment * 3.0 * step + step**2)
+    fits = [fit_line(STEPS, scattered(exact, 0.02, rng)) for _ in range(30)]
+    assert all(fit.kind == "floor" for fit in fits)
+    assert sum(abs(fit.floor - 3.0) <= fit.floor_error for fit in fits) >= 20
+    assert sum(abs(fit.order - order) <= fit.order_error for fit in fits) >= 20
+    assert sum(fit.floor_below >= 3.0 for fit in fits) >= 28
+    assert np.mean([fit.floor_error for fit in fits]) < 0.4 * 3.0
+
+
 def test_no_floor_is_claimed_on_first_order_lines_with_scatter() -> None:
     rng = np.random.default_rng(22)
     kinds = [fit_line(STEPS, scattered(line(1.0), 0.05, rng)).kind for _ in range(200)]

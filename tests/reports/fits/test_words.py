@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reports.fits.line import fit_line
-from reports.fits.words import numbers, short, why_no_step, words
+from reports.fits.words import numbers, short, words
 
 PERIOD = 0.36
 PER_TURN = np.array([45, 90, 180, 360, 720, 1440])
@@ -86,17 +86,6 @@ def test_numbers_name_their_uncertainty_and_the_steps_they_stand_on() -> None:
     fit = fit_line(STEPS, 7.5e-4 + 10.0 * STEPS**2)
     assert numbers(fit, "rad", PERIOD).startswith(f"floor 7.5e-4 +- {short(fit.floor_error)} rad")
     assert numbers(fit_line(STEPS, [0.0] * 6), "rad", PERIOD) == ""
-
-
-def test_why_no_step_will_do_is_said() -> None:
-    fit = fit_line(STEPS, 7.5e-4 + 10.0 * STEPS**2)
-    assert why_no_step(fit, 7.7e-4, "rad") == ""
-    assert why_no_step(fit, 7e-4, "rad") == "below the floor of 7.5e-4 rad"
-    assert why_no_step(fit, 1.0, "rad") == "every step that was run reaches it"
-    falling = fit_line(STEPS, STEPS**2)
-    assert why_no_step(falling, 1e-9, "rad") == "no step that was run reaches it"
-    never = fit_line(STEPS, STEPS**2, statuses=["crashed"] * 6)
-    assert why_no_step(never, 1e-3, "rad") == "no run ended well"
 
 
 @pytest.mark.parametrize(

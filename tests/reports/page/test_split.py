@@ -69,7 +69,7 @@ def test_floor_and_discretisation_are_told_apart_instant_by_instant(floor: float
         np.testing.assert_allclose(parts.floor, floor * np.sin(parts.driver_rad), **room)
         step = 40.0 * dt_s**2 * np.cos(2 * parts.driver_rad)
         np.testing.assert_allclose(parts.discretisation, step, **room)
-    assert found.doubt < 0.03 * floor
+    assert found.doubt < 0.1 * floor  # of four steps, of which floor and step may partly oppose
 
 
 def test_parts_add_up_to_the_total_and_gaps_are_over_the_longest_link() -> None:
