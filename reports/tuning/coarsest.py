@@ -29,11 +29,6 @@ class Found:
     steps: int | None
     errors: dict[int, float]
 
-    @property
-    def nearest(self) -> tuple[int, float]:
-        """The steps with the least error of all that were run, and that error."""
-        return min(self.errors.items(), key=lambda item: (item[1], item[0]))
-
 
 def coarsest(
     error_at: Callable[[int], float], target: float, start: int, least: int, most: int
