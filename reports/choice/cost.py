@@ -14,6 +14,7 @@ from reports.choice.lines import Line
 from reports.choice.machines import comparable
 from reports.fits.reach import interpolate
 from reports.store.reader import Stored
+from sim.engine import Drive
 
 SHARE = 0.95
 """The share of A/A pairs whose halves differ by no more than the noise."""
@@ -94,43 +95,56 @@ def _cost(line: Line, dt_s: float) -> float:
     return math.nan if found is None else found
 
 
+MEANS = (
+    "Geometric means over the scenes, interpolated along the fits; m/n: so on m of n scenes only. "
+    "Where the coarsest step reaches an error already, its time stands: nothing is extrapolated."
+)
+
+
 @dataclass(frozen=True)
 class Costs:
     """What a variant costs, as geometric means over the scenes.
 
-    ``us_per_step`` is of the least and ``us_per_step_median`` of the median repeat. ``s_to`` is the
-    time per turn [s] to reach each target, NaN where it is not reached on every scene;
-    ``reached`` on how many scenes it is.
+    ``us_per_step`` is of the least and ``us_per_step_median`` of the median repeat, over the
+    ``timed`` scenes, which have cells that were timed. ``s_to`` is the time per turn [s] to reach
+    each target, NaN where it is not reached on every scene; ``reached`` on how many scenes it is.
     """
 
     engine: str
-    name: str
+    variant: str
+    drive: Drive
     us_per_step: float
     us_per_step_median: float
+    timed: int
     s_to: Mapping[float, float]
     reached: Mapping[float, int]
     scenes: int
+
+    def part(self, number: int) -> str:
+        """On how many scenes something is so, as m/n; empty where it is on all of them."""
+        return "" if number == self.scenes else f"{number}/{self.scenes}"
 
 
 def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ...]:
     """The costs of each variant."""
     scenes = len({line.scene for line in lines})
-    groups: dict[tuple[str, str], list[Line]] = {}
+    groups: dict[tuple[str, str, Drive], list[Line]] = {}
     for line in lines:
-        groups.setdefault((line.engine, line.name), []).append(line)
+        groups.setdefault((line.engine, line.variant, line.drive), []).append(line)
     found = []
-    for (engine, name), group in groups.items():
-        cells = pd.concat([line.cells for line in group])
+    for named, group in groups.items():
+        timed = [x for line in group if len(x := line.cells.dropna(subset=["us_per_step"]))]
+        cells = pd.concat(timed or [group[0].cells.iloc[:0]])
         times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
         found.append(
             Costs(
-                engine,
-                name,
-                mean(cells["us_per_step"].dropna()),
-                mean(cells["us_per_step_median"].dropna()),
-                {a: mean(each) if len(each) == scenes else math.nan for a, each in times.items()},
-                {a: sum(reached(line, a) is not None for line in group) for a in targets},
-                scenes,
+                *named,
+                us_per_step=mean(cells["us_per_step"]),
+                us_per_step_median=mean(cells["us_per_step_median"].dropna()),
+                timed=len(timed),
+                s_to={a: mean(t) if len(t) == scenes else math.nan for a, t in times.items()},
+                reached={a: sum(reached(line, a) is not None for line in group) for a in targets},
+                scenes=scenes,
             )
         )
     return tuple(found)

@@ -1,4 +1,4 @@
-"""Costs, noise and recommendations for the terminal."""
+"""Noise and recommendations for the terminal."""
 
 from __future__ import annotations
 
@@ -10,20 +10,15 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from reports.choice.cost import SHARE, Costs, costs_of, noise, pairs
-from reports.choice.lines import Line, called
+from reports.choice.cost import SHARE, noise, pairs
+from reports.choice.lines import called
 from reports.choice.machines import left_out, machine
-from reports.choice.recommend import TARGETS, Recommendation
+from reports.choice.recommend import Recommendation
 from reports.fits.words import short
 from reports.store.reader import Stored
 
 WIDE = 90
 """Columns of a terminal that have room for the scene of the worst error in a column of its own."""
-
-MEANS = (
-    "Geometric means over the scenes; m/n: reached on m of n scenes only. Where the coarsest step "
-    "reaches an error already, its time stands: nothing is extrapolated."
-)
 
 
 def recommendation_table(
@@ -47,34 +42,6 @@ def recommendation_table(
         if one.steadier is not None:
             table.add_row(*_row(one.steadier, "", wide, steadier=True), style="dim")
     return Group(table, *(Text(f"[{i}] {note}") for i, note in enumerate(notes, 1)))
-
-
-def cost_table(
-    lines: Sequence[Line], targets: Sequence[float] = TARGETS, width: int = WIDE
-) -> RenderableType:
-    """What a step of each variant costs, and a turn that reaches each target."""
-    costs = costs_of(lines, targets)
-    table = _table("ms per turn to reach an error, interpolated along the fits")
-    table.add_column("engine", no_wrap=True)
-    table.add_column("settings", overflow="fold", min_width=10)
-    table.add_column("us per\nstep", justify="right", no_wrap=True)
-    if width >= WIDE:
-        table.add_column("median\nrepeat", justify="right", no_wrap=True)
-    for target in targets:
-        table.add_column(f"to\n{short_target(target)}", justify="right", no_wrap=True)
-    for cost in costs:
-        steps = [_number(cost.us_per_step, 2), _number(cost.us_per_step_median, 2)]
-        every = [_reached(cost, target) for target in targets]
-        table.add_row(cost.engine, Text(cost.name), *steps[: 1 + (width >= WIDE)], *every)
-    return Group(table, Text(MEANS))
-
-
-def _reached(cost: Costs, target: float) -> str:
-    """The time to a target, or on how many scenes it is reached."""
-    number = cost.reached[target]
-    return (
-        _number(1e3 * cost.s_to[target], 3) if number == cost.scenes else f"{number}/{cost.scenes}"
-    )
 
 
 def _table(title: str) -> Table:

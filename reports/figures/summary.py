@@ -3,8 +3,10 @@ failures, and where it all comes from."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+from reports.choice.cost import MEANS, Costs
 from reports.choice.recommend import Recommendation
 from reports.choice.snippets import LANGUAGE
 from reports.choice.table import noise_line, short_target
@@ -22,7 +24,8 @@ ROOM = {
     "outside": 6_000,
     "set": 8_000,
     "snippets": 12_000,
-    "fits": 14_000,
+    "times": 3_000,
+    "fits": 12_000,
     "failures": 8_000,
     "settings": 6_000,
 }
@@ -51,6 +54,7 @@ def summary(stored: Stored) -> str:
         "### What to set",
         _recommended(report),
         *_snippets(report),
+        *_times(report),
         "### What the error does as the step shrinks",
         _fits(report),
         *_failures(report),
@@ -147,6 +151,32 @@ def _snippets(report: Report) -> Iterator[str]:
     yield from kept
     if left:
         yield f"and {left} more to be copied from the page of `crankcheck report`"
+
+
+def _times(report: Report) -> Iterator[str]:
+    """What a step of each variant costs, and a turn that comes to each target."""
+    if not report.timed:
+        return
+    targets = list(report.costs[0].s_to)
+    heads = ("variant", "µs per step:", "median repeat:")
+    ends = [f"ms per turn to {short_target(target)}:" for target in targets]
+    grid = table((*heads, *ends), [_time(each) for each in report.costs], ROOM["times"], "variants")
+    yield folded("Time to reach an error", f"{grid}\n\n{plain(MEANS)}")
+
+
+def _time(costs: Costs) -> list[str]:
+    """A row; where something is not so on all scenes, on how many it is."""
+    name, part = label((costs.engine, costs.variant, costs.drive)), costs.part(costs.timed)
+    steps = [
+        f"{us:.2f}" if costs.timed else "" for us in (costs.us_per_step, costs.us_per_step_median)
+    ]
+    if costs.timed and part:
+        steps[0] += f" ({part})"
+    turns = [
+        costs.part(costs.reached[target]) or (f"{1e3 * s:.3g}" if math.isfinite(s) else "")
+        for target, s in costs.s_to.items()
+    ]
+    return [name, *steps, *turns]
 
 
 def _fits(report: Report) -> str:

@@ -12,10 +12,10 @@ from models.errors import CrankcheckError
 from models.files import parse_scene
 from models.scene import Scene
 from reports.choice.across import Candidate, candidates
-from reports.choice.cost import noise
+from reports.choice.cost import Costs, costs_of, noise
 from reports.choice.held import settings_told
 from reports.choice.lines import Line, lines
-from reports.choice.recommend import Recommendation, recommendations
+from reports.choice.recommend import TARGETS, Recommendation, recommendations
 from reports.page.looks import Look, Named, looks, named
 from reports.store.reader import Stored
 
@@ -50,6 +50,11 @@ class Report:
     def candidates(self) -> tuple[Candidate, ...]:
         """Every set of settings at every step, over all scenes."""
         return candidates(self.lines)
+
+    @cached_property
+    def costs(self) -> tuple[Costs, ...]:
+        """What each variant costs, and the time in which it comes to the targets."""
+        return costs_of(self.lines, TARGETS)
 
     @cached_property
     def noise(self) -> float:

@@ -8,8 +8,10 @@ from collections.abc import Sequence
 import pandas as pd
 
 from reports.choice.across import Candidate
+from reports.choice.cost import MEANS, Costs
 from reports.choice.lines import Line
 from reports.choice.pareto import front, front_over_all
+from reports.choice.recommend import TARGETS
 from reports.page.numbers import count
 from reports.page.report import Report
 from reports.page.sections.base import Section
@@ -32,6 +34,9 @@ def build(report: Report) -> Section:
             "over_all": len(scenes) > 1,
             "timed": report.timed,
             "lost": count(len(lost), "run") if len(lost) else "",
+            "targets": TARGETS,
+            "costs": [_cost(report, each) for each in report.costs] if report.timed else [],
+            "means": MEANS,
         },
         embedded={
             "timed": report.timed,
@@ -43,6 +48,23 @@ def build(report: Report) -> Section:
         scripts=("legend.js", "charts.js", "precision.js"),
         plotly=True,
     )
+
+
+def _cost(report: Report, costs: Costs) -> dict[str, object]:
+    """What a variant costs, as a row: times [s], and on how many scenes where not on all."""
+    to = [(_known(costs.s_to[target]), costs.part(costs.reached[target])) for target in TARGETS]
+    return {
+        "look": report.looks[costs.engine, costs.variant, costs.drive],
+        "s_per_step": _known(1e-6 * costs.us_per_step),
+        "s_per_step_median": _known(1e-6 * costs.us_per_step_median),
+        "part": costs.part(costs.timed),
+        "to": to,
+    }
+
+
+def _known(number: float) -> float | None:
+    """A number; None where there is none."""
+    return number if math.isfinite(number) else None
 
 
 def _scene(report: Report, scene: str) -> dict[str, object]:

@@ -15,7 +15,7 @@ from reports.choice.cost import costs_of, equal, noise, reached, time_to
 from reports.choice.lines import Line, lines
 from reports.choice.pareto import front, front_over_all, performance_profile
 from reports.choice.recommend import recommendations
-from reports.choice.table import cost_table, noise_line, recommendation_table
+from reports.choice.table import noise_line, recommendation_table
 from tests.reports.choice.made import Row, cell, stored, untimed
 
 STEPS = (90, 180, 360, 720)
@@ -101,6 +101,19 @@ def test_costs_are_means_over_scenes_of_the_least_and_the_median_repeat() -> Non
     assert x.s_to[1e-4] == pytest.approx(4e-6 * 90 * math.sqrt(10), rel=1e-3)
     assert (x.reached[1e-4], y.reached[1e-4]) == (2, 1)
     assert math.isnan(y.s_to[1e-4])
+    assert (x.part(x.reached[1e-4]), y.part(y.reached[1e-4])) == ("", "1/2")
+
+
+def test_costs_say_on_how_many_scenes_they_were_timed() -> None:
+    rows = second_order("a", "x", 1e-3, 2.0)
+    rows += [untimed(row) for row in second_order("b", "x", 1e-3, 2.0)]
+    (x,) = costs_of(lines(stored(rows)), [1e-4])
+    assert (x.timed, x.part(x.timed), x.us_per_step) == (1, "1/2", pytest.approx(2.0))
+    assert x.reached[1e-4] == 2
+    assert math.isnan(x.s_to[1e-4])
+    (none,) = costs_of(lines(stored(rows[4:])), [1e-4])
+    assert none.timed == 0
+    assert math.isnan(none.us_per_step)
 
 
 def test_the_front_is_what_nothing_beats_in_both() -> None:
@@ -191,10 +204,6 @@ def test_the_table_fits_and_says_what_there_is_not(width: int) -> None:
     assert "none [2]" in flat
     assert "nearest is name [of] some length at 720 steps a turn" in flat
     assert (" on scene " in flat) == (width == 120)
-    text = printed(cost_table(lines(store), width=width), width)
-    assert max(map(len, text.splitlines())) <= width
-    assert "name [of]" in " ".join(text.split())
-    assert "0/1" in text
 
 
 def test_the_noise_line_tells_share_number_and_machines() -> None:

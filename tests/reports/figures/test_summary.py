@@ -9,7 +9,7 @@ import pytest
 
 from reports.figures.summary import summary
 from reports.store.reader import Stored, read_store
-from tests.reports.choice.made import Row, cell, stored
+from tests.reports.choice.made import Row, cell, stored, untimed
 
 LIMIT = 60_000
 NASTY = "a|b `c` <d> [e](f) @team *g* $h$ #1 \\ 中文"
@@ -105,3 +105,16 @@ def test_what_is_out_of_tolerance_is_named_with_its_rules() -> None:
     inside = summary(made(2))
     assert "### Out of tolerance" not in inside
     assert inside.startswith("## crankcheck: no verdict")
+
+
+def test_the_time_to_reach_an_error_is_given_or_on_how_many_scenes_it_is_reached() -> None:
+    def line(scene: str, variant: str, first: float) -> list[Row]:
+        steps = (90, 180, 360)
+        return [judged(cell(scene, variant, n, first * (90 / n) ** 2, 2.0)) for n in steps]
+
+    rows = line("a", "name [of]", 1e-2) + line("b", "name [of]", 1e-2)
+    rows += line("a", "late", 1e-2) + [untimed(row) for row in line("b", "late", 1e-1)]
+    text = summary(stored(rows))
+    assert r"| mujoco name \[of\] | 2.00 | 2.20 | 0.18 | 0.569 | 0/2 | 0/2 |" in text
+    assert "| mujoco late | 2.00 (1/2) | 2.20 |  | 1/2 | 0/2 | 0/2 |" in text
+    assert "Time to reach" not in summary(stored(map(untimed, rows)))

@@ -8,7 +8,10 @@ from collections.abc import Sequence
 import pandas as pd
 import pytest
 
+from reports.page.build import render
+from reports.page.numbers import duration
 from reports.page.report import Report
+from reports.page.sections.precision import build as build_precision
 from reports.page.sections.recommendation import build as build_recommendation
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
@@ -160,6 +163,23 @@ def test_pages_that_would_grow_too_large_keep_the_ends_of_each_line() -> None:
     assert chosen(only, {keys[1]: 100}, 4) == [keys[1]]
 
 
+def test_the_time_to_reach_an_error_is_given_or_on_how_many_scenes_it_is_reached() -> None:
+    rows = line("a", "tuned", second_order(1e-2)) + line("b", "tuned", second_order(1e-2))
+    rows += line("a", "late", second_order(1e-2)) + line("b", "late", second_order(1e-1))
+    report = Report(stored(rows))
+    section = build_precision(report)
+    tuned, late = section.words["costs"]
+    assert tuned["to"][0] == (pytest.approx(2e-6 * 90), "")
+    assert tuned["to"][1] == (pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3), "")
+    assert late["to"][1] == (None, "1/2")
+    text = " ".join(render(report, [section]).split())
+    assert "<h3>Time to reach an error</h3>" in text
+    assert '<td class="num" data-value="">1/2</td>' in text
+    assert f">{duration(tuned['to'][1][0])}</td>" in text
+    nothing = Report(stored(map(untimed, rows)))
+    assert "Time to reach" not in render(nothing, [build_precision(nothing)])
+
+
 def test_settings_are_told_as_what_differs_from_the_engine_as_shipped() -> None:
     usual = {"iterations": 10, "bias": 0.5, "close": ""}
     rows = [
@@ -204,3 +224,13 @@ def test_looks_differ_in_marker_between_engines_and_in_colour_and_dash_within() 
     assert {look.symbol for look in found if look.engine == "mujoco"} == {"circle"}
     assert len({look.dash for look in found if look.engine == "mujoco"}) == 3
     assert [look.number for look in found] == list(range(6))
+
+
+def test_two_steps_tell_nothing_of_a_floor(small: Stored) -> None:
+    coarse = small.cells[
+        small.cells["steps_per_turn"] <= sorted(set(small.cells["steps_per_turn"]))[1]
+    ]
+    found = verdict.build(Report(replace(small, cells=coarse)))
+    told = " ".join(text for _, _, text in found.words["sentences"])
+    assert "too few steps to tell of a floor" in told
+    assert "no floor seen" not in told
