@@ -14,8 +14,9 @@ from reports.page.embed import embedded, policy
 from reports.page.looks import Look
 from reports.page.numbers import NONE, count, duration, error_text
 from reports.page.report import Report
-from reports.page.sections import SECTIONS, motion
+from reports.page.sections import SECTIONS
 from reports.page.sections.base import Section
+from reports.page.sections.motion import build as motion
 from reports.page.thinning import BUDGET
 from reports.store.reader import Stored
 

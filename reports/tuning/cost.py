@@ -19,7 +19,6 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from models.space import build
 from models.tree import plan
 from sim.engine import SettingValue
 
@@ -55,6 +54,8 @@ def mujoco_work(scene: Scene) -> Work:
 
 def pymunk_counts(scene: Scene, exact_lines: bool) -> tuple[float, float, Mapping[str, int]]:
     """1, bodies, and the joints by their kind."""
+    from models.space import build  # only here: pymunk need not be installed to tune MuJoCo
+
     model = build(scene, solve(scene, np.zeros(1)).state(), exact_lines=exact_lines)
     kinds = Counter(type(joint).__name__ for joint in model.space.constraints)
     return 1.0, float(len(model.bodies)), kinds

@@ -30,6 +30,7 @@ class Row:
     failed: int
     orders: tuple[float, ...]
     floors: tuple[float, ...]
+    told: int
     lines: int
     finest: float
     worst_scene: str
@@ -43,7 +44,7 @@ class Row:
     def floor(self) -> str:
         """The floors that were seen, and on how many scenes."""
         if not self.floors:
-            return "none seen"
+            return "none seen" if self.told else "too few steps"
         told = spread([error_text(floor) for floor in sorted(self.floors)])
         return f"{told} on {len(self.floors)} of {count(self.lines, 'scene')}"
 
@@ -108,7 +109,9 @@ def _held(row: Row) -> str:
         text += f", and {count(row.failed, 'run')} of them did not end well"
     if row.orders:
         text += f"; its error falls with order {row.order} of the step"
-    return f"{text}, {'with a floor at ' + row.floor if row.floors else 'no floor seen'}."
+    if row.floors:
+        return f"{text}, with a floor at {row.floor}."
+    return f"{text}, no floor seen." if row.told else f"{text}; too few steps to tell of a floor."
 
 
 def _shipped(row: Row) -> str:
@@ -169,6 +172,7 @@ def _row(look: Look, lines: Sequence[Line]) -> Row:
         failed=int((cells["status"] != "ok").sum()),
         orders=tuple(x.fit.order for x in lines if x.fit.kind == "order"),
         floors=tuple(x.fit.floor for x in lines if x.fit.kind == "floor"),
+        told=sum(line.fit.kind not in ("too few", "not run") for line in lines),
         lines=len(lines),
         finest=max(error for error, _ in finest),
         worst_scene=max(finest)[1],

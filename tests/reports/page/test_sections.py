@@ -226,11 +226,7 @@ def test_looks_differ_in_marker_between_engines_and_in_colour_and_dash_within() 
     assert [look.number for look in found] == list(range(6))
 
 
-def test_two_steps_tell_nothing_of_a_floor(small: Stored) -> None:
-    coarse = small.cells[
-        small.cells["steps_per_turn"] <= sorted(set(small.cells["steps_per_turn"]))[1]
-    ]
-    found = verdict.build(Report(replace(small, cells=coarse)))
-    told = " ".join(text for _, _, text in found.words["sentences"])
+def test_two_steps_tell_nothing_of_a_floor() -> None:
+    told = sentences(line("a", "tuned", second_order(1e-3))[:2])["mujoco"]
     assert "too few steps to tell of a floor" in told
     assert "no floor seen" not in told
