@@ -16,6 +16,7 @@ from reports.choice.recommend import recommendations
 from reports.choice.table import noise_line, recommendation_table
 from reports.commands.names import chosen_engines
 from reports.provenance import provenance
+from reports.stopping import Stopped
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store, stored_keys
 from reports.store.writer import Writer
@@ -74,9 +75,13 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
     }
     with Writer(request.folder, Manifest(laid.texts, (run,))) as writer:
         running = Running(writer, laid.tasks, limits, facts, progress)
-        done = running.errors(request.keep_trajectories, where, request.again)
-        if request.timing:
-            done = running.timings(done)
+        try:
+            done = running.errors(request.keep_trajectories, where, request.again)
+            if request.timing:
+                done = running.timings(done)
+        except Stopped:
+            progress.print("what is done is kept; the same command goes on from there")
+            raise
     _summary(console, request.folder, laid, done)
     if stored_keys(request.folder, "timings"):
         _recommend(console, read_store(request.folder))
@@ -137,7 +142,7 @@ def _overrides(
 def _steps(text: str | None) -> list[float]:
     """`90,180,360` as numbers."""
     try:
-        return [float(part) for part in text.split(",")] if text else []
+        return [] if text is None else [float(part) for part in text.split(",")]
     except ValueError:
         raise CrankcheckError(
             f"--steps-per-turn {text!r}: write numbers with commas between, such as 90,180,360"

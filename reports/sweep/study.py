@@ -17,6 +17,7 @@ A list of values makes a variant for each of them, or for each combination of se
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import tomllib
 from pathlib import Path
@@ -24,6 +25,7 @@ from typing import Annotated, Literal
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, ValidationError
+from pydantic_core import ErrorDetails
 
 from models.errors import CrankcheckError
 from models.files import read_text
@@ -103,11 +105,24 @@ def load_study(path: Path | None) -> Study:
     try:
         return Study.model_validate(raw)
     except ValidationError as error:
-        faults = "\n  ".join(
-            f"{'.'.join(str(part) for part in fault['loc']) or 'study'}: {fault['msg']}"
-            for fault in error.errors()
-        )
+        faults = "\n  ".join(dict.fromkeys(_fault(fault) for fault in error.errors()))
         raise CrankcheckError(f"study {path}:\n  {faults}") from None
+
+
+def _fault(fault: ErrorDetails) -> str:
+    """One fault of a study file: key, what was found, what would work."""
+    parts = [str(part) for part in fault["loc"] if not str(part).startswith(("list[", "constr"))]
+    key, message = ".".join(parts) or "study", fault["msg"]
+    if fault["type"] == "extra_forbidden":
+        known = Variant.model_fields if parts[0] == "variants" else Study.model_fields
+        near = difflib.get_close_matches(parts[-1][:80], known, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
+        return f"{key}: unknown key; {hint}"
+    if fault["type"] == "missing":
+        return f"{key}: missing; add it"
+    if not parts:
+        return "study: a table of scenes, variants and steps_per_turn is needed"
+    return f"{key}: {message[0].lower()}{message[1:]}"
 
 
 def _short(value: object) -> str:

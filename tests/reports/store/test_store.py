@@ -157,7 +157,8 @@ def test_a_damaged_part_is_named_with_what_to_do(tmp_path: Path, outcome: Outcom
     filled(tmp_path / "s", outcome, "k1")
     (path,) = (tmp_path / "s" / "cells").glob("*.parquet")
     path.write_bytes(path.read_bytes()[:100])
-    with pytest.raises(CrankcheckError, match=r"delete all files of this name .* and run the sweep again"):
+    words = r"delete all files of this name .* and run the sweep again"
+    with pytest.raises(CrankcheckError, match=words):
         read_store(tmp_path / "s")
 
 
