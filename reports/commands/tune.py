@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from importlib.metadata import version
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,7 @@ from models.files import find_scene, read_text
 from reports.commands.names import chosen_engines, chosen_scenes
 from reports.commands.steps import LEAST_STEPS_PER_TURN, positive
 from reports.convergence import AT_ROUNDING
-from reports.provenance import provenance
+from reports.provenance import crankcheck_version, provenance
 from reports.singular import refuse_singular
 from reports.stopping import Stopped
 from reports.store.key import MEASURE, digest
@@ -71,12 +72,12 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
     try:
         bench.refuse_unsupported(base)
         found = _searched(request, bench, space, base, progress)
-        best = best_of(found)
+        best, first = best_of(found), _of(found, base)
         tried: list[Attempt] = []
         if best is not None:
-            best, tried = plainer(space, base, best, bench.attempt)
+            best, tried = plainer(space, first, best, bench.attempt)
         columns = {
-            f"profile {goal.profile}": _of(found, base),
+            f"profile {goal.profile}": first,
             "found": best or nearest_of(found),
         }
         sides = [Side(title, one, _rows(bench, one)) for title, one in columns.items()]
@@ -99,11 +100,16 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
 def _how(request: Request, found: Sequence[Attempt], tried: Sequence[Attempt], around: int) -> str:
     """How many trials and runs it took; ``around`` are the runs before and after the search."""
     after = sum(one.runs for one in tried)
+    late = sum(one.timed_out for one in (*found, *tried))
+    lost = (
+        f" The clock ended {late} of what was tried (--limit-s {request.limit_s:g}), which is not "
+        "kept: where runs are quicker, a search may find otherwise."
+    )
     return (
         f"Seed {request.seed}: {len(found)} trials, of which {sum(a.reached for a in found)} reach "
         f"the target; {sum(one.runs for one in found) + after + around} runs in all, {after} of "
         "them to set back what gains nothing."
-    )
+    ) + (lost if late else "")
 
 
 def _goal(request: Request) -> Goal:
@@ -164,11 +170,15 @@ def _asked(request: Request, goal: Goal, space: Space, base: Settings) -> dict[s
         "scene text": list(dict.fromkeys(digest(text) for text in texts)),
         "engine": goal.engine,
         "engine version": engine(goal.engine).version(),
+        "crankcheck version": crankcheck_version(),
+        "Optuna version": version("optuna"),
         "target": goal.target,
         "turns": goal.turns,
         "seed": request.seed,
+        "limit_s": request.limit_s,
         "profile": dict(base),
         "knobs": {knob.name: list(knob.values) for knob in space.knobs},
+        "starts": [dict(start) for start in space.starts],
         "model of cost": [space.work(scene)(base) for scene in goal.scenes],
         "measure": MEASURE,
     }

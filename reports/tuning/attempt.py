@@ -68,6 +68,7 @@ class Attempt:
     ``steps_per_turn`` is None where no step reached the target for good: ``error`` is then the
     least that is over it, at ``tried`` steps in a turn. ``cost_us`` is what a turn takes by the
     model, all scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
+    ``timed_out`` says that the clock ended a run: this says nothing for good about the settings.
     """
 
     settings: Mapping[str, SettingValue]
@@ -78,6 +79,7 @@ class Attempt:
     cost_us: float
     runs: int
     reason: str = ""
+    timed_out: bool = False
 
     @property
     def reached(self) -> bool:
@@ -96,6 +98,10 @@ class Attempt:
 
 class LostError(Exception):
     """A run that came to nothing: no other step is tried with its settings."""
+
+    def __init__(self, scene: str, status: str, reason: str) -> None:
+        super().__init__(f"{scene}: {status}: {reason}")
+        self.timed_out = status == "timeout"
 
 
 class Bench:
@@ -125,9 +131,9 @@ class Bench:
         cell = self.goal.cell(scene, settings, steps_per_turn)
         found = self._isolated.call(measured, cell, False)
         if isinstance(found, Lost):
-            raise LostError(f"{scene.name}: {found.status}: {found.reason}")
+            raise LostError(scene.name, found.status, found.reason)
         if found.row["status"] == "unsupported":
-            raise LostError(f"{scene.name}: unsupported: {found.row['reason']}")
+            raise LostError(scene.name, "unsupported", str(found.row["reason"]))
         return found.row
 
     def refuse_unsupported(self, settings: Settings) -> None:
@@ -164,18 +170,18 @@ class Bench:
             worst[steps_per_turn] = max(errors)
             return worst[steps_per_turn][0]
 
-        reason = ""
+        reason, timed_out = "", False
         steps: int | None = None
         try:
             found = coarsest(error_at, goal.target, start, goal.least, max(most, goal.least))
             steps = found.steps
         except LostError as lost:
-            reason = str(lost)
+            reason, timed_out = str(lost), lost.timed_out
         over = [n for n, (error, _) in worst.items() if not error <= goal.target]
         tried = steps or min(over, key=lambda n: (worst[n][0], n), default=start)
         error, scene = worst[tried] if tried in (steps, *over) else (math.inf, "")
         cost_us = tried * each
-        return Attempt(dict(settings), steps, tried, error, scene, cost_us, runs, reason)
+        return Attempt(dict(settings), steps, tried, error, scene, cost_us, runs, reason, timed_out)
 
 
 def error_of(row: Row) -> float:

@@ -1,14 +1,16 @@
 """The search: Optuna proposes values of the knobs, each is tried, the cheapest that reaches wins.
 
 Everything is a function of seed and of what the trials before found, down to the sampler, which is
-made anew from seed and number of every trial: the same seed finds the same settings, also where a
-search is ended and taken up again.
+made anew from seed and place of every trial: the same seed finds the same settings, also where a
+search is ended and taken up again. Only a run that the clock ends is none: its trial fails, and its
+place is open when the search is taken up again, to the same settings.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from optuna.distributions import BaseDistribution, CategoricalDistribution, IntDistribution
@@ -24,13 +26,20 @@ from sim.engine import SettingValue
 
 FOUND = "found"
 """Where a trial keeps its attempt."""
+PLACE = "place"
+"""Where a trial keeps its number among those that came to an end, also one that the clock ended."""
 Try = Callable[[Settings, Attempt | None], Attempt]
 
 
 def attempts(study: Study) -> list[Attempt]:
-    """What the trials of a study found, in order."""
+    """What the trials of a study found, by their places; what the clock ended is not among it."""
+    return [attempt for _, attempt in sorted(_known(study).items())]
+
+
+def _known(study: Study) -> dict[int, Attempt]:
+    """From place to what the trial there found."""
     complete = study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
-    return [_attempt(trial) for trial in complete]
+    return {trial.user_attrs[PLACE]: _attempt(trial) for trial in complete}
 
 
 def best_of(found: list[Attempt]) -> Attempt | None:
@@ -60,56 +69,81 @@ def search(
     """Fill the study up to the budget; the trials that it has count.
 
     The starts of the space come first. Settings that were tried before are not run again, and the
-    trial counts. Returns the attempts of all trials that there are.
+    trial counts. Returns the attempts of all trials that there are, also of those that the clock
+    ended just now, which the study does not keep.
     """
-    known = attempts(study)
-    while len(known) < plan.budget:
-        trial, values = _asked(study, plan, len(known))
+    known = _known(study)
+    for place in (each for each in range(plan.budget) if each not in known):
+        trial, values = _asked(study, plan, place)
         settings = plan.space.settings(plan.profile, values)
-        before = next((a for a in known if dict(a.settings) == settings), None)
-        found = replace(before, runs=0) if before else attempt(settings, best_of(known))
-        trial.set_user_attr(FOUND, found.plain())
-        trial.set_constraint("decades over the target", found.over(plan.target))
-        study.tell(trial, found.cost_us)
-        known.append(found)
+        so_far = [known[each] for each in sorted(known)]
+        before = next((a for a in so_far if dict(a.settings) == settings), None)
+        found = replace(before, runs=0) if before else attempt(settings, best_of(so_far))
+        _tell(study, plan, trial, place, found)
+        known[place] = found
         advance()
-    return known
+    return [known[place] for place in sorted(known)]
+
+
+def _tell(study: Study, plan: Plan, trial: Trial, place: int, found: Attempt) -> None:
+    """Keep what a trial found; where the clock ended it, only that it is to be tried again."""
+    trial.set_user_attr(PLACE, place)
+    if found.timed_out:
+        study.tell(trial, state=TrialState.FAIL)
+        return
+    trial.set_user_attr(FOUND, found.plain())
+    trial.set_constraint("decades over the target", found.over(plan.target))
+    study.tell(trial, found.cost_us)
 
 
 def plainer(
-    space: Space, profile: Settings, best: Attempt, attempt: Try
+    space: Space, first: Attempt, best: Attempt, attempt: Try
 ) -> tuple[Attempt, list[Attempt]]:
     """The best with every knob back at the profile's value that it gains nothing by.
 
-    Also returns what was tried for it. As cheap counts what the step is not resolved to.
+    ``first`` is the attempt of the profile itself, which is taken where it is as cheap. Also
+    returns what was tried. As cheap counts what the step is not resolved to.
     """
-    tried = []
+    tried: list[Attempt] = []
+    most_us = RESOLUTION * best.cost_us
+    if first.reached and first.cost_us <= most_us:
+        return first, tried
     held = best
     for knob in space.knobs:
-        back = {name: profile[name] for name in knob.targets}
+        back = {name: first.settings[name] for name in knob.targets}
         if any(held.settings[name] != value for name, value in back.items()):
             found = attempt({**held.settings, **back}, best)
             tried.append(found)
-            if found.reached and found.cost_us <= RESOLUTION * best.cost_us:
+            if found.reached and found.cost_us <= most_us:
                 held = found
     return held, tried
 
 
-def _asked(study: Study, plan: Plan, index: int) -> tuple[Trial, Values]:
+def _asked(study: Study, plan: Plan, place: int) -> tuple[Trial, Values]:
     """The next trial, and the values that it stands for.
 
-    ``index`` counts the trials that came to an end, not those that were cut short.
+    ``place`` counts the trials that came to an end, not those that were cut short.
     """
     study.sampler = TPESampler(
-        seed=int(np.random.SeedSequence([plan.seed, index]).generate_state(1)[0]),
+        seed=int(np.random.SeedSequence([plan.seed, place]).generate_state(1)[0]),
         constant_liar=False,  # a trial that was cut short is to leave no trace
     )
     space = plan.space
-    if index < len(space.starts) and not study.get_trials(states=(TrialState.WAITING,)):
-        start = space.starts[index]
-        study.enqueue_trial({knob.name: _place(knob, start[knob.name]) for knob in space.knobs})
+    if not study.get_trials(states=(TrialState.WAITING,)):
+        given = _timed_out(study).get(place)
+        if given is None and place < len(space.starts):
+            start = space.starts[place]
+            given = {knob.name: _place(knob, start[knob.name]) for knob in space.knobs}
+        if given is not None:
+            study.enqueue_trial(given)
     trial = study.ask({knob.name: _distribution(knob) for knob in space.knobs})
     return trial, {k.name: _value(k, trial.params[k.name]) for k in space.knobs}
+
+
+def _timed_out(study: Study) -> dict[int, dict[str, Any]]:
+    """From place to what was tried there when the clock ended it."""
+    failed = study.get_trials(deepcopy=False, states=(TrialState.FAIL,))
+    return {t.user_attrs[PLACE]: dict(t.params) for t in failed if PLACE in t.user_attrs}
 
 
 def _distribution(knob: Knob) -> BaseDistribution:

@@ -116,8 +116,8 @@ def _locked(path: Path | None) -> Iterator[None]:
     if path is None:
         yield
         return
-    aside = path.with_name(f".{path.name}.lock")
-    lock = FileLock(aside, timeout=0)
+    # The file of the lock stays: removed, it would let one search lock the old file, one a new.
+    lock = FileLock(path.with_name(f".{path.name}.lock"), timeout=0)
     try:
         lock.acquire()
     except Timeout:
@@ -128,7 +128,6 @@ def _locked(path: Path | None) -> Iterator[None]:
         yield
     finally:
         lock.release()
-        aside.unlink(missing_ok=True)
 
 
 def _refuse_other(path: Path, held: Asked, asked: Asked) -> None:

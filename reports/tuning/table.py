@@ -82,20 +82,18 @@ def _lines(goal: Goal, space: Space, sides: Sequence[Side]) -> list[tuple[str, l
 def _ratio(sides: Sequence[Side]) -> str:
     """How the last side compares with the first, with the noise of the comparison."""
     first, last = sides[0], sides[-1]
-    if first is last or first.taken is None or last.taken is None:
+    if first is last or not (first.attempt.reached and last.attempt.reached):
         return ""
-    if not (first.attempt.reached and last.attempt.reached):
-        return ""
+    what = f"cost of a turn, {last.title} over {first.title}"
+    model = f"{last.attempt.cost_us / first.attempt.cost_us:.2f} by the model that was searched on"
+    if first.taken is None or last.taken is None:
+        return f"{what}: {model}"
     ratio = last.taken.s_per_turn / first.taken.s_per_turn
     noise = max(first.taken.noise, last.taken.noise)
-    model = last.attempt.cost_us / first.attempt.cost_us
     words = (
         "no difference" if abs(math.log(ratio)) <= noise else "cheaper" if ratio < 1 else "DEARER"
     )
-    return (
-        f"cost of a turn, {last.title} over {first.title}: {ratio:.2f} measured ({words}; "
-        f"A/A noise {noise:.1%}), {model:.2f} by the model that was searched on"
-    )
+    return f"{what}: {ratio:.2f} measured ({words}; A/A noise {noise:.1%}), {model}"
 
 
 def _worst(rows: Sequence[Row], column: str) -> float | None:

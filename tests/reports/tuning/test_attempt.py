@@ -96,6 +96,7 @@ def test_a_run_that_takes_too_long_costs_one_attempt(two: Bench) -> None:
         assert found.reason == "fourbar-lecture-1: timeout: no end within 0.0001 s"
         assert found.over(1e-4) == NONE_KNOWN
         assert found.runs == 1
+        assert found.timed_out
         with pytest.raises(LostError, match="timeout"):
             bench.row(bench.goal.scenes[0], SETTINGS, 90)
     finally:
@@ -106,6 +107,7 @@ def test_settings_that_the_engine_refuses_cost_one_attempt(two: Bench) -> None:
     found = two.attempt({**SETTINGS, "solimp_dmin": 2.0}, None)
     assert not found.reached
     assert found.reason.startswith("fourbar-lecture-1: unsupported: setting solimp_dmin: found 2")
+    assert not found.timed_out
     assert two.attempt(SETTINGS, None).reached
 
 

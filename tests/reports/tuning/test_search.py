@@ -178,7 +178,7 @@ def test_the_nearest_is_told_where_nothing_reaches() -> None:
 
 def test_what_gains_nothing_is_set_back_to_the_profile() -> None:
     best = known({**PROFILE, "kind": "fast", "idle": 5, "stiffness": 23.0}, None)
-    found, tried = plainer(SPACE, PROFILE, best, known)
+    found, tried = plainer(SPACE, known(PROFILE, None), best, known)
     assert found.settings == {**PROFILE, "kind": "fast", "stiffness": 23.0}
     assert len(tried) == 3
 
@@ -192,9 +192,79 @@ def test_many_small_losses_do_not_add_up_when_set_back() -> None:
         return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
 
     best = each_a_bit(dict.fromkeys(profile, 1), None)
-    found, _ = plainer(replace(SPACE, knobs=knobs), profile, best, each_a_bit)
+    found, _ = plainer(replace(SPACE, knobs=knobs), each_a_bit(profile, None), best, each_a_bit)
     assert found.cost_us <= 1.01 * best.cost_us
     assert found.settings["k0"] == 0
+
+
+def test_a_profile_that_is_as_cheap_is_taken_as_it_is() -> None:
+    """A knob set back alone may cost more than the profile does, and still be as good as equal."""
+
+    def costs(settings: Settings, best: Attempt | None) -> Attempt:
+        cost = {"k0 0 k1 0": 100.5, "k0 1 k1 1": 100.0}.get(
+            " ".join(f"{name} {settings[name]}" for name in ("k0", "k1")), 100.9
+        )
+        return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
+
+    space = replace(SPACE, knobs=(Knob("k0", (0, 1)), Knob("k1", (0, 1))))
+    first, best = (costs(dict.fromkeys(("k0", "k1"), k), None) for k in (0, 1))
+    assert plainer(space, first, best, costs) == (first, [])
+
+
+def clocked(*late: int) -> Try:
+    """The clock ends these of the attempts."""
+    count = 0
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        nonlocal count
+        count += 1
+        found = known(settings, best)
+        if count - 1 in late:
+            return replace(found, steps_per_turn=None, reason="timeout", timed_out=True)
+        return found
+
+    return attempt
+
+
+@pytest.mark.parametrize("late", [(0,), (1,), (9,), (0, 5, 13)])
+def test_what_the_clock_ended_is_not_kept_and_tried_again(
+    tmp_path: Path, late: tuple[int, ...]
+) -> None:
+    path = tmp_path / "kept.db"
+    with study_in(path, {}) as study:
+        once = search(study, plan(), clocked(*late))
+        kept = attempts(study)
+    assert len(once) == 14
+    lost = [a for a in once if a.timed_out]
+    assert len(lost) >= len(late)
+    assert kept == [a for a in once if not a.timed_out]
+    ran: list[Settings] = []
+
+    def counted(settings: Settings, best: Attempt | None) -> Attempt:
+        ran.append(settings)
+        return known(settings, best)
+
+    with study_in(path, {}) as study:
+        again = search(study, plan(), counted)
+        assert attempts(study) == again
+        assert search(study, plan(), interrupted(0)) == again
+    assert ran == [a.settings for a in lost if a.runs]
+    assert not any(a.timed_out for a in again)
+    assert [a.settings for a in again] == [a.settings for a in once]
+
+
+def test_settings_that_the_clock_ends_are_not_tried_twice_in_one_search() -> None:
+    ran: list[str] = []
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        ran.append(str(settings))
+        return replace(known(settings, best), steps_per_turn=None, timed_out=True)
+
+    space = replace(SPACE, knobs=SPACE.knobs[1:])
+    with study_in(None, {}) as study:
+        assert len(search(study, replace(plan(40), space=space), attempt)) == 40
+        assert attempts(study) == []
+    assert len(ran) == len(set(ran)) <= 15
 
 
 def test_progress_is_told_after_each_trial() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
+import sys
 from pathlib import Path
 
 import optuna
@@ -23,7 +24,7 @@ def test_a_study_is_gone_on_with_where_all_is_as_before(tmp_path: Path) -> None:
     check_storage(path)
     with study_in(path, ASKED) as study:
         assert len(study.trials) == 1
-    assert [each.name for each in tmp_path.iterdir()] == ["kept.db"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == [".kept.db.lock", "kept.db"]
 
 
 @pytest.mark.parametrize(
@@ -48,7 +49,7 @@ def test_another_search_is_refused_and_what_differs_is_named(
 def test_any_name_of_a_file_is_that_of_the_file(tmp_path: Path, name: str) -> None:
     with study_in(tmp_path / name, ASKED):
         pass
-    assert [each.name for each in tmp_path.iterdir()] == [name]
+    assert sorted(each.name for each in tmp_path.iterdir()) == [f".{name}.lock", name]
 
 
 def test_a_file_of_something_else_is_refused_and_left_alone(tmp_path: Path) -> None:
@@ -97,6 +98,23 @@ def test_two_searches_can_not_write_to_one_file(tmp_path: Path) -> None:
         study_in(path, ASKED),
     ):
         pass
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no file that is open is removed there")
+def test_a_search_that_comes_as_another_ends_locks_out_a_third(tmp_path: Path) -> None:
+    """The second has opened the file of the lock while the first held it; the third comes late."""
+    import fcntl
+
+    path = tmp_path / "kept.db"
+    with study_in(path, ASKED):
+        second = (tmp_path / ".kept.db.lock").open("ab")
+    with second:
+        fcntl.flock(second, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with (
+            pytest.raises(CrankcheckError, match="another search writes there now"),
+            study_in(path, ASKED),
+        ):
+            pass
 
 
 def test_a_file_that_can_no_more_be_written_is_told_without_a_traceback(tmp_path: Path) -> None:

@@ -19,6 +19,8 @@ from rich.console import Console
 from models.errors import CrankcheckError
 from models.files import shipped
 from reports.commands.tune import Request, run_tune
+from reports.tuning.cost import EVALUATIONS
+from reports.tuning.knobs import space_of
 
 SMALL = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[Request], tuple[int, str]]
@@ -63,8 +65,16 @@ def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
     tuned, found = line(text, "error of place")
     assert max(float(tuned), float(found)) <= 1e-5
     assert line(text, "solref_timeconst_steps")[0] == "5"
-    if line(text, "integrator") == ["RK4", "RK4"]:
-        assert int(line(text, "steps per turn")[1]) <= int(line(text, "steps per turn")[0])
+    cost = [
+        EVALUATIONS[integrator] * int(steps)
+        for integrator, steps in zip(
+            line(text, "integrator"), line(text, "steps per turn"), strict=True
+        )
+    ]
+    assert cost[1] <= cost[0]
+    told_ratio = re.search(r"found over profile tuned: (\S+) by the model", text)
+    assert told_ratio is not None
+    assert float(told_ratio[1]) == pytest.approx(cost[1] / cost[0], abs=0.0051)
 
 
 def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) -> None:
@@ -94,6 +104,7 @@ def test_a_search_in_two_halves_finds_what_a_whole_one_does(
         ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
         ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
         ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
+        ({"limit_s": 5.0}, "with limit_s 20.0; asked was limit_s 5.0"),
     ],
 )
 def test_a_file_of_another_search_is_refused(
@@ -101,6 +112,39 @@ def test_a_file_of_another_search_is_refused(
 ) -> None:
     with pytest.raises(CrankcheckError, match=words):
         told(replace(SMALL, output=kept, **change))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("where", "now", "words"),
+    [
+        ("reports.commands.tune.crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
+        ("reports.commands.tune.version", lambda name: "0.0", "Optuna version 0.0"),
+        (
+            "reports.commands.tune.space_of",
+            lambda name: replace(space_of(name), starts=()),
+            "starts",
+        ),
+    ],
+)
+def test_a_file_of_other_versions_or_starts_is_refused(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, where: str, now: object, words: str
+) -> None:
+    monkeypatch.setattr(where, now)
+    with pytest.raises(CrankcheckError, match=f"asked was {words}"):
+        told(replace(SMALL, output=kept))
+
+
+def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
+    path = tmp_path / "kept.db"
+    request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
+    for _ in range(2):
+        code, text = told(request)
+        assert code == 1
+        assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
+    study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    assert {trial.state for trial in study.trials} == {TrialState.FAIL}
+    with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; asked was limit_s 20"):
+        told(replace(request, limit_s=20.0))
 
 
 def test_nothing_that_reaches_is_told_with_what_came_nearest(
@@ -218,4 +262,8 @@ def test_ctrl_c_keeps_the_trials_and_leaves_no_process(tmp_path: Path) -> None:
         f"{kept} of 1000 trials are kept in {path}; the same command goes on from there",
         "crankcheck: interrupted",
     ]
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["kept.db", "run.py"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == [
+        ".kept.db.lock",
+        "kept.db",
+        "run.py",
+    ]
