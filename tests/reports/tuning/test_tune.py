@@ -20,7 +20,7 @@ from models.errors import CrankcheckError
 from models.files import shipped
 from reports.commands.tune import Request, run_tune
 from reports.tuning.cost import EVALUATIONS
-from reports.tuning.knobs import space_of
+from reports.tuning.knobs import Knob, space_of
 
 SMALL = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[Request], tuple[int, str]]
@@ -75,6 +75,17 @@ def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
     told_ratio = re.search(r"found over profile tuned: (\S+) by the model", text)
     assert told_ratio is not None
     assert float(told_ratio[1]) == pytest.approx(cost[1] / cost[0], abs=0.0051)
+
+
+def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    knob = Knob("iterations", (160, 170, 180))
+    space = replace(space_of("pymunk"), knobs=(knob,), starts=())
+    monkeypatch.setattr("reports.commands.tune.space_of", lambda name: space)
+    code, text = told(replace(SMALL, engine="pymunk", target=1e-3, budget=8))
+    assert code == 0
+    assert line(text, "iterations") == ["150", "150"]
+    assert "found over profile tuned: 1.00 by the model" in text
+    assert re.search(r"8 trials, of which [5-8] reach", text)
 
 
 def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) -> None:
