@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -286,22 +285,30 @@ from pathlib import Path
 from reports.history.cache import alone
 with alone(Path(sys.argv[1]), lambda: None):
     print("in", flush=True)
-    time.sleep(0.3)
+    sys.stdin.read()
+    time.sleep(0.2)  # who does not wait is in before
+    Path(sys.argv[2]).touch()
 """
 
 
 def test_a_second_process_waits_and_says_so(tmp_path: Path) -> None:
-    lock, told = tmp_path / "locks" / "one.lock", []
+    lock, leaving, told = tmp_path / "locks" / "one.lock", tmp_path / "leaving", []
     root = str(Path(__file__).parents[2])
     with subprocess.Popen(
-        [sys.executable, "-c", HOLDER, str(lock)],
+        [sys.executable, "-c", HOLDER, str(lock), str(leaving)],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env=os.environ | {"PYTHONPATH": root},
     ) as holder:
-        assert holder.stdout is not None
-        assert holder.stdout.readline().strip() == b"in"
-        began = time.perf_counter()
-        with alone(lock, lambda: told.append("waiting")):
-            waited = time.perf_counter() - began
+        stdin, stdout = holder.stdin, holder.stdout
+        assert stdin is not None
+        assert stdout is not None
+        assert stdout.readline().strip() == b"in"
+
+        def told_to_wait() -> None:
+            told.append("waiting")
+            stdin.close()
+
+        with alone(lock, told_to_wait):
+            assert leaving.exists()
     assert told == ["waiting"]
-    assert waited > 0.1
