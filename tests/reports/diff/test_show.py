@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
 
 from reports.diff.changes import Diff, compare
+from reports.diff.costs import cost_text
 from reports.diff.junit import junit
 from reports.diff.markdown import markdown
-from reports.diff.runs import Found, Run
+from reports.diff.runs import Cost, Found, Run
 from reports.diff.terminal import show
 from reports.diff.words import left_out, lines
 
@@ -121,3 +123,14 @@ def test_versions_are_told_once_or_with_each_row(cell: Make, run: Group) -> None
 def test_cells_that_failed_in_both_are_told(cell: Make, run: Group) -> None:
     same = run(cell("a", status="diverged"), cell("b", angle=1e-3))
     assert "1 of the equal ones failed in both (diverged)" in shown(compare(same, same))
+
+
+@pytest.mark.parametrize(
+    ("apart", "told"), [(0.01, "1.20 x (median of 1 cell)"), (0.3, "equal inside the noise of 30%")]
+)
+def test_costs_are_equal_inside_the_noise_of_the_runs(
+    cell: Make, run: Group, apart: float, told: str
+) -> None:
+    old = replace(cell(angle=1e-3), cost=Cost(2.0, apart, "abacus"))
+    new = replace(cell(angle=1e-3), cost=Cost(2.4, apart, "abacus"))
+    assert told in cost_text(compare(run(old), run(new)))

@@ -158,6 +158,7 @@ class Large(Stored):
         return super().trace(key.partition(" ")[0])
 
 
+@pytest.mark.slow
 def test_the_page_of_the_default_study_is_below_8_megabytes(small: Stored) -> None:
     one = small.cells[(small.cells["scene"] == "shaper") & (small.cells["status"] == "ok")]
     lines = one[one["variant"] == "tuned"].iloc[[0, 1, 2, 0, 1, 2, 0]]
