@@ -139,6 +139,17 @@ def test_costs_inside_the_noise_are_equal_and_the_more_accurate_is_chosen() -> N
     assert (quiet.variant, quiet.equal_to) == ("fast", ())
 
 
+def test_a_shorter_step_of_the_same_settings_is_dearer_however_noisy_the_clock() -> None:
+    noisy = {"us_per_step_a": 10.0, "us_per_step_b": 25.0}
+    found = of(
+        cell("a", "x", 90, 9e-4, 11.0, **noisy),
+        cell("a", "x", 180, 1e-4, 10.0, **noisy),
+        cell("a", "x", 360, 1e-5, 4.0, **noisy),
+    )
+    assert found.steps_per_turn == 90
+    assert found.equal_to == ()
+
+
 def test_a_promise_that_a_finer_step_breaks_comes_with_caution_and_a_steadier_choice() -> None:
     found = of(
         cell("a", "wild", 90, 9e-4, 1.0),
