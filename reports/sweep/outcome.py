@@ -17,9 +17,9 @@ from reports.series import Array
 from reports.store.trace import trace
 from sim.run import time_run
 
-REPEATS = 3
+REPEATS = 2
 """Timed repeats of a cell in one pass."""
-REPEAT_S = 0.02
+REPEAT_S = 0.015
 """About how long a repeat lasts: long over the clock's resolution, short enough for hundreds."""
 UNMEASURED: Mapping[str, object] = {"logged_us_per_step": None, "wall_s": None}
 """The columns of a cell that was lost."""
@@ -81,7 +81,7 @@ def timed(cell: Cell, us_per_step: float) -> tuple[float, ...]:
 
 
 def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:
-    """The columns of a timing, from two passes A and B over the same cells, some time apart.
+    """The columns of a timing, from passes A and B over the same cells, some time apart.
 
     How far their minima lie apart is the noise of comparing cells with each other.
     """

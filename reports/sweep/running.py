@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 from rich.console import Console
 
@@ -20,9 +21,10 @@ from reports.sweep.outcome import UNMEASURED, Outcome, timed, timing_row
 from reports.sweep.parallel import Backend, run_all
 from reports.sweep.progress import progress_bar
 
+PASSES = 6
+"""Passes of timing over the same cells, A and B in turn: a disturbance is shorter than most."""
 BLOCK = 150
-"""Cells between the two passes of timing, which is about a quarter of a minute; it is also what is
-lost of the timings when a sweep is ended."""
+"""Cells of a pass, which takes some ten seconds; their timings are lost when a sweep is ended."""
 
 
 @dataclass(frozen=True)
@@ -73,33 +75,31 @@ class Running:
         isolated: Isolated[tuple[float, ...]] = Isolated(self.limits)
         count = 0
         try:
-            with progress_bar(self.progress, "timings", 2 * len(missing)) as advance:
+            with progress_bar(self.progress, "timings", PASSES * len(missing)) as advance:
                 for at in range(0, len(missing), BLOCK):
                     block = missing[at : at + BLOCK]
-                    passes: list[list[tuple[float, ...] | Lost]] = []
-                    for _ in ("A", "B"):
-                        passes.append([])
+                    found: dict[str, list[tuple[float, ...] | Lost]] = {t.key: [] for t in block}
+                    for _ in range(PASSES):
                         for task in block:
-                            passes[-1].append(isolated.call(timed, task.cell, guesses[task.key]))
+                            guess = guesses[task.key]
+                            found[task.key].append(isolated.call(timed, task.cell, guess))
                             advance()
-                    count += self._keep_timings(block, *passes)
+                    count += self._keep_timings(block, found)
         finally:
             isolated.close()
         return replace(done, timed=count)
 
     def _keep_timings(
-        self,
-        block: Sequence[Task],
-        a: Sequence[tuple[float, ...] | Lost],
-        b: Sequence[tuple[float, ...] | Lost],
+        self, block: Sequence[Task], found: Mapping[str, Sequence[tuple[float, ...] | Lost]]
     ) -> int:
-        """Add the timings of two passes over the same cells; how many were not lost."""
+        """Add the timings of some cells; how many were not lost in any pass."""
         where = {"processor": self.facts["processor"], "made": self.facts["made"]}
         count = 0
-        for task, first, second in zip(block, a, b, strict=True):
-            if not isinstance(first, Lost) and not isinstance(second, Lost):
-                row = timing_row(task.cell, first, second)
-                self.writer.timing({"key": task.key, **row, **where})
+        for task in block:
+            passes = [one for one in found[task.key] if not isinstance(one, Lost)]
+            if len(passes) == PASSES:
+                a, b = (list(chain(*passes[half::2])) for half in (0, 1))
+                self.writer.timing({"key": task.key, **timing_row(task.cell, a, b), **where})
                 count += 1
         self.writer.flush()
         return count
