@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from reports.choice.lines import Line, called
+from reports.choice.lines import Line, Named, called, named
 from sim.engine import SettingValue
 
 OWN = "every setting as the engine is shipped"
-Named = tuple[str, str, str]
-"""Engine, variant and drive."""
 
 
 def usual(lines: Sequence[Line], engine: str) -> Line:
@@ -24,7 +22,7 @@ def settings_told(lines: Sequence[Line]) -> Mapping[Named, str]:
     Those of an engine as shipped go without saying; where it was not run so, its first variant is
     told in full, and of the others what differs from that.
     """
-    return {(line.engine, line.variant, line.drive): _told(line, lines) for line in lines}
+    return {named(line): _told(line, lines) for line in lines}
 
 
 def value_text(value: SettingValue | None) -> str:

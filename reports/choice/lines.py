@@ -54,6 +54,15 @@ class Line:
         return float(first["dt_s"] * first["steps_per_turn"])
 
 
+Named = tuple[str, str, Drive]
+"""Engine, variant and drive: what settings are told by in tables, legends and looks."""
+
+
+def named(line: Line) -> Named:
+    """What the settings of a line are told by."""
+    return line.engine, line.variant, line.drive
+
+
 def called(variant: str, drive: Drive) -> str:
     """A variant by its name, and its drive where that is not the usual one."""
     return variant if drive == "prescribed" else f"{variant}, {drive} drive"

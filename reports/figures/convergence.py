@@ -20,9 +20,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from reports.choice.lines import Line
+from reports.choice.lines import Line, Named, named
 from reports.figures.grids import grid
-from reports.figures.marks import Mark, Name, label, marks, name_of
+from reports.figures.marks import Mark, label, marks
 from reports.figures.notes import notes
 from reports.figures.points import PLACE, around, ends, fitted, measured, of_scene, scenes_of
 from reports.figures.sheet import Panels, sheet
@@ -76,11 +76,11 @@ def draw_all(report: Report) -> Figure:
     return figure
 
 
-def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float) -> None:
+def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Named, Mark], unit_s: float) -> None:
     """Points, fits and floors of one scene; steps in ``unit_s``."""
     left = axes.get_xlim()[0]
     for line in lines:
-        mark, rows, fit = known[name_of(line)], measured(line), line.fit
+        mark, rows, fit = known[named(line)], measured(line), line.fit
         x = rows["dt_s"] / unit_s
         axes.plot(x, rows["place_pure"], color=mark.colour, linewidth=0.35)
         axes.plot(x, rows["place_pure"], linestyle="none", **mark.points)
@@ -93,7 +93,7 @@ def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s
 
 
 def _failed(
-    axes: Axes, lines: Sequence[Line], known: Mapping[Name, Mark], unit_s: float, strip: float
+    axes: Axes, lines: Sequence[Line], known: Mapping[Named, Mark], unit_s: float, strip: float
 ) -> None:
     """The runs that did not end well, in rows of a strip along the top."""
     rows = [line for line in lines if ends(line)]
@@ -106,7 +106,7 @@ def _failed(
         steps = line.cells.loc[line.cells["status"] != "ok", "dt_s"] / unit_s
         high = 1.0 - strip * (at + 0.5) / len(rows)
         axes.plot(
-            steps, [high] * len(steps), ls="none", transform=across, **known[name_of(line)].points
+            steps, [high] * len(steps), ls="none", transform=across, **known[named(line)].points
         )
 
 
@@ -163,12 +163,12 @@ def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
     )
 
 
-def _entries(lines: Sequence[Line], known: Mapping[Name, Mark]) -> list[tuple[Artist, str]]:
+def _entries(lines: Sequence[Line], known: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
     """The legend: each variant with its fit, and how its other runs ended."""
     return [
         (
-            Line2D([], [], **known[name_of(line)].style),
-            ": ".join([label(name_of(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
+            Line2D([], [], **known[named(line)].style),
+            ": ".join([label(named(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
         )
         for line in lines
     ]

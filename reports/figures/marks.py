@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from reports.choice.lines import Line, called
-from sim.engine import Drive
+from reports.choice.lines import Line, Named, called, named
 
 MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "X", "P", "h", "*")
 DASHES: tuple[tuple[float, ...], ...] = (
@@ -29,7 +28,6 @@ COLOURS = (
 """One hue an engine, from dark to light."""
 SIZES = {True: (3.0, 3.4, 3.8, 4.2), False: (2.6, 4.0, 5.4, 6.0)}
 """Of filled and open markers [point]: open ones of equal curves stand around each other."""
-Name = tuple[str, str, Drive]
 
 
 @dataclass(frozen=True)
@@ -69,26 +67,21 @@ class Mark:
         }
 
 
-def name_of(line: Line) -> Name:
-    """What a variant is told by: engine, variant, drive."""
-    return line.engine, line.variant, line.drive
-
-
-def label(name: Name) -> str:
+def label(name: Named) -> str:
     """A variant as a legend calls it; the drive where it is not the usual one."""
     engine, variant, drive = name
     return f"{engine} {called(variant, drive)}"
 
 
-def marks(lines: Iterable[Line]) -> Mapping[Name, Mark]:
+def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:
     """A mark for each variant, the same in all figures of a store.
 
     No two have the same marker and dashes; engines differ in filling and hue as well.
     """
-    names = list(dict.fromkeys(name_of(line) for line in lines))
+    names = list(dict.fromkeys(named(line) for line in lines))
     engines = list(dict.fromkeys(engine for engine, _, _ in names))
     before = dict.fromkeys(engines, 0)
-    found: dict[Name, Mark] = {}
+    found: dict[Named, Mark] = {}
     for name in names:
         at, k = engines.index(name[0]), before[name[0]]
         before[name[0]] += 1

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reports.choice.held import OWN
-from reports.choice.lines import Line
+from reports.choice.lines import Line, named
 from reports.choice.machines import machine
-from reports.figures.marks import label, name_of
+from reports.figures.marks import label
 from reports.page.numbers import count
 from reports.page.report import Report
 
@@ -36,7 +36,7 @@ def study(lines: Sequence[Line]) -> str:
     """The size of the grid that the lines are of."""
     scenes = dict.fromkeys(line.scene for line in lines)
     where = next(iter(scenes)) if len(scenes) == 1 else count(len(scenes), "scene")
-    variants = count(len({name_of(line) for line in lines}), "variant")
+    variants = count(len({named(line) for line in lines}), "variant")
     steps = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
@@ -63,7 +63,7 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
 
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
     """The settings of each variant, by its label (see `reports.choice.held`)."""
-    shown = dict.fromkeys(name_of(line) for line in lines)
+    shown = dict.fromkeys(named(line) for line in lines)
     return {label(name): report.settings_told[name] for name in shown}
 
 

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from reports.choice.lines import named
 from reports.choice.pareto import performance_profile
 from reports.choice.recommend import TARGETS
 from reports.figures.grids import grid
-from reports.figures.marks import Mark, label, marks, name_of
+from reports.figures.marks import Mark, label, marks
 from reports.figures.notes import notes
 from reports.figures.style import power_of_ten
 from reports.page.report import Report
@@ -38,7 +39,7 @@ def draw_all(report: Report) -> Figure | None:
     under = notes(report, lines, timed=True)
     title = "Performance profile: reached within a factor of the fastest"
     figure, axes = grid(titles, title, (FACTOR, SHARE), entries, under, height=1.6)
-    by_label = {label(name_of(line)): known[name_of(line)] for line in lines}
+    by_label = {label(named(line)): known[named(line)] for line in lines}
     last = max(float(stair["factor"].max()) for stair in stairs)
     for stair, one in zip(stairs, axes, strict=True):
         _axes(one, last)

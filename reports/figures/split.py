@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from reports.choice.lines import Line
+from reports.choice.lines import Line, named
 from reports.figures.grids import grid
-from reports.figures.marks import label, name_of
+from reports.figures.marks import label
 from reports.figures.notes import notes
 from reports.figures.points import ends
 from reports.figures.style import INK, TINY, power_of_ten
@@ -51,7 +51,7 @@ def draw(report: Report, scene: str) -> Figure | None:
         return None
     found = [_cell(line, split(line, report.stored.trace, body, known.longest_m)) for line in lines]
     unit = "rad" if body.scale == 1.0 else "L"
-    titles = [label(name_of(line)) for line in lines]
+    titles = [label(named(line)) for line in lines]
     steps = {one.steps_per_turn for one in found if one is not None}
     at = " and ".join(f"{n:g}" for n in sorted(steps))
     title = f"Error over the crank angle: {scene}, {body.name}, {at} steps per turn"

@@ -7,10 +7,11 @@ import math
 from collections.abc import Iterator
 
 from reports.choice.cost import MEANS, Costs
+from reports.choice.lines import named
 from reports.choice.recommend import Recommendation
 from reports.choice.snippets import LANGUAGE
 from reports.choice.table import noise_line, short_target
-from reports.figures.marks import label, name_of
+from reports.figures.marks import label
 from reports.figures.notes import made, settings_of, study, versions
 from reports.fits.words import short
 from reports.markdown import code, fitted, folded, plain, table
@@ -182,7 +183,7 @@ def _time(costs: Costs) -> list[str]:
 def _fits(report: Report) -> str:
     """Order or floor in words, a row for each scene and variant."""
     rows = [
-        (line.scene, label(name_of(line)), line.words, *_finest(line.fit.runs, line.period_s))
+        (line.scene, label(named(line)), line.words, *_finest(line.fit.runs, line.period_s))
         for line in report.lines
     ]
     heads = ("scene", "variant", "error of place", "finest error:", "at steps per turn:")
@@ -207,7 +208,7 @@ def _failures(report: Report) -> Iterator[str]:
             steps = ", ".join(f"{n:g}" for n in cells["steps_per_turn"])
             reason = str(cells["reason"].iloc[0])
             number += len(cells)
-            rows.append((line.scene, label(name_of(line)), status, steps, reason))
+            rows.append((line.scene, label(named(line)), status, steps, reason))
     if rows:
         heads = ("scene", "variant", "ended", "at steps per turn", "first reason")
         body = table(heads, rows, ROOM["failures"])

@@ -15,10 +15,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from reports.choice.lines import Line
+from reports.choice.lines import Line, Named, named
 from reports.choice.pareto import front, front_over_all
 from reports.figures.grids import grid
-from reports.figures.marks import Mark, Name, label, marks, name_of
+from reports.figures.marks import Mark, label, marks
 from reports.figures.notes import notes
 from reports.figures.points import PLACE, around, ends, scenes_of, timed
 from reports.figures.sheet import Panels, sheet
@@ -63,17 +63,17 @@ def draw_all(report: Report) -> Figure | None:
     return figure
 
 
-def _panel(axes: Axes, report: Report, lines: Sequence[Line], known: Mapping[Name, Mark]) -> None:
+def _panel(axes: Axes, report: Report, lines: Sequence[Line], known: Mapping[Named, Mark]) -> None:
     """The curves of one scene over its front."""
     cells = pd.concat([line.cells for line in lines])
     best = cells.set_index("key").loc[front(cells, report.noise)]
     _stair(axes, zip(best["s_per_turn"], best["place_pure"], strict=True))
     for line in lines:
         rows = timed(line)
-        axes.plot(rows["s_per_turn"], rows["place_pure"], **known[name_of(line)].style)
+        axes.plot(rows["s_per_turn"], rows["place_pure"], **known[named(line)].style)
 
 
-def _over(axes: Axes, report: Report, known: Mapping[Name, Mark]) -> None:
+def _over(axes: Axes, report: Report, known: Mapping[Named, Mark]) -> None:
     """The curves over all scenes: variants that fail on one of them have no point."""
     over = report.candidates
     best = front_over_all(over, report.noise)
@@ -118,12 +118,12 @@ def _limits(axes: Sequence[Axes], points: Sequence[Point]) -> None:
         logarithmic(one, "y", *around(error for _, error in points))
 
 
-def _entries(lines: Sequence[Line], known: Mapping[Name, Mark]) -> list[tuple[Artist, str]]:
+def _entries(lines: Sequence[Line], known: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
     """The legend: a variant each; how runs ended that have no point, where it is one scene."""
     single = len(scenes_of(lines)) == 1
-    found: dict[Name, tuple[Artist, str]] = {}
+    found: dict[Named, tuple[Artist, str]] = {}
     for line in lines:
-        name = name_of(line)
+        name = named(line)
         fate = ends(line) if single else ""
         words = label(name) + (f" ({fate})" if fate else "")
         found.setdefault(name, (Line2D([], [], **known[name].style), words))

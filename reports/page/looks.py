@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from reports.choice.lines import Line, called
+from reports.choice.lines import Line, Named, called, named
 
 FAMILY = 4
 """Colours in a family; the style sheet has three families: cool, warm, and green with grey."""
@@ -15,8 +15,6 @@ SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "star")
 DASHES = ("solid", "dash", "dot", "dashdot")
 SIZES = (11.0, 9.5, 8.0, 6.5)
 """Of markers: equal curves of one engine are seen as rims around each other."""
-Named = tuple[str, str, str]
-"""Engine, variant and drive."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +37,6 @@ class Look:
     @property
     def name(self) -> str:
         return f"{self.engine} {self.variant}"
-
-
-def named(line: Line) -> Named:
-    """What a look belongs to."""
-    return line.engine, line.variant, line.drive
 
 
 def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:

@@ -14,9 +14,9 @@ from models.scene import Scene
 from reports.choice.across import Candidate, candidates
 from reports.choice.cost import Costs, costs_of, noise
 from reports.choice.held import settings_told
-from reports.choice.lines import Line, lines
+from reports.choice.lines import Line, Named, lines, named
 from reports.choice.recommend import TARGETS, Recommendation, recommendations
-from reports.page.looks import Look, Named, looks, named
+from reports.page.looks import Look, looks
 from reports.store.reader import Stored
 
 

@@ -13,8 +13,6 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
 from models.errors import CrankcheckError
-from models.files import parse_scene
-from models.scene import Scene
 from reports.series import Array
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 
@@ -36,11 +34,6 @@ class Stored:
     def errors(self) -> pd.DataFrame:
         """Every error of every cell, in long form."""
         return _frame(self.folder, "errors")
-
-    @cached_property
-    def scenes(self) -> Mapping[str, Scene]:
-        """The scenes by name."""
-        return {n: parse_scene(text, n) for n, text in self.manifest.scenes.items()}
 
     @cached_property
     def _traces(self) -> Mapping[str, Mapping[str, Array]]:

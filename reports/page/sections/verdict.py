@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.choice.lines import Line
+from reports.choice.lines import Line, named
 from reports.choice.recommend import Recommendation
-from reports.page.looks import Look, named
+from reports.page.looks import Look
 from reports.page.numbers import count, duration, error_text, listed
 from reports.page.report import Report
 from reports.page.sections.base import Section

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from models.files import find_scene, read_text
+from models.files import find_scene, load_scene, read_text
 from reports.figures.mechanism import draw
 from reports.figures.registry import FIGURES
 from reports.figures.style import cut, styled, width_in
@@ -84,7 +84,7 @@ def test_letters_and_names_of_a_drawing_find_room(scene: str) -> None:
         assert figure is not None
         found = boxes(figure)
     names = {text for text, _ in found}
-    for link in made.scenes[scene].links.values():
+    for link in load_scene(scene).links.values():
         assert {link.name, *link.points} <= names
     for (a, first), (b, second) in itertools.combinations(found, 2):
         assert Bbox.intersection(first, second) is None, f"{a!r} on {b!r}"
