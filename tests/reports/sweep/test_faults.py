@@ -60,10 +60,10 @@ def test_the_time_limit_is_for_each_job() -> None:
 
 
 def test_a_limit_that_ends_with_the_job_does_not_end_the_next() -> None:
-    isolated: Isolated[None] = Isolated(Limits(0.05, 2.0))
+    isolated: Isolated[None] = Isolated(Limits(0.3, 2.0))
     try:
-        for _ in range(40):  # answer and limit come together
-            isolated.call(time.sleep, 0.0495)
+        for _ in range(12):  # answer and limit come together
+            isolated.call(time.sleep, 0.2995)
             assert isolated.call(time.sleep, 0.0) is None
     finally:
         isolated.close()
