@@ -96,17 +96,18 @@ class Writer:
         write(self.folder / "trajectories" / f"{key}.parquet", _parquet(frame))
 
     def forget(self, keys: Collection[str]) -> None:
-        """Take cells out of the store, part by part, each of which is whole at every moment.
-
-        Only cells that were ended before they had errors or a trace may be forgotten.
-        """
-        for path in sorted((self.folder / "cells").glob("part-*.parquet")) if keys else ():
-            content = pq.read_table(path)
-            kept = content.filter([key not in keys for key in content.column("key").to_pylist()])
-            if kept.num_rows == 0:
-                path.unlink()
-            elif kept.num_rows < content.num_rows:
-                write(path, _table_bytes(kept))
+        """Take cells out of the store with all that hangs on them, part by part, each of which is
+        whole at every moment; the cells last, so that one that is there again is there once."""
+        if not keys:
+            return
+        for each in ("errors", "traces", "cells"):
+            for path in sorted((self.folder / each).glob("part-*.parquet")):
+                content = pq.read_table(path)
+                kept = content.filter([k not in keys for k in content.column("key").to_pylist()])
+                if kept.num_rows == 0:
+                    path.unlink()
+                elif kept.num_rows < content.num_rows:
+                    write(path, _table_bytes(kept))
 
     def flush(self) -> None:
         """Write what waits, the cells last: they are what says that a part is whole."""

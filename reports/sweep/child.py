@@ -17,7 +17,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-Job = tuple[Callable[..., object], tuple[object, ...]]
 Answer = tuple[str, object, bool]
 """How a job ended (``done``, ``crashed``), its result or reason, and whether another child should
 do the next, as this one has much memory that it did not give back."""
@@ -40,7 +39,8 @@ def main(memory_bytes: int) -> None:
     while True:
         function, arguments = pickle.loads(jobs.get())
         how, value = _done(function, arguments, memory_bytes)
-        send(answers, (how, value, _taken() - at_first > WORN * memory_bytes))
+        answer: Answer = (how, value, _taken() - at_first > WORN * memory_bytes)
+        send(answers, answer)
 
 
 def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:

@@ -50,7 +50,8 @@ class Running:
         """Run every cell that the store has not, and those that a limit ended which is wider now;
         with ``again`` all that timed out or crashed."""
         ended = stored_endings(self.writer.folder)
-        self.writer.forget({key for key, end in ended.items() if again or self._was_tighter(end)})
+        wanted = {task.key for task in self.tasks} & set(ended)  # others would not come back
+        self.writer.forget({key for key in wanted if again or self._was_tighter(ended[key])})
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
         failed: dict[str, Counter[str]] = {}

@@ -63,7 +63,11 @@ def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: Outcome) -> N
     filled(folder, outcome, "k3")
     with Writer(folder, Manifest()) as writer:
         writer.forget({"k1", "k3", "k9"})
-    assert list(read_store(folder).cells.key) == ["k2"]
+    found = read_store(folder)
+    assert list(found.cells.key) == ["k2"]
+    assert set(found.errors.key) == {"k2"}
+    assert found.trace("k1") == {}
+    assert found.trace("k2")
 
 
 def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None:

@@ -98,6 +98,13 @@ def test_a_wider_limit_runs_again_what_was_ended(
     assert ran("--limit-s", 3).startswith("2 cells: 0 run now, 2 were there")
     assert ran("--limit-s", 2).startswith("2 cells: 0 run now, 2 were there")
     assert ran("--limit-s", 2, "--again").startswith("2 cells: 1 run now, 1 were there")
+    fewer = tuple("bad.fault=none" if part == faults[3] else part for part in faults)
+    other = start(
+        "sweep", "fourbar-lecture-1", "-o", folder, "--no-timing", *fewer, more=bad_engine
+    )
+    other.communicate(timeout=120)  # a wider limit, and the cell that was ended is not asked for
+    assert other.returncode == 0
+    assert len(read_store(folder).cells) == 2
     assert ran("--limit-s", 30).startswith("2 cells: 1 run now, 1 were there")
     assert list(read_store(folder).cells.status) == ["ok", "ok"]
 
