@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
@@ -68,6 +68,19 @@ def find_scene(name_or_path: str) -> Path:
 def read_scene(path: Path) -> Scene:
     """Read one scene file. Raises SceneError with every fault of the file."""
     return parse_scene(read_text(path), str(path))
+
+
+def scene_texts(names: Iterable[str]) -> dict[str, str]:
+    """The text of each scene's file, by the scene's own name; of all shipped ones for none.
+
+    Raises CrankcheckError as `load_scene`.
+    """
+    found: dict[str, str] = {}
+    for given in tuple(names) or tuple(shipped()):
+        path = find_scene(given)
+        text = read_text(path)
+        found[parse_scene(text, str(path)).name] = text
+    return found
 
 
 def parse_scene(text: str, place: str) -> Scene:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import cast
 
 from models.errors import CrankcheckError
-from models.files import find_scene, parse_scene, read_text, shipped
+from models.files import scene_texts
 from reports.diff.runs import Found, Name, Row, Run, found_in, text
 from reports.store.key import digest
 from reports.store.manifest import MANIFEST
@@ -48,12 +48,7 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
     """The hash of each scene's text by the scene's own name; of all shipped ones for none."""
-    found = {}
-    for given in tuple(names) or tuple(shipped()):
-        path = find_scene(given)
-        content = read_text(path)
-        found[parse_scene(content, str(path)).name] = digest(content)
-    return found
+    return {name: digest(text) for name, text in scene_texts(names).items()}
 
 
 def _contents(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from models.errors import CrankcheckError
-from models.files import find_scene, parse_scene, read_text, shipped
+from models.files import scene_texts
 from reports.cell import Cell
 from reports.commands.names import chosen_engines, chosen_scenes
 from reports.commands.steps import counted
@@ -56,7 +56,7 @@ def grid(study: Study) -> Grid:
         A scene, engine, profile, setting or step that can not be run.
     """
     scenes = chosen_scenes(study.scenes)
-    texts = _texts(study.scenes)
+    texts = scene_texts(study.scenes)
     variants = [one for variant in study.variants for one in variant.each()]
     versions = {
         name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
@@ -117,13 +117,3 @@ def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]
                 f"variant {variant.name!r}: two of {variant.engine} have that name, and other "
                 "settings; give each a name of its own"
             )
-
-
-def _texts(names: Sequence[str]) -> dict[str, str]:
-    """The text of each scene's file, by the scene's own name; of all shipped ones for none."""
-    found: dict[str, str] = {}
-    for given in names or shipped():
-        path = find_scene(given)
-        text = read_text(path)
-        found[parse_scene(text, str(path)).name] = text
-    return found
