@@ -166,15 +166,17 @@ def _write(path: Path, scene: Scene, motion: Motion) -> None:
     if ending == ".csv":
         write(path, frame.to_csv(index=False, lineterminator="\n"))
         return
-    buffer = io.BytesIO()
     if ending == ".parquet":
-        frame.to_parquet(buffer, index=False)
-    else:
-        _workbook(
-            buffer,
-            frame,
-            {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()},
-        )
+        from reports.frames import parquet  # brings the comparison, which nothing else here needs
+
+        write(path, parquet(frame))
+        return
+    buffer = io.BytesIO()
+    _workbook(
+        buffer,
+        frame,
+        {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()},
+    )
     write(path, buffer.getvalue())
 
 

@@ -21,7 +21,7 @@ from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.grid import Grid, grid
-from reports.sweep.isolation import Limits
+from reports.sweep.isolation import LIMIT_S, MEMORY_GB, Limits
 from reports.sweep.parallel import backend
 from reports.sweep.running import Done, Running
 from reports.sweep.study import Study, Value, Variant, load_study
@@ -41,8 +41,8 @@ class Request:
     steps_per_turn: str | None = None
     turns: float | None = None
     settings: Sequence[str] = ()
-    limit_s: float = 60.0
-    memory_gb: float = 2.0
+    limit_s: float = LIMIT_S
+    memory_gb: float = MEMORY_GB
     jobs: int = 0
     dask: str | None = None
     timing: bool = True

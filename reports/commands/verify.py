@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -10,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
-import pandas as pd
 from rich.console import Console
 from rich.progress import Progress
 
@@ -23,7 +21,7 @@ from reports.diff.junit import joined
 from reports.diff.reading import read_run, scene_digests
 from reports.diff.runs import Run, planned_run, run_of
 from reports.diff.terminal import show as show_diff
-from reports.frames import cell_frame, error_frame
+from reports.frames import cell_frame, error_frame, parquet
 from reports.junit import junit
 from reports.pool import check_all
 from reports.provenance import provenance
@@ -190,7 +188,7 @@ def _write(request: Request, results: Results) -> None:
         for target in targets:
             write(target, _content(name, results))
     if folder:
-        write(folder / table, _parquet(error_frame(results.checked)))
+        write(folder / table, parquet(error_frame(results.checked)))
 
 
 def _content(name: str, results: Results) -> str:
@@ -232,9 +230,3 @@ def _finite(value: object) -> object:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
-
-
-def _parquet(frame: pd.DataFrame) -> bytes:
-    buffer = io.BytesIO()
-    frame.to_parquet(buffer, index=False)
-    return buffer.getvalue()

@@ -9,13 +9,13 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-import pandas as pd
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 from filelock import FileLock, Timeout
 
 from models.errors import CrankcheckError
 from models.motion import Motion
+from reports.frames import parquet
 from reports.motion_frame import motion_frame
 from reports.series import Array
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
@@ -93,7 +93,7 @@ class Writer:
         frame = motion_frame(motion)
         for name, gap in gaps.items():
             frame[f"{name}_gap_m"] = gap
-        write(self.folder / "trajectories" / f"{key}.parquet", _parquet(frame))
+        write(self.folder / "trajectories" / f"{key}.parquet", parquet(frame))
 
     def forget(self, keys: Collection[str]) -> None:
         """Take cells out of the store with all that hangs on them, part by part, each of which is
@@ -160,10 +160,4 @@ def _create(folder: Path) -> None:
 def _table_bytes(content: pa.Table) -> bytes:
     buffer = io.BytesIO()
     pq.write_table(content, buffer, compression="zstd")
-    return buffer.getvalue()
-
-
-def _parquet(frame: pd.DataFrame) -> bytes:
-    buffer = io.BytesIO()
-    frame.to_parquet(buffer, index=False, compression="zstd")
     return buffer.getvalue()
