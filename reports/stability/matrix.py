@@ -1,0 +1,196 @@
+"""What `crankcheck stability` finds and stores: cases, graded runs, critical values, pictures."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from models.errors import CrankcheckError
+
+Outcome = Literal[
+    "ok",
+    "degraded",
+    "drifts",
+    "branch-changed",
+    "locked",
+    "silently-open",
+    "diverged",
+    "crashed",
+    "unsupported",
+]
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+FORMAT = 1
+FILE = "stability.json"
+
+
+@dataclass(frozen=True)
+class CaseFacts:
+    """A case as a reader needs it: what is made hard, and what a good engine does.
+
+    ``values`` are those of the parameter, from easy to hard; ``labels`` says them in a few
+    characters. ``good`` are the outcomes of an engine that holds; ``within`` is the class: the
+    error, as a pure number, that counts as held.
+    """
+
+    name: str
+    group: str
+    title: str
+    source: str
+    truth: str
+    expected: str
+    parameter: str
+    unit: str
+    values: tuple[float, ...]
+    labels: tuple[str, ...]
+    good: tuple[Outcome, ...]
+    within: float
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One run of a case at one value, graded.
+
+    ``error`` is the worst error of place, ``gap`` the widest open pin, ``drive`` the error of the
+    crank: pure numbers (rad, or lengths over the longest link), NaN where there is none. ``sine``
+    is how far the scene stays from its nearest singular position (1 best, 0 singular). Where the
+    outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad] say it. ``grid`` is False for
+    the values that a bisection looked at.
+    """
+
+    case: str
+    engine: str
+    profile: str
+    value: float
+    label: str
+    outcome: Outcome
+    reason: str
+    error: float = math.nan
+    gap: float = math.nan
+    drive: float = math.nan
+    sine: float = math.nan
+    at_s: float = math.nan
+    at_driver_rad: float = math.nan
+    steps: int = 0
+    dt_s: float = math.nan
+    wall_s: float = math.nan
+    grid: bool = True
+
+
+@dataclass(frozen=True)
+class Critical:
+    """How far one engine with one profile holds a case.
+
+    ``holds`` is the hardest value, from the easy end on, up to which every run was good, ``fails``
+    the easiest beyond it that was not; NaN where there is none. ``outcome`` is what happens there,
+    ``words`` says it all in a line, ``command`` reproduces the run at ``fails`` (or at ``holds``
+    where nothing fails).
+    """
+
+    case: str
+    engine: str
+    profile: str
+    holds: float
+    fails: float
+    outcome: Outcome
+    words: str
+    command: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A run that failed, to be seen moving beside the truth.
+
+    ``drawing`` is what `reports.page.drawing.drawing` gives, and ``rows`` the run's displacements
+    from it; ``title`` says what is seen. The run is that of ``case``, ``engine``, ``profile`` at
+    ``value``.
+    """
+
+    case: str
+    engine: str
+    profile: str
+    value: float
+    label: str
+    title: str
+    drawing: Mapping[str, object]
+    rows: object
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """The whole result; ``facts`` are versions, processor and settings."""
+
+    facts: Mapping[str, str]
+    cases: tuple[CaseFacts, ...]
+    runs: tuple[Graded, ...]
+    critical: tuple[Critical, ...]
+    pictures: tuple[Picture, ...] = field(default=())
+
+    def case(self, name: str) -> CaseFacts:
+        """The case of that name."""
+        return next(case for case in self.cases if case.name == name)
+
+
+def to_json(matrix: Matrix) -> str:
+    """The matrix as text; what is not finite as null."""
+    content = {"format": FORMAT, **asdict(matrix)}
+    return json.dumps(_finite(content), indent=1, ensure_ascii=False) + "\n"
+
+
+def read_matrix(folder: Path) -> Matrix:
+    """The matrix stored in a folder.
+
+    Raises
+    ------
+    CrankcheckError
+        No such file, one that is damaged, or one of another format.
+    """
+    path = folder / FILE
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        found = content["format"]
+        if found != FORMAT:
+            raise CrankcheckError(
+                f"{path}: format {found}; this crankcheck reads format {FORMAT}: run "
+                f"`crankcheck stability -o {folder}` again"
+            )
+        return Matrix(
+            facts=content["facts"],
+            cases=tuple(CaseFacts(**_tuples(row)) for row in content["cases"]),
+            runs=tuple(Graded(**_numbers(row)) for row in content["runs"]),
+            critical=tuple(Critical(**_numbers(row)) for row in content["critical"]),
+            pictures=tuple(Picture(**row) for row in content["pictures"]),
+        )
+    except FileNotFoundError:
+        raise CrankcheckError(
+            f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"
+        ) from None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        why = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+        raise CrankcheckError(
+            f"{path}: can not be read ({why}); run `crankcheck stability -o {folder}` again"
+        ) from None
+
+
+def _finite(value: object) -> object:
+    """The value with numbers that JSON has no name for as None."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
+
+
+def _numbers(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with NaN where the file has null."""
+    return {key: math.nan if value is None else value for key, value in row.items()}
+
+
+def _tuples(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with tuples where the file has lists."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
