@@ -188,14 +188,9 @@ class FromRest:
         return abs(self.speed_rad_s)
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        tau = np.clip(time_s / self.rise_s, 0.0, 1.0)
-        turn = math.tau * tau
-        share = tau**2 / 2 - np.sin(turn / 2) ** 2 / (2 * math.pi**2)
-        ramp = self.speed_rad_s * self.rise_s * share
-        after = self.speed_rad_s * np.maximum(time_s - self.rise_s, 0.0)
-        omega = self.speed_rad_s * (tau - np.sin(turn) / math.tau)
-        alpha = self.speed_rad_s / self.rise_s * 2.0 * np.sin(turn / 2) ** 2
-        return self.start_rad + ramp + after, omega, alpha
+        share, rate, second = _ramp(time_s, self.rise_s)
+        speed = self.speed_rad_s
+        return self.start_rad + speed * share, speed * rate, speed * second
 
     def turned(self, angle_rad: float) -> FromRest:
         return replace(self, start_rad=self.start_rad + angle_rad)
@@ -207,7 +202,86 @@ class FromRest:
         return replace(self, speed_rad_s=self.speed_rad_s * factor, rise_s=self.rise_s / factor)
 
 
-def _finite(law: ConstantSpeed | Oscillating | FromRest) -> None:
+@dataclass(frozen=True)
+class SpeedChange:
+    """From one constant speed to another by a cycloidal ramp of ``rise_s`` that begins at ``at_s``.
+
+    With ``rise_s`` 0 the speed jumps: it is the new one from ``at_s`` on, and the acceleration is
+    0 on both sides. The speeds may have different signs, and the first may be 0.
+    """
+
+    start_rad: float
+    before_rad_s: float
+    after_rad_s: float
+    at_s: float
+    rise_s: float
+
+    def __post_init__(self) -> None:
+        _finite(self)
+        if self.after_rad_s == 0.0 or self.rise_s < 0.0:
+            raise ValueError(
+                "a change of speed needs after_rad_s other than 0 and rise_s of 0 or more"
+            )
+
+    @property
+    def offset_rad(self) -> float:
+        return abs(self.start_rad) + abs((self.after_rad_s - self.before_rad_s) * self.at_s)
+
+    @property
+    def phase_rad(self) -> float:
+        return 0.0
+
+    @property
+    def fastest_rad_s(self) -> float:
+        return max(self.peak_speed_rad_s, math.tau / self.rise_s if self.rise_s else 0.0)
+
+    @property
+    def period_s(self) -> float:
+        return math.tau / self.peak_speed_rad_s
+
+    @property
+    def peak_speed_rad_s(self) -> float:
+        return max(abs(self.before_rad_s), abs(self.after_rad_s))
+
+    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        gain = self.after_rad_s - self.before_rad_s
+        share, rate, second = _ramp(time_s - self.at_s, self.rise_s)
+        theta = self.start_rad + self.before_rad_s * time_s + gain * share
+        return theta, self.before_rad_s + gain * rate, gain * second
+
+    def turned(self, angle_rad: float) -> SpeedChange:
+        return replace(self, start_rad=self.start_rad + angle_rad)
+
+    def mirrored(self) -> SpeedChange:
+        return replace(
+            self,
+            start_rad=-self.start_rad,
+            before_rad_s=-self.before_rad_s,
+            after_rad_s=-self.after_rad_s,
+        )
+
+    def sped_up(self, factor: float) -> SpeedChange:
+        return replace(
+            self,
+            before_rad_s=self.before_rad_s * factor,
+            after_rad_s=self.after_rad_s * factor,
+            at_s=self.at_s / factor,
+            rise_s=self.rise_s / factor,
+        )
+
+
+def _ramp(time_s: Array, rise_s: float) -> tuple[Array, Array, Array]:
+    """A speed that rises from 0 to 1: its integral [s], the speed [1], its rate [1/s]."""
+    after = np.maximum(time_s - rise_s, 0.0)
+    if rise_s == 0.0:
+        return after, np.where(time_s >= 0.0, 1.0, 0.0), np.zeros_like(time_s)
+    tau = np.clip(time_s / rise_s, 0.0, 1.0)
+    half = np.sin(math.pi * tau) ** 2
+    share = rise_s * (tau**2 / 2 - half / (2 * math.pi**2)) + after
+    return share, tau - np.sin(math.tau * tau) / math.tau, 2.0 / rise_s * half
+
+
+def _finite(law: ConstantSpeed | Oscillating | FromRest | SpeedChange) -> None:
     """Refuse a law with a number that is not finite."""
     for name, number in vars(law).items():
         if not math.isfinite(number):

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 
 LAWS: list[Law] = [
     ConstantSpeed(0.3, -7.0),
     Oscillating(0.5, 0.4, 9.0, 0.2),
     FromRest(0.1, 12.0, 0.4),
+    SpeedChange(0.3, 6.0, -4.0, 0.25, 0.3),
 ]
 STEP = 1e-5
 
@@ -50,6 +51,20 @@ def test_start_from_rest_joins_constant_speed_smoothly() -> None:
     assert theta[2] - theta[1] == pytest.approx(12.0 * 0.6, rel=1e-14)
 
 
+def test_jump_of_speed_is_two_straight_lines() -> None:
+    law = SpeedChange(0.2, 5.0, -3.0, 0.5, 0.0)
+    theta, omega, alpha = law.at(np.array([0.0, 0.5, 1.5]))
+    assert theta == pytest.approx([0.2, 2.7, -0.3], rel=1e-14)
+    assert list(omega) == [5.0, -3.0, -3.0]
+    assert not alpha.any()
+
+
+def test_change_of_speed_from_rest_is_a_start_from_rest() -> None:
+    t = np.linspace(0.0, 1.0, 50)
+    late = SpeedChange(0.1, 0.0, 12.0, 0.2, 0.4).at(t + 0.2)
+    assert np.allclose(late, FromRest(0.1, 12.0, 0.4).at(t), rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -58,6 +73,8 @@ def test_start_from_rest_joins_constant_speed_smoothly() -> None:
         (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
         (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
         (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
+        (lambda: SpeedChange(0.0, 1.0, 0.0, 0.1, 0.1), "after_rad_s"),
+        (lambda: SpeedChange(0.0, 1.0, 2.0, 0.1, -0.1), "rise_s"),
     ],
 )
 def test_law_that_drives_nothing_is_refused(make: object, message: str) -> None:
