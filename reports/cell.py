@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
@@ -24,6 +24,9 @@ from reports.rules.base import Evidence, Finding
 from reports.tolerance import Limit, limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
+
+Runner = Callable[..., Run]
+"""What runs a cell: it takes what `sim.run.run` takes."""
 
 
 @dataclass(frozen=True)
@@ -92,18 +95,21 @@ def check(cell: Cell) -> Checked:
     return examined(cell)[0]
 
 
-def examined(cell: Cell) -> tuple[Checked, Run | None]:
-    """As `check`, and the run at the full step, None where there is none."""
+def examined(cell: Cell, runner: Runner | None = None) -> tuple[Checked, Run | None]:
+    """As `check`, and the run at the full step, None where there is none.
+
+    ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
+    """
     began = time.perf_counter()
-    found, done = _examined(cell)
+    found, done = _examined(cell, runner or run)
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell) -> tuple[Checked, Run | None]:
+def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     try:
         state = solve(cell.scene, np.zeros(1)).state()
-        done = _run(cell, state, 1)
+        done = _run(cell, runner, state, 1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
@@ -119,7 +125,8 @@ def _examined(cell: Cell) -> tuple[Checked, Run | None]:
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = None
     if cell.converge and errors:
-        seen = followed(cell.scene, cell.dt_s, errors, cell.tolerance, partial(_run, cell, state))
+        rerun = partial(_run, cell, runner, state)
+        seen = followed(cell.scene, cell.dt_s, errors, cell.tolerance, rerun)
     evidence = Evidence(
         status=status,
         reason=reason,
@@ -169,9 +176,9 @@ def unfinished(cell: Cell, status: str, reason: str) -> Checked:
     return Checked(cell, "", status, reason, 0.0, {}, None, {}, None, findings)
 
 
-def _run(cell: Cell, state: State, finer: int) -> Run:
+def _run(cell: Cell, runner: Runner, state: State, finer: int) -> Run:
     """The cell with its step cut into ``finer`` parts, logged at the same instants."""
-    return run(
+    return runner(
         cell.scene,
         state,
         cell.engine,

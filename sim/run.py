@@ -197,11 +197,11 @@ def _recorded(
         wall, done = wall + log.wall_s, done + count
         warnings += [w for w in log.warnings if w not in warnings]
         sound, fault = _sound(scene, log)
-        logs.append(_first(log.poses, sound, 1 if logs else 0))
+        logs.append(stretch(log.poses, sound, 1 if logs else 0))
         if fault:
             status, reason = "diverged", fault
             break
-    poses = _joined(logs) if logs else facts.start
+    poses = joined(logs) if logs else facts.start
     return replace(
         blank,
         status=status,
@@ -235,7 +235,7 @@ def _sound(scene: Scene, log: Log) -> tuple[int, str]:
     return max(count, 1), f"came apart at {when:.6g} s"
 
 
-def _first(poses: Poses, count: int, skip: int) -> Poses:
+def stretch(poses: Poses, count: int, skip: int) -> Poses:
     """The samples ``skip`` to ``count``."""
 
     def cut(body: BodyPose) -> BodyPose:
@@ -249,7 +249,7 @@ def _first(poses: Poses, count: int, skip: int) -> Poses:
     )
 
 
-def _joined(logs: Sequence[Poses]) -> Poses:
+def joined(logs: Sequence[Poses]) -> Poses:
     """Stretches of samples one after the other."""
 
     def join(bodies: Sequence[BodyPose]) -> BodyPose:
