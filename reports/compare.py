@@ -24,6 +24,7 @@ from reports.branch import departure
 from reports.errors import Error, Errors, Kind, Quantity, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
 from reports.stamps import incomplete
+from reports.summing import summed
 from reports.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
 from sim.engine import Run
 
@@ -83,6 +84,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         incomplete=incomplete(run),
         uncertain=_uncertain(scene, motion, reference),
         departure=departure(scene, run, placed, at.driver_rad),
+        summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
     )
 
 

@@ -78,6 +78,8 @@ class Errors:
     that were commanded, and is empty where they are whole. ``uncertain`` is what the reference
     may be wrong by, per quantity and body over the whole run, as a pure number: the same for every
     engine, whatever it reports. ``departure`` is None where the run stayed on its branch.
+    ``summed_rad`` is the most that rounding makes of the driver's angle in an engine that adds it
+    up step by step: it is what grows with the number of steps (`reports.summing`).
     """
 
     rows: tuple[Error, ...]
@@ -90,6 +92,7 @@ class Errors:
     incomplete: str = ""
     uncertain: Mapping[tuple[Quantity, str], float] = field(default_factory=dict)
     departure: Departure | None = None
+    summed_rad: float = 0.0
 
     def worst(
         self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"

@@ -19,7 +19,8 @@ PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
 CLOSED: tuple[Quantity, ...] = (*PLACES, "gap")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
-"""A drive error [rad] up to which the crank is where it should be, but for rounding."""
+"""A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
+to it what their sums may be off by (`reports.summing`)."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
 
@@ -47,7 +48,8 @@ def followed(
     finer = [_finer(scene, dt_s, p, rerun) for p in parts[1:]]
     same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
-    rounding = _rounding(largest(row for row in every_row if row.quantity == "drive"))
+    drive = largest(row for row in every_row if row.quantity == "drive")
+    rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * errors.summed_rad)
     return convergence(
         [dt_s / p for p in parts],
         [worst.pure, *(row.pure if row else math.nan for row in same)],
@@ -92,7 +94,8 @@ def _over(
     What is over its limit at the full step fails its own rule, and is not told again.
     """
     before = limits(scene, errors, tolerance)
-    in_force = limits(scene, replace(errors, step_rad=errors.step_rad / parts), tolerance)
+    finer = replace(errors, step_rad=errors.step_rad / parts, summed_rad=errors.summed_rad * parts)
+    in_force = limits(scene, finer, tolerance)
     texts = []
     for name in CLOSED:
         full, fine = errors.worst(name), largest(row for row in rows if row.quantity == name)
@@ -104,9 +107,10 @@ def _over(
     return f"at dt {dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
 
 
-def _rounding(drive: Error | None) -> float:
-    """The error of place that rounding explains: a prescribed crank is off by nothing else."""
-    seen = drive.pure if drive is not None and drive.pure <= EXACT_DRIVE else 0.0
+def _rounding(drive: Error | None, exact: float) -> float:
+    """The error of place that rounding explains: a prescribed crank is off by nothing else, and by
+    no more than ``exact``."""
+    seen = drive.pure if drive is not None and drive.pure <= exact else 0.0
     return max(AT_ROUNDING, BEHIND_DRIVE * seen)
 
 

@@ -3,13 +3,15 @@
 A default is a budget that follows from the step and from the scene, as the theory of the error
 says::
 
-    min(cap, coefficient * step^order * curvature^power / conditioning
+    min(cap, (coefficient * step^order + summed) * curvature^power / conditioning
              + share * curvature * step^s)  +  floor  +  rounding / step^k
 
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration
 of the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
 ``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity
-(s = 1), at every step; k is how often the quantity was differenced.
+(s = 1), at every step; k is how often the quantity was differenced. ``summed`` is what rounding may
+make of the driver's angle by the end of the run [rad] (`reports.summing`), which the mechanism
+passes on as it does the driver's motion: the one part that grows with the number of steps.
 
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
@@ -54,7 +56,8 @@ class Tolerance:
     def limit(self, errors: Errors) -> float:
         """The limit for a run with this step and this scene."""
         step, curvature = errors.step_rad, errors.curvature
-        budget = float(self.coefficient * step**self.order * curvature**self.power)
+        budget = self.coefficient * step**self.order + errors.summed_rad
+        budget *= curvature**self.power
         if self.conditioned:
             budget /= max(errors.conditioning, 1e-12)
         budget += self.share * curvature * step**self.share_order
@@ -91,7 +94,8 @@ ACCELERATION = Tolerance(
 )
 DEFAULTS: dict[str, Tolerance] = {
     "drive": Tolerance(
-        "Prescribed means prescribed: rounding over ten turns, and room for an engine's own sum.",
+        "Prescribed means prescribed: what rounding makes of an angle that is added up step by "
+        "step, and room for a flywheel that the mechanism slows by a part in 1e12.",
         floor=1e-9,
     ),
     "angle": PLACE,
