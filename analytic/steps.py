@@ -7,9 +7,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
+from analytic.bridge import BridgeStep
 from analytic.chunk import Chunk
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.parts import Sliding, Turning
+from analytic.groups import Bridge, Group
 from analytic.plane import Vec, direction
 from analytic.riding import (
     RidingLine,
@@ -21,7 +23,7 @@ from analytic.riding import (
     turning_body,
     without_lead,
 )
-from analytic.structure import Group, Structure, sliding_body
+from analytic.structure import Structure, sliding_body
 from models.joints import less, local_point, turned
 from models.scene import GROUND, Scene
 
@@ -40,10 +42,13 @@ class Step(Protocol):
 def prepare(scene: Scene, structure: Structure) -> list[Step]:
     """The steps of all groups, in solving order."""
     known = {GROUND, scene.driver.link}
-    steps = []
-    for group in structure.groups:
-        steps.append(_STEPS[group.kind](scene, structure, group, frozenset(known)))
-        known |= {group.first, group.second}
+    steps: list[Step] = []
+    for part in structure.order:
+        if isinstance(part, Bridge):
+            steps.append(BridgeStep(scene, structure, part, frozenset(known)))
+        else:
+            steps.append(_STEPS[part.kind](scene, structure, part, frozenset(known)))
+        known.update(part.bodies)
     return steps
 
 

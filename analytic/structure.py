@@ -4,6 +4,9 @@ Mobility by Kutzbach-Gruebler, W = 3 n - 2 p5 - p4, with n moving bodies (links 
 p5 pairs of one freedom (pins, prismatic pairs) and p4 pairs of two (none: a point on a line is a
 block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms; the
 class II groups are those with two links and three pairs.
+
+A link that is pinned at two or more points to bodies that move without it is redundant: it takes
+2 k - 3 freedoms from the count, k its pins, and none from the mechanism, if its length fits.
 """
 
 from __future__ import annotations
@@ -12,46 +15,46 @@ import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from analytic.groups import Bridge, Group, Pairs, decompose
 from models.errors import StructureError
 from models.joints import block_name
 from models.scene import GROUND, Scene, Slider
 
-
-@dataclass(frozen=True)
-class Group:
-    """A class II Assur group.
-
-    ``kind`` reads outer, inner, outer pair; ``first`` and ``second`` are its bodies in that order;
-    ``outer1``, ``inner``, ``outer2`` name the pins (points) and prismatic pairs (sliders).
-    ``assemblies`` is 2 where the branch has to be chosen, by the name ``branch_key``.
-    """
-
-    kind: str
-    first: str
-    second: str
-    outer1: str
-    inner: str
-    outer2: str
-
-    @property
-    def branch_key(self) -> str:
-        """The pin or slider that ``Scene.branch`` names the assembly by."""
-        return self.outer2 if self.kind == "RRP" else self.inner
-
-    @property
-    def assemblies(self) -> int:
-        return 1 if self.kind in ("PRP", "RPP") else 2
+MOST_SETS = 20_000
+"""Sets of links that are looked at to name a group without closed form: about 0.2 s."""
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Bodies, pairs, mobility and groups of a scene."""
+    """Bodies, pairs, mobility and groups of a scene.
+
+    ``order`` holds the groups and the redundant links, each after what it hangs on.
+    """
 
     bodies: tuple[str, ...]
     pins: Mapping[str, tuple[str, ...]]
     prismatics: Mapping[str, tuple[str, str]]
-    mobility: int
-    groups: tuple[Group, ...]
+    order: tuple[Group | Bridge, ...]
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The Assur groups in solving order."""
+        return tuple(part for part in self.order if isinstance(part, Group))
+
+    @property
+    def redundant(self) -> tuple[Bridge, ...]:
+        """The links that the mechanism would move the same without."""
+        return tuple(part for part in self.order if isinstance(part, Bridge))
+
+    @property
+    def count(self) -> int:
+        """The mobility by count, W: with redundant links it is less than the real one."""
+        return 3 * len(self.bodies) - 2 * self.pairs
+
+    @property
+    def mobility(self) -> int:
+        """The real mobility, that of the mechanism without what its redundant links add."""
+        return self.count + sum(bridge.excess for bridge in self.redundant)
 
     @property
     def pairs(self) -> int:
@@ -77,16 +80,27 @@ def analyse(scene: Scene) -> Structure:
     bodies = (*scene.links, *blocks)
     pins = _pins(scene)
     prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
-    n, p5 = len(bodies), _count_pairs(pins, prismatics)
-    mobility = 3 * n - 2 * p5
-    if mobility != 1:
-        raise StructureError(
-            f"{scene.name}: mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {mobility}; one "
-            f"driver needs mobility 1. {_what_to_do(mobility)}"
-        )
-    groups = tuple(_decompose(scene, bodies, pins, prismatics))
-    _check_branches(scene, groups)
-    return Structure(bodies, pins, prismatics, mobility, groups)
+    order, left = decompose(bodies, scene.driver.link, Pairs(pins, prismatics))
+    found = Structure(bodies, pins, prismatics, order)
+    if left or found.mobility != 1:
+        raise StructureError(f"{scene.name}: {_fault(found, left)}")
+    _check_branches(scene, found.groups)
+    return found
+
+
+def _fault(found: Structure, left: list[str]) -> str:
+    """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
+    if found.mobility == 1:
+        known = {GROUND, *found.bodies} - set(left)
+        pairs = Pairs(found.pins, found.prismatics)
+        outer = {body: pairs.outer(body, known) for body in left}
+        return _no_closed_form(left, outer, found.pins, found.prismatics)
+    n, p5 = len(found.bodies), found.pairs
+    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {found.count}"
+    if found.redundant:
+        spare = ", ".join(bridge.link for bridge in found.redundant)
+        count += f", but {found.mobility} where redundant links ({spare}) are not counted"
+    return f"{count}; one driver needs mobility 1. {_what_to_do(found.mobility)}"
 
 
 def _what_to_do(mobility: int) -> str:
@@ -111,64 +125,6 @@ def _count_pairs(
     return sum(len(names) - 1 for names in pins.values()) + len(prismatics)
 
 
-def _decompose(
-    scene: Scene,
-    bodies: tuple[str, ...],
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> Iterator[Group]:
-    """The dyads in an order in which each hangs on bodies that are known before it."""
-    known = {GROUND, scene.driver.link}
-    left = [body for body in bodies if body not in known]
-    while left:
-        outer = {body: _pairs_to(known, body, pins, prismatics) for body in left}
-        pairs = itertools.combinations(left, 2)
-        found = (_dyad(a, b, outer, known, pins, prismatics) for a, b in pairs)
-        group = next((g for g in found if g is not None), None)
-        if group is None:
-            raise StructureError(f"{scene.name}: {_no_closed_form(left, outer, pins, prismatics)}")
-        yield group
-        known |= {group.first, group.second}
-        left = [body for body in left if body not in known]
-
-
-def _pairs_to(
-    known: set[str],
-    body: str,
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> list[tuple[str, str]]:
-    """The pairs, as (R or P, name), between a body and the known bodies."""
-    found = [("R", p) for p, names in pins.items() if body in names and known & set(names)]
-    for name, (a, b) in prismatics.items():
-        if (a == body and b in known) or (b == body and a in known):
-            found.append(("P", name))
-    return found
-
-
-def _dyad(
-    a: str,
-    b: str,
-    outer: Mapping[str, list[tuple[str, str]]],
-    known: set[str],
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> Group | None:
-    """The class II group that bodies a and b form, if they do."""
-    both = {a, b}
-    inner = [("R", p) for p, n in pins.items() if both <= set(n) and not known & set(n)]
-    inner += [("P", name) for name, ends in prismatics.items() if set(ends) == both]
-    if len(outer[a]) != 1 or len(outer[b]) != 1 or len(inner) != 1:
-        return None
-    (ka, na), (ki, ni), (kb, nb) = outer[a][0], inner[0], outer[b][0]
-    kind = ka + ki + kb
-    if kind == "PPP":
-        return None  # three sliders leave the angle free: not an Assur group
-    if kind in ("PRR", "PPR"):
-        return Group(kind[::-1], b, a, nb, ni, na)
-    return Group(kind, a, b, na, ni, nb)
-
-
 def _no_closed_form(
     left: list[str],
     outer: Mapping[str, list[tuple[str, str]]],
@@ -183,16 +139,22 @@ def _no_closed_form(
                 f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
                 "before it, so it is rigid and another link is loose: mobility 1 is only a count"
             )
-    for size in range(4, len(left) + 1, 2):
-        for group in itertools.combinations(left, size):
-            inside, outside = _pairs_of(set(group), left, pins, prismatics)
-            if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
-                return (
-                    f"links {', '.join(group)} form an Assur group of {size} links and "
-                    f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
-                    "dyads (RRR, RRP, RPR, PRP, RPP) have"
-                )
+    for group in itertools.islice(_sets(left), MOST_SETS):
+        size = len(group)
+        inside, outside = _pairs_of(set(group), left, pins, prismatics)
+        if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
+            return (
+                f"links {', '.join(group)} form an Assur group of {size} links and "
+                f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
+                "dyads (RRR, RRP, RPR, PRP, RPP) have"
+            )
     return f"{', '.join(left)} do not hang on the driver and the ground by dyads; check their pins"
+
+
+def _sets(left: list[str]) -> Iterator[tuple[str, ...]]:
+    """The sets of links that may form a group of class III or higher, the smallest first."""
+    for size in range(4, len(left) + 1, 2):
+        yield from itertools.combinations(left, size)
 
 
 def _pairs_of(

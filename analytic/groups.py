@@ -1,0 +1,140 @@
+"""The class II Assur groups and the redundant links of a mechanism, in solving order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from models.scene import GROUND
+
+Pair = tuple[str, str]
+"""R or P, and the name of the pin or the slider."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A class II Assur group.
+
+    ``kind`` reads outer, inner, outer pair; ``first`` and ``second`` are its bodies in that order;
+    ``outer1``, ``inner``, ``outer2`` name the pins (points) and prismatic pairs (sliders).
+    ``assemblies`` is 2 where the branch has to be chosen, by the name ``branch_key``.
+    """
+
+    kind: str
+    first: str
+    second: str
+    outer1: str
+    inner: str
+    outer2: str
+
+    @property
+    def branch_key(self) -> str:
+        """The pin or slider that ``Scene.branch`` names the assembly by."""
+        return self.outer2 if self.kind == "RRP" else self.inner
+
+    @property
+    def assemblies(self) -> int:
+        return 1 if self.kind in ("PRP", "RPP") else 2
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """What is placed with it."""
+        return self.first, self.second
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """A redundant link: two or more of its ``pins`` lie on bodies that are placed without it."""
+
+    link: str
+    pins: tuple[str, ...]
+
+    @property
+    def excess(self) -> int:
+        """The constraints that it adds to those which a rigid link needs to be placed."""
+        return 2 * len(self.pins) - 3
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """What is placed with it."""
+        return (self.link,)
+
+
+class Pairs:
+    """The pins and prismatic pairs of a mechanism, by name and by body."""
+
+    def __init__(
+        self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
+    ) -> None:
+        self._ends: dict[Pair, tuple[str, ...]] = {("R", p): names for p, names in pins.items()}
+        self._ends |= {("P", name): ends for name, ends in prismatics.items()}
+        self._of: dict[str, list[Pair]] = {}
+        for pair, ends in self._ends.items():
+            for body in dict.fromkeys(ends):
+                self._of.setdefault(body, []).append(pair)
+
+    def outer(self, body: str, known: set[str]) -> list[Pair]:
+        """The pairs between a body and the known ones."""
+        return [pair for pair in self._of.get(body, ()) if not known.isdisjoint(self._ends[pair])]
+
+    def inner(self, a: str, b: str, known: set[str]) -> list[Pair]:
+        """The pairs between two bodies that are not pairs to known ones."""
+        shared = (pair for pair in self._of[a] if b in self._ends[pair])
+        return [pair for pair in shared if known.isdisjoint(self._ends[pair])]
+
+    def neighbours(self, body: str) -> set[str]:
+        """The bodies that share a pair with a body."""
+        return {name for pair in self._of[body] for name in self._ends[pair]} - {body}
+
+
+def decompose(
+    bodies: tuple[str, ...], driver: str, pairs: Pairs
+) -> tuple[tuple[Group | Bridge, ...], list[str]]:
+    """The groups and redundant links, each after what it hangs on; and what is left over.
+
+    A link is taken for redundant only where no further group can be placed.
+    """
+    known = {GROUND, driver}
+    left = [body for body in bodies if body not in known]
+    order: list[Group | Bridge] = []
+    while left:
+        outer = {body: pairs.outer(body, known) for body in left}
+        part = next(_dyads(left, outer, known, pairs), None) or next(_bridges(outer), None)
+        if part is None:
+            break
+        order.append(part)
+        known.update(part.bodies)
+        left = [body for body in left if body not in known]
+    return tuple(order), left
+
+
+def _dyads(
+    left: list[str], outer: Mapping[str, list[Pair]], known: set[str], pairs: Pairs
+) -> Iterator[Group]:
+    """The class II groups that can be placed next, in the order of the bodies."""
+    ready = {body: place for place, body in enumerate(left) if len(outer[body]) == 1}
+    for a in ready:
+        later = [b for b in pairs.neighbours(a) & ready.keys() if ready[b] > ready[a]]
+        for b in sorted(later, key=ready.__getitem__):
+            inner = pairs.inner(a, b, known)
+            group = _dyad(a, b, outer[a][0], inner[0], outer[b][0]) if len(inner) == 1 else None
+            if group is not None:
+                yield group
+
+
+def _dyad(a: str, b: str, outer1: Pair, inner: Pair, outer2: Pair) -> Group | None:
+    """The class II group of two bodies with these pairs, if it is one."""
+    (ka, na), (ki, ni), (kb, nb) = outer1, inner, outer2
+    kind = ka + ki + kb
+    if kind == "PPP":
+        return None  # three sliders leave the angle free: not an Assur group
+    if kind in ("PRR", "PPR"):
+        return Group(kind[::-1], b, a, nb, ni, na)
+    return Group(kind, a, b, na, ni, nb)
+
+
+def _bridges(outer: Mapping[str, list[Pair]]) -> Iterator[Bridge]:
+    """The links that known bodies hold at two pins or more."""
+    for body, held in outer.items():
+        if len(held) > 1 and all(kind == "R" for kind, _ in held):
+            yield Bridge(body, tuple(name for _, name in held))
