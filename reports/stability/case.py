@@ -1,0 +1,90 @@
+"""What a hard case is: a family of runs with one number that is made harder, and what is right."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from models.motion import State
+from models.scene import Scene
+from reports.stability.matrix import CaseFacts, Outcome
+from sim.engine import Drive, SettingValue
+
+WITHIN = 1e-2
+"""The class of every case that names no other: a hundredth of a radian, or of the longest link."""
+STEPS_PER_TURN = 360.0
+TURNS = 2.0
+Scale = Literal["log", "linear", "whole"]
+Judge = Literal["follow", "limit", "free"]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run, ready for an engine.
+
+    ``scene`` is the reference; ``start`` where the engine is put in its place (None: where the
+    reference is), and errors count from ``settled_turns`` on. ``every`` so many steps are logged.
+    ``limit_rad`` is the driver angle that cannot be passed, where that is what is to be seen.
+    """
+
+    scene: Scene
+    steps_per_turn: float = STEPS_PER_TURN
+    turns: float = TURNS
+    every: int = 1
+    drive: Drive = "prescribed"
+    settings: Mapping[str, SettingValue] = field(default_factory=dict)
+    start: State | None = None
+    settled_turns: float = 0.0
+    limit_rad: float = math.nan
+
+    @property
+    def dt_s(self) -> float:
+        return self.scene.driver.law.period_s / self.steps_per_turn
+
+    @property
+    def steps(self) -> int:
+        """A whole number of logged samples."""
+        return max(round(self.turns * self.steps_per_turn / self.every), 1) * self.every
+
+
+@dataclass(frozen=True)
+class Case:
+    """A family of trials; see `CaseFacts` for what is told of it.
+
+    ``values`` go from easy to hard. Between the last that holds and the first that does not, a
+    bisection looks on its ``scale``: by factors, by differences, or over whole numbers.
+    """
+
+    name: str
+    group: str
+    title: str
+    source: str
+    truth: str
+    expected: str
+    parameter: str
+    unit: str
+    values: tuple[float, ...]
+    trial: Callable[[float], Trial]
+    scale: Scale = "log"
+    good: tuple[Outcome, ...] = ("ok",)
+    judge: Judge = "follow"
+    within: float = WITHIN
+
+    def facts(self) -> CaseFacts:
+        """What a reader needs."""
+        return CaseFacts(
+            **{key: value for key, value in vars(self).items() if key in FACTS},
+            labels=tuple(label(value) for value in self.values),
+        )
+
+
+FACTS = frozenset(CaseFacts.__dataclass_fields__) - {"labels"}
+
+
+def label(value: float) -> str:
+    """A value of a parameter in few characters."""
+    text = f"{value:.3g}"
+    mantissa, exponent, power = text.partition("e")
+    return f"{mantissa}e{int(power)}" if exponent else text

@@ -1,0 +1,116 @@
+"""How the crank is driven: slowly and fast, turned back, from rest, and with a jump."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from models.files import load_scene
+from models.laws import ConstantSpeed, Law, SpeedChange
+from models.scene import Scene
+from reports.stability.case import Case, Trial
+
+GROUP = "speed and its changes"
+SOURCE = "fourbar-lecture-1"
+SAME_DT_S = 1e-4
+START_RAD = 1.6
+SPEED_RAD_S = 10.0
+CHANGE_TURNS = 0.77
+"""Where the speed changes; no sample falls on it."""
+
+
+def _driven(law: Law) -> Scene:
+    scene = load_scene(SOURCE)
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
+def _same_dt(value: float) -> Trial:
+    law = ConstantSpeed(START_RAD, value)
+    return Trial(_driven(law), steps_per_turn=law.period_s / SAME_DT_S, turns=1.0)
+
+
+def _same_steps(value: float) -> Trial:
+    return Trial(_driven(ConstantSpeed(START_RAD, value)))
+
+
+def _changed(before: float, after: float, rise_turns: float) -> Trial:
+    """A change of speed after most of a turn, its ramp in turns of the first speed."""
+    period = math.tau / SPEED_RAD_S
+    at, rise = CHANGE_TURNS * period, rise_turns * period
+    return Trial(_driven(SpeedChange(START_RAD, before, after, at, rise)))
+
+
+def _reversed(value: float) -> Trial:
+    return _changed(SPEED_RAD_S, -SPEED_RAD_S, value)
+
+
+def _from_rest(value: float) -> Trial:
+    return _changed(0.0, SPEED_RAD_S, value)
+
+
+def _jump(value: float) -> Trial:
+    return _changed(SPEED_RAD_S, value * SPEED_RAD_S, 0.0)
+
+
+CASES = (
+    Case(
+        name="speed-same-dt",
+        group=GROUP,
+        title=f"Faster and faster at the same dt of {SAME_DT_S:g} s",
+        source=SOURCE,
+        truth="closed form; errors grow with the turn in a step, squared",
+        expected="errors as those of fewer steps in a turn",
+        parameter="crank speed",
+        unit="rad/s",
+        values=(1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0),
+        trial=_same_dt,
+    ),
+    Case(
+        name="speed-same-steps",
+        group=GROUP,
+        title="Faster and faster at 360 steps in a turn",
+        source=SOURCE,
+        truth="closed form; as a pure number nothing changes",
+        expected="the same error at every speed",
+        parameter="crank speed",
+        unit="rad/s",
+        values=(1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0),
+        trial=_same_steps,
+    ),
+    Case(
+        name="reversal",
+        group=GROUP,
+        title="Direction reversed in mid-run",
+        source=SOURCE,
+        truth="closed form with a cycloidal ramp from +10 to -10 rad/s",
+        expected="follows, also through a ramp of a few steps",
+        parameter="length of the ramp",
+        unit="turn",
+        values=(0.5, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4),
+        trial=_reversed,
+    ),
+    Case(
+        name="from-rest",
+        group=GROUP,
+        title="Start from rest by a smooth law",
+        source=SOURCE,
+        truth="closed form with a cycloidal ramp from 0 to 10 rad/s",
+        expected="follows, also through a ramp of a few steps",
+        parameter="length of the ramp",
+        unit="turn",
+        values=(1.0, 0.3, 0.1, 0.03, 0.01, 1e-3),
+        trial=_from_rest,
+    ),
+    Case(
+        name="speed-jump",
+        group=GROUP,
+        title="The speed jumps",
+        source=SOURCE,
+        truth="closed form; the angle of the crank has a corner",
+        expected="follows: a prescribed crank takes any push",
+        parameter="speed after over speed before",
+        unit="",
+        values=(1.1, 2.0, 5.0, 10.0, 30.0, 100.0),
+        trial=_jump,
+    ),
+)

@@ -1,0 +1,90 @@
+"""One hard run: what the engine does with it, its grade, and a picture where it fails."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from reports.stability.case import Case, Trial, label
+from reports.stability.limit import at_limit
+from reports.stability.matrix import Graded, Outcome, Picture
+from reports.stability.outcomes import Ending, outcome
+from reports.stability.picture import picture
+from reports.stability.seen import Seen, seen
+from sim.engine import Run
+from sim.run import run
+
+Found = tuple[Graded, Picture | None]
+
+
+def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -> Found:
+    """Run a case at one value in one engine, and grade it.
+
+    Parameters
+    ----------
+    draw : bool
+        Give a picture where the outcome is not one of the case's good ones.
+
+    Raises
+    ------
+    CrankcheckError
+        The case has no reference at this value; the message is the reference's own.
+    """
+    began = time.perf_counter()
+    trial = case.trial(value)
+    blank = Graded(case.name, engine, profile, value, label(value), "ok", "")
+    found, done = _graded(case, trial, blank)
+    found = replace(found, wall_s=time.perf_counter() - began)
+    if not draw or done is None or found.outcome in case.good:
+        return found, None
+    return found, picture(case, trial.scene, found, done)
+
+
+def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:
+    """The grade, and the run where there is one."""
+    blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
+    state = trial.start or solve(trial.scene, np.zeros(1)).state()
+    try:
+        done = run(
+            trial.scene,
+            state,
+            blank.engine,
+            blank.profile,
+            dt_s=trial.dt_s,
+            steps=trial.steps,
+            every=trial.every,
+            drive=trial.drive,
+            settings=trial.settings,
+        )
+    except EngineError as error:
+        return replace(blank, outcome="unsupported", reason=str(error)), None
+    if done.motion is None or done.status == "unsupported":
+        lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
+        return replace(blank, outcome=lost, reason=done.reason), None
+    found = (
+        at_limit(trial, done)
+        if case.judge == "limit"
+        else seen(trial.scene, done, trial.settled_turns)
+    )
+    return _told(blank, found, outcome(found, case.within)), done
+
+
+def _told(blank: Graded, found: Seen, ending: Ending) -> Graded:
+    """The grade of what was seen."""
+    at = ending.sample
+    return replace(
+        blank,
+        outcome=ending.outcome,
+        reason=ending.reason,
+        error=found.worst(found.place)[0],
+        gap=found.worst(found.gap)[0],
+        drive=found.worst(found.drive)[0],
+        sine=found.sine,
+        at_s=math.nan if at is None else float(found.time_s[at]),
+        at_driver_rad=math.nan if at is None else float(found.driver_rad[at]),
+    )

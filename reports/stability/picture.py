@@ -1,0 +1,60 @@
+"""A run that failed, cut to the time around the failure, to be drawn moving beside the truth."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.page.drawing import INSTANTS, displacements, drawing, drawn_links, moving_points
+from reports.series import Array
+from reports.stability.case import Case
+from reports.stability.matrix import Graded, Picture
+from sim.engine import Run
+
+BEFORE = 0.3
+"""How much of a turn is shown before the place of the failure, of one turn in all."""
+
+
+def picture(case: Case, scene: Scene, found: Graded, run: Run) -> Picture | None:
+    """The picture of a graded run; None where the reference cannot be drawn there."""
+    assert run.motion is not None
+    kept = _around(run.motion.time_s, found.at_s, scene.driver.law.period_s)
+    if kept.size < 2:
+        return None
+    time_s = run.motion.time_s[kept]
+    trace: dict[str, Array] = {"time_s": time_s}
+    for name in moving_points(scene):
+        if name in run.motion.points:
+            place = run.motion.points[name].position[kept]
+            trace[f"x.{name}"], trace[f"y.{name}"] = place.T
+    for name in drawn_links(scene):
+        trace[f"theta.{name}"] = run.motion.links[name].theta[kept]
+    try:
+        shape, rows = drawing(scene, time_s), displacements(scene, trace, time_s)
+    except CrankcheckError:
+        return None
+    if rows is None:
+        return None
+    return Picture(
+        case=found.case,
+        engine=found.engine,
+        profile=found.profile,
+        value=found.value,
+        label=found.label,
+        title=f"{case.title}: {case.parameter} {found.label} {case.unit}".strip(),
+        drawing=shape,
+        rows=rows,
+    )
+
+
+def _around(time_s: Array, at_s: float, period_s: float) -> np.ndarray:
+    """Samples of one turn about the failure, evenly spread; of the last turn where it has none."""
+    end = float(time_s[-1])
+    middle = end if math.isnan(at_s) else at_s
+    first = max(min(middle - BEFORE * period_s, end - period_s), float(time_s[0]))
+    low, high = np.searchsorted(time_s, [first, first + period_s])
+    high = min(int(high), len(time_s) - 1)
+    return np.unique(np.linspace(int(low), high, INSTANTS).round().astype(np.intp))
