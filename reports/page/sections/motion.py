@@ -49,7 +49,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "scenes": [_Drawn(report, scene, sizes, held).embedded() for scene in scenes],
             "judged": sorted({report.look(x).number for x in report.lines if _judged(x)}),
         },
-        scripts=("legend.js", "charts.js", "mechanism.js", "parts.js", "motion.js"),
+        scripts=("legend.js", "charts.js", "mechanism.js", "stage.js", "parts.js", "motion.js"),
         plotly=True,
     )
 

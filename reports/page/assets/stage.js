@@ -1,0 +1,121 @@
+"use strict";
+// A stage: the drawing of a mechanism with what moves it. Play and pause, the crank's angle, a factor
+// by which errors are magnified, and what the runs are off by at the moment.
+
+/**
+ * Take the elements `${name}-picture`, `-play`, `-slider`, `-angle`, `-factor`, `-visible` and
+ * `-readout`. `overlays(mechanism)` gives the runs to be drawn: `{name, rows, paint}`; `drawn` is
+ * called after every drawing. A stage that stands still stands at `home(mechanism)`; going round
+ * takes `lasts(mechanism)` milliseconds, after which it rests for `rest` times as long.
+ */
+crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = () => 5000, rest = 0, reach }) => {
+  const { short } = crankcheck;
+  const part = (word) => document.getElementById(`${name}-${word}`);
+  const [picture, factor, slider, play, readout] = ["picture", "factor", "slider", "play", "readout"].map(part);
+  const VISIBLE = 0.06; // of the drawing: what "make it visible" aims at
+  let drawing = null;
+  let mechanism = null;
+  let position = 0;
+  let clock = 0; // samples since the start of the round; beyond the last the stage rests
+  let playing = false;
+  let before = null; // when the last frame was drawn
+  let left = Infinity; // samples to go
+  let greeted = false; // it has moved by itself once
+
+  const degrees = (at) => {
+    const rounded = Math.round(mechanism.degrees(at));
+    return (drawing.turning ? ((rounded % 360) + 360) % 360 : rounded).toFixed(0);
+  };
+
+  function draw() {
+    const each = overlays(mechanism);
+    const cut = mechanism.show(position, each, Number(factor.value));
+    const told = degrees(position);
+    slider.value = String(Math.round(position));
+    slider.setAttribute("aria-valuetext", `crank at ${told} degrees`);
+    part("angle").textContent = `${told}°`;
+    const off = each.map((run) => `${run.name} ${short(mechanism.farthest(run.rows, position))} m`);
+    readout.textContent = (off.length ? `Off the reference here by: ${off.join("; ")}.` : "No run is drawn.") +
+      (cut ? " What would leave the drawing is cut off." : "");
+    drawn(mechanism, position);
+  }
+
+  /** Stand at a position. */
+  function stand(at) {
+    position = at;
+    clock = at;
+  }
+
+  function frame(now) {
+    if (!playing) return;
+    const last = mechanism.samples - 1;
+    const round = last * (1 + rest);
+    const moved = ((now - (before ?? now)) / lasts(mechanism)) * last;
+    left -= moved;
+    clock = (clock + moved) % round;
+    position = Math.min(clock, last);
+    before = now;
+    if (left <= 0) {
+      stand(home(mechanism));
+      run(false);
+    }
+    draw();
+    requestAnimationFrame(frame);
+  }
+
+  /** Play or stop; `turns` is how often it goes round. */
+  function run(on, turns = Infinity) {
+    const starts = on && !playing;
+    playing = on;
+    before = null;
+    left = turns * (mechanism.samples - 1) * (1 + rest);
+    if (on && home(mechanism) > 0 && position >= home(mechanism)) stand(0);
+    play.textContent = on ? "Pause" : "Play";
+    if (starts) requestAnimationFrame(frame);
+  }
+
+  /** Go round once where motion is welcome. */
+  function greet() {
+    greeted = true;
+    if (!crankcheck.calm.matches) run(true, 1);
+  }
+
+  /** Show another drawing; `draw` is left to the caller. */
+  function set(shown) {
+    drawing = shown;
+    mechanism = crankcheck.mechanism(picture, drawing, reach);
+    slider.max = String(mechanism.samples - 1);
+    stand(home(mechanism));
+  }
+
+  /** The power of ten that makes the largest error of the moment a small part of the drawing. */
+  function makeVisible() {
+    const most = Math.max(0, ...overlays(mechanism).map(({ rows }) => mechanism.farthest(rows)));
+    const wanted = most > 0 ? Math.round(Math.log10((VISIBLE * mechanism.size) / most)) : 0;
+    const powers = [...factor.options].map((each) => Math.log10(Number(each.value)));
+    factor.value = String(10 ** Math.max(powers[0], Math.min(powers.at(-1), wanted)));
+    draw();
+  }
+
+  /** Begin: the controls work, and the drawing follows its size. Call it once, with a drawing set. */
+  function start() {
+    factor.addEventListener("change", draw);
+    part("visible").addEventListener("click", makeVisible);
+    play.addEventListener("click", () => run(!playing));
+    slider.addEventListener("input", () => {
+      run(false);
+      stand(Number(slider.value));
+      draw();
+    });
+    new ResizeObserver(() => {
+      mechanism.refit();
+      draw();
+    }).observe(picture);
+    new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) run(false); // nobody looks
+      else if (!greeted && !crankcheck.calm.matches) greet(); // to show that it moves
+    }, { threshold: 0.5 }).observe(picture);
+  }
+
+  return { set, draw, run, greet, start };
+};
