@@ -108,7 +108,7 @@ def _world(scene: Scene, tree: Tree, writing: Writing) -> list[str]:
         "  <worldbody>",
         "    <!-- Bodies stand assembled; ref lets hinges read as angles against the parent. -->",
     ]
-    if writing.servo_gain is None:
+    if writing.flywheel:
         lines.append("    <!-- The crank's armature is a flywheel: it prescribes the speed. -->")
     lines += _sites(scene, tree, GROUND, "    ")
     lines += _children(scene, tree, writing, GROUND, "    ")
@@ -141,7 +141,7 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
         else:
             row |= {"type": "hinge", "pos": (*freedom.anchor, 0.0)}
         row["ref"] = freedom.ref
-        if freedom.name == driver_joint(scene) and writing.servo_gain is None:
+        if freedom.name == driver_joint(scene) and writing.flywheel:
             row["armature"] = armature(scene, writing)
         lines.append(f"{pad}<joint{_attributes(row)}/>")
     return lines

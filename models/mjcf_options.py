@@ -20,8 +20,9 @@ class Writing:
     """What may be chosen about the text; what is left out is MuJoCo's own default.
 
     ``option`` and ``flag`` are attributes of the elements of that name, ``connect`` of every
-    ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo.
-    The keyframe's velocities are those of ``delay_s`` after its positions.
+    ``equality/connect``. ``servo_gain`` [N m s/rad] replaces the flywheel by a velocity servo; a
+    ``free`` crank has neither. The keyframe's velocities are those of ``delay_s`` after its
+    positions.
     """
 
     close: tuple[str, ...] = ()
@@ -31,6 +32,12 @@ class Writing:
     flywheel_ratio: float = FLYWHEEL_RATIO
     servo_gain: float | None = None
     delay_s: float = 0.0
+    free: bool = False
+
+    @property
+    def flywheel(self) -> bool:
+        """Whether a flywheel prescribes the speed of the crank."""
+        return self.servo_gain is None and not self.free
 
 
 STIFF_STEPS, STIFF_DAMPING = 5.0, 0.6
@@ -65,9 +72,11 @@ def driver_joint(scene: Scene) -> str:
 
 def has_control(scene: Scene, writing: Writing) -> bool:
     """Whether the model has an actuator that wants a control at each step."""
-    return writing.servo_gain is not None or not isinstance(scene.driver.law, ConstantSpeed)
+    if not writing.flywheel:
+        return not writing.free
+    return not isinstance(scene.driver.law, ConstantSpeed)
 
 
 def armature(scene: Scene, writing: Writing) -> float:
-    """Inertia of the flywheel on the crank [kg m^2]; 0 under a servo."""
-    return 0.0 if writing.servo_gain is not None else writing.flywheel_ratio * inertia_scale(scene)
+    """Inertia of the flywheel on the crank [kg m^2]; 0 where there is none."""
+    return writing.flywheel_ratio * inertia_scale(scene) if writing.flywheel else 0.0

@@ -1,9 +1,9 @@
 """The pymunk space of a scene: a body per link, joints as constraints, no shapes.
 
 Bodies have their origin at the centre of gravity, as Chipmunk wants it; `Body.local` keeps where
-the link's own frame lies. The crank is a kinematic body on its pivot. A massless slider block is a
-groove that the point of its link runs in. A body that slides on the ground cannot turn: it gets an
-infinite moment; on a moving guide a gear of ratio 1 holds its angle.
+the link's own frame lies. A driven crank is a kinematic body on its pivot. A massless slider block
+is a groove that the point of its link runs in. A body that slides on the ground cannot turn: it
+gets an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
 
 A groove is in error where pushed bodies turn; ``models.rail`` says why, and holds the cure.
 """
@@ -54,11 +54,13 @@ def build(
     state: State,
     *,
     servo: bool = False,
+    free: bool = False,
     exact_lines: bool = True,
     delay_s: float = 0.0,
 ) -> SpaceModel:
-    """The space of ``scene`` at ``state``; under ``servo`` the crank is dynamic with a motor.
+    """The space of ``scene`` at ``state``.
 
+    The crank is dynamic under ``servo``, with a motor, and where it is ``free``, without one.
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
     is in error. Velocities are those of ``delay_s`` later (see `models.poses.frames`).
 
@@ -75,7 +77,7 @@ def build(
     made: dict[str, pymunk.Body] = {GROUND: space.static_body}
     centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
     for name in bodies(scene):
-        kinematic = name == scene.driver.link and not servo
+        kinematic = name == scene.driver.link and not (servo or free)
         pivot = scene.driver_pivot
         centre[name] = local_point(scene, name, pivot) if kinematic else centre_of(scene, name)
         body = _body(scene, name, kinematic, name in fixed_angle)
@@ -90,7 +92,7 @@ def build(
     if servo:
         motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
         space.add(_plain(motor))
-    found = _pins(scene, held, made, centre, servo)
+    found = _pins(scene, held, made, centre, pinned=servo or free)
     for slide in held.slides:
         found += _slide(scene, state, slide, made, centre, exact_lines)
     for constraint in found:
@@ -123,14 +125,15 @@ def _pins(
     held: Joints,
     made: Mapping[str, pymunk.Body],
     centre: Mapping[str, Point],
-    servo: bool,
+    *,
+    pinned: bool,
 ) -> list[pymunk.Constraint]:
-    """All pins; a kinematic crank needs none to the ground."""
+    """All pins; a kinematic crank needs none to the ground and is not ``pinned``."""
     found: list[pymunk.Constraint] = []
     for joint in held.pins:
         first, *others = _pinned_bodies(scene, joint.bodies)
         for other in others:
-            driven = {first, other} == {GROUND, scene.driver.link} and not servo
+            driven = {first, other} == {GROUND, scene.driver.link} and not pinned
             if not (driven and joint.point == scene.driver_pivot):
                 a = _anchor(scene, centre, first, joint.point)
                 b = _anchor(scene, centre, other, joint.point)

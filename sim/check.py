@@ -12,7 +12,7 @@ from models.joints import block_name, bodies
 from models.motion import State
 from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import Scene
-from sim.drive import start_speed
+from sim.drive import pace, start_speed
 from sim.engine import BodyPose, Drive, Facts
 from sim.measure import gaps
 
@@ -27,11 +27,11 @@ def refuse_other_model(scene: Scene, state: State, facts: Facts, dt_s: float, dr
 
     Compared are mass, inertia, gravity, position and angle of every body, loop gaps, and the
     velocities at the instant that the engine's own belong to. A prescribed crank need not have a
-    mass, nor a body that cannot turn an inertia.
+    mass, nor a body that cannot turn an inertia; a free one has both, and nothing beside.
     """
     faults = [
         *_matter(scene, facts, drive),
-        *_state(scene, state, facts, dt_s),
+        *_state(scene, state, facts, dt_s, drive),
         *_gaps(scene, facts),
     ]
     if faults:
@@ -57,7 +57,7 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
         yield f"gravity is {facts.gravity_m_s2}, not {scene.gravity_m_s2} m/s^2"
 
 
-def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[str]:
+def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> Iterator[str]:
     """Differences of position and velocity.
 
     Angular velocities are compared at the engine's own instant, to the second order of the delay
@@ -67,11 +67,12 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float) -> Iterator[st
     """
     delay = facts.velocity_shift * dt_s
     wanted = frames(scene, state, delay)
-    law = scene.driver.law
-    crank = start_speed(law, state.time_s, dt_s, facts.velocity_shift)
-    peak = max(law.peak_speed_rad_s, *(abs(w) for w in state.omega.values()))
+    peak = max(pace(scene, state, drive), *(abs(w) for w in state.omega.values()))
     rate = max(peak, math.sqrt(max(abs(a) for a in state.alpha.values())))
-    slack = abs(crank - wanted[scene.driver.link].omega) + (delay * rate) ** 2 * peak
+    slack = (delay * rate) ** 2 * peak
+    if drive != "free":
+        crank = start_speed(scene.driver.law, state.time_s, dt_s, facts.velocity_shift)
+        slack += abs(crank - wanted[scene.driver.link].omega)
     length = _size(scene, state)
     push = max(math.hypot(*a) for a in state.acceleration.values())
     held = {block_name(scene.sliders[name]): pose for name, pose in facts.start.blocks.items()}

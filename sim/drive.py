@@ -1,15 +1,21 @@
 """What an engine is told at each step so that the crank is where the law wants it at the samples.
 
 All rules are open loop: they follow from the law alone, and the engine's own arithmetic is exact
-for them up to rounding, because a crank that is heavy or kinematic does not feel the mechanism.
+for them up to rounding, because a crank that is heavy or kinematic does not feel the mechanism. A
+free crank is told nothing.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.laws import ConstantSpeed, Law
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Drive
 
 Array = NDArray[np.float64]
 
@@ -58,3 +64,25 @@ def pushes(law: Law, start_s: float, dt_s: float, steps: int, velocity_shift: fl
     before = np.concatenate([[0.0], np.cumsum(2.0 * sign * chord)[:-1]])
     speed = sign * (start - before)
     return 2.0 * (chord - speed) / dt_s
+
+
+def pace(scene: Scene, state: State, drive: Drive) -> float:
+    """The angular velocity [rad/s] that a run is measured by: the law's largest.
+
+    Of free motion it is the largest that the state shows, or that gravity gives in a fall through
+    the longest link; 0 only where nothing moves and nothing will.
+    """
+    if drive != "free":
+        return scene.driver.law.peak_speed_rad_s
+    speeds = [abs(omega) for omega in state.omega.values()]
+    gains = [abs(alpha) for alpha in state.alpha.values()]
+    gains.append(math.hypot(*scene.gravity_m_s2) / scene.longest_m)
+    return max(*speeds, *map(math.sqrt, gains))
+
+
+def period(scene: Scene, state: State, drive: Drive) -> float:
+    """The time [s] that a step has to be short against; infinite where nothing moves."""
+    if drive != "free":
+        return scene.driver.law.period_s
+    speed = pace(scene, state, drive)
+    return math.tau / speed if speed else math.inf

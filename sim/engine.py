@@ -18,7 +18,10 @@ from models.scene import Point, Scene
 
 Array = NDArray[np.float64]
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
-Drive = Literal["prescribed", "servo"]
+Drive = Literal["prescribed", "servo", "free"]
+"""Prescribed: the crank is where the driver's law has it, whatever the mechanism does. Servo: a
+motor of limited gain keeps its speed. Free: nothing drives it, it is a link like the others, and
+all velocities at the start are those of the state; the law plays no part."""
 SettingValue = float | int | str
 
 

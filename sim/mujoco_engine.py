@@ -37,6 +37,7 @@ from sim.engine import (
 from sim.mujoco_settings import (
     AS_SHIPPED,
     INTEGRATORS,
+    OF_DRIVES,
     TUNED,
     checked,
     velocity_shift,
@@ -107,9 +108,11 @@ class MujocoSession:
         mujoco.mj_resetDataKeyframe(self._model, self._data, 0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
-        crank = self._model.joint(driver_joint(scene)).dofadr[0]
-        law = scene.driver.law
-        self._data.qvel[crank] = drives.start_speed(law, state.time_s, dt_s, self._shift)
+        self._free = chosen.free
+        self._crank = int(self._model.joint(driver_joint(scene)).dofadr[0])
+        if not self._free:
+            start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
+            self._data.qvel[self._crank] = start
         self._pushes = np.empty(0)
         with self._quiet():
             mujoco.mj_forward(self._model, self._data)
@@ -119,7 +122,10 @@ class MujocoSession:
         model = self._model
         names = [limb.body for limb in self._limbs]
         opt = model.opt
-        held: dict[str, SettingValue] = dict(self._settings) | {
+        unused = OF_DRIVES if self._free else ()
+        held: dict[str, SettingValue] = {
+            name: value for name, value in self._settings.items() if name not in unused
+        } | {
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
@@ -134,7 +140,7 @@ class MujocoSession:
         return Facts(
             version=ENGINE.version(),
             mass_kg={n: float(model.body(n).mass[0]) for n in names},
-            inertia_kg_m2={n: float(model.body(n).inertia[2]) for n in names},
+            inertia_kg_m2={n: self._inertia(n) for n in names},
             centre_m={n: _pair(model.body(n).ipos) for n in names},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
             start=self.read(),
@@ -142,6 +148,13 @@ class MujocoSession:
             velocity_shift=self._shift,
             acceleration_shift=0.0,
         )
+
+    def _inertia(self, body: str) -> float:
+        """Inertia about the centre of mass; a free crank has that of its hinge as well."""
+        inertia = float(self._model.body(body).inertia[2])
+        if self._free and body == self._scene.driver.link:
+            inertia += float(self._model.dof_armature[self._crank])
+        return inertia
 
     def step(self, steps: int) -> None:
         """Advance in C without logging."""

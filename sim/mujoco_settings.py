@@ -34,6 +34,8 @@ RANGES = {
     "servo_gain": (1e-9, 1e15),
 }
 """What MuJoCo takes; it clips impedances to these without a word."""
+OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
+"""What a free crank does not have."""
 
 AS_SHIPPED = Profile(
     "as-shipped",
@@ -125,7 +127,7 @@ def writing(
             "integrator": integrator(settings, drive),
             "solver": str(settings["solver"]),
             "iterations": int(settings["iterations"]),
-            "tolerance": tolerance / ratio if servo is None else tolerance,
+            "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
         connect={
@@ -135,6 +137,7 @@ def writing(
         flywheel_ratio=ratio,
         servo_gain=servo,
         delay_s=velocity_shift(settings, drive) * dt_s,
+        free=drive == "free",
     )
 
 

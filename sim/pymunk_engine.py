@@ -78,11 +78,11 @@ class PymunkSession:
         checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings
         self._start_s, self._done = state.time_s, 0
-        servo = drive == "servo"
         self._model: SpaceModel = build(
             scene,
             state,
-            servo=servo,
+            servo=drive == "servo",
+            free=drive == "free",
             exact_lines=exact_lines(settings),
             delay_s=VELOCITY_SHIFT * dt_s,
         )
@@ -92,9 +92,10 @@ class PymunkSession:
         for constraint in self._space.constraints:
             constraint.error_bias = float(settings["error_bias"])
         law = scene.driver.law
-        self._constant = isinstance(law, ConstantSpeed)
-        first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
-        self._model.crank.angular_velocity = first
+        self._coasts = drive == "free" or isinstance(law, ConstantSpeed)
+        if drive != "free":
+            first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
+            self._model.crank.angular_velocity = first
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = _rows(self._model)
@@ -167,14 +168,14 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._constant:
+        if self._coasts:
             self._coast(steps, every)
         else:
             self._follow(steps, every)
         self._done += steps
 
     def _coast(self, steps: int, every: int) -> None:
-        """Step with the crank at constant speed; tight loops, as logging may not slow them much."""
+        """Step with the crank free or at constant speed; tight loops, that logging slows little."""
         step, dt = self._space.step, self._dt
         log, space, buffer = pymunk.batch.get_space_bodies, self._space, self._buffer
         if every == 1:

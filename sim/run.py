@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import statistics
 import time
 from collections.abc import Mapping, Sequence
@@ -15,6 +16,7 @@ from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from sim.check import refuse_other_model
+from sim.drive import pace, period
 from sim.engine import (
     BodyPose,
     Cost,
@@ -37,7 +39,7 @@ LEAST_STEPS_PER_PERIOD = 8
 CHUNK_STEPS = 4000
 """Steps between two looks at whether the run has diverged."""
 RUNAWAY = 1e6
-"""Angular velocity over the driver's peak speed that counts as diverged."""
+"""Angular velocity over the pace of the run (`drive.pace`) that counts as diverged."""
 
 
 def run(
@@ -64,11 +66,12 @@ def run(
     ------
     EngineError
         An unknown engine, profile or setting, a missing package, a step that is not positive or
-        leaves under 8 steps in a period, or a model in the engine that is not the scene.
+        leaves under 8 steps in a period (`sim.drive.period`), or a model in the engine that is
+        not the scene.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     held = resolved(profile_of(chosen, profile), settings)
-    _check_steps(scene, dt_s, steps, every)
+    _check_steps(scene, period(scene, state, drive), dt_s, steps, every)
     blank = Run(
         scene.name,
         chosen.name,
@@ -92,7 +95,8 @@ def run(
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
     refuse_other_model(scene, state, facts, dt_s, drive)
-    return _recorded(replace(blank, settings=facts.settings), scene, session, facts, steps, every)
+    runaway = RUNAWAY * (pace(scene, state, drive) or math.inf)
+    return _recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
 
 
 @dataclass(frozen=True)
@@ -134,7 +138,7 @@ def time_run(
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     held = resolved(profile_of(chosen, profile), settings)
-    _check_steps(scene, dt_s, steps, max(every, 1))
+    _check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
     walls = []
     collecting = gc.isenabled()
     gc.disable()
@@ -164,11 +168,10 @@ def _chunks(steps: int, every: int) -> list[int]:
     return [min(chunk, steps - done) for done in range(0, steps, chunk)]
 
 
-def _check_steps(scene: Scene, dt_s: float, steps: int, every: int) -> None:
-    """Refuse steps that mean nothing."""
+def _check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int) -> None:
+    """Refuse steps that mean nothing; ``period`` is the time that they have to resolve [s]."""
     if not (np.isfinite(dt_s) and dt_s > 0.0):
         raise EngineError(f"dt: found {dt_s:g} s; it takes a step above 0")
-    period = scene.driver.law.period_s
     if period / dt_s < LEAST_STEPS_PER_PERIOD * (1 - 1e-12):
         raise EngineError(
             f"dt: {dt_s:g} s leaves {period / dt_s:.2g} steps in a period of {period:.4g} s of "
@@ -179,16 +182,15 @@ def _check_steps(scene: Scene, dt_s: float, steps: int, every: int) -> None:
         raise EngineError(f"steps: found {steps}, logged every {every}; both are at least 1")
 
 
-def _recorded(
-    blank: Run, scene: Scene, session: Session, facts: Facts, steps: int, every: int
-) -> Run:
+def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: float) -> Run:
     """The run, chunk by chunk, until its end or until it comes apart."""
+    every = blank.every
     logs: list[Poses] = []
     warnings: list[str] = []
     wall, done = 0.0, 0
     status: Status = "ok"
     reason = ""
-    for count in _chunks(steps, every):
+    for count in _chunks(blank.steps, every):
         try:
             log = session.record(count, every)
         except Exception as error:  # whatever an engine throws is a row of the result
@@ -196,7 +198,7 @@ def _recorded(
             break
         wall, done = wall + log.wall_s, done + count
         warnings += [w for w in log.warnings if w not in warnings]
-        sound, fault = _sound(scene, log)
+        sound, fault = _sound(scene, log, runaway)
         logs.append(stretch(log.poses, sound, 1 if logs else 0))
         if fault:
             status, reason = "diverged", fault
@@ -217,17 +219,17 @@ def _recorded(
     )
 
 
-def _sound(scene: Scene, log: Log) -> tuple[int, str]:
+def _sound(scene: Scene, log: Log, runaway: float) -> tuple[int, str]:
     """How many samples of a log hold together, and what came apart after them.
 
-    A joint that is open by more than the longest link, or a link that spins a million times
-    faster than the driver, is not a mechanism any more.
+    A joint that is open by more than the longest link, or a link that spins faster than
+    ``runaway`` [rad/s], a million times the pace of the run, is not a mechanism any more.
     """
     poses = log.poses
     open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in gaps(scene, poses).values()], axis=0)
     spin = np.max([np.abs(pose.omega) for pose in poses.links.values()], axis=0)
     bad = ~(open_by <= scene.longest_m)
-    bad |= ~(spin <= RUNAWAY * scene.driver.law.peak_speed_rad_s)
+    bad |= ~(spin <= runaway)
     count = int(np.argmax(bad)) if bad.any() else len(bad)
     if count == len(bad) and not log.diverged:
         return count, ""
