@@ -22,7 +22,9 @@ SHUT = 1e-12
 """Loop gap at the start, over the longest link, that counts as assembled."""
 
 
-def refuse_other_model(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> None:
+def refuse_other_model(
+    scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive, open_m: float = 0.0
+) -> None:
     """Raise EngineError, naming everything that differs, unless the engine holds the scene.
 
     Compared are mass, inertia, gravity, position and angle of every body, loop gaps, and the
@@ -32,7 +34,7 @@ def refuse_other_model(scene: Scene, state: State, facts: Facts, dt_s: float, dr
     faults = [
         *_matter(scene, facts, drive),
         *_state(scene, state, facts, dt_s, drive),
-        *_gaps(scene, facts),
+        *_gaps(scene, facts, open_m),
     ]
     if faults:
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
@@ -96,13 +98,13 @@ def _place(body: str, pose: BodyPose, frame: Frame, length: float) -> Iterator[s
         yield f"{body} lies at {pose.origin[0]}, not {frame.origin} m"
 
 
-def _gaps(scene: Scene, facts: Facts) -> Iterator[str]:
-    """Joints that are open at the start."""
+def _gaps(scene: Scene, facts: Facts, open_m: float) -> Iterator[str]:
+    """Joints that are open at the start by more than ``open_m`` [m]."""
     limit = SHUT * max(
         scene.longest_m, float(max(np.abs(p.origin).max() for p in facts.start.links.values()))
     )
     for name, gap in gaps(scene, facts.start).items():
-        if not gap[0] <= limit:
+        if not gap[0] <= limit + open_m:
             yield f"{name} is open by {gap[0]:.2e} m"
 
 

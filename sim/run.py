@@ -53,8 +53,11 @@ def run(
     every: int = 1,
     drive: Drive = "prescribed",
     settings: Mapping[str, SettingValue] | None = None,
+    open_m: float = 0.0,
 ) -> Run:
     """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
+
+    Joints of ``state`` may be open by ``open_m`` [m], to see what the engine makes of it.
 
     Returns
     -------
@@ -94,7 +97,7 @@ def run(
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
-    refuse_other_model(scene, state, facts, dt_s, drive)
+    refuse_other_model(scene, state, facts, dt_s, drive, open_m)
     runaway = RUNAWAY * (pace(scene, state, drive) or math.inf)
     return _recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
 

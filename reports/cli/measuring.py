@@ -145,3 +145,38 @@ def figures(
 
         code = command.run_figures(folder, output, terminal(), scene or (), only or ())
     raise typer.Exit(code)
+
+
+@app.command()
+def stability(
+    cases: Annotated[
+        list[str] | None, typer.Argument(metavar="CASE", help="Hard cases; all if none.")
+    ] = None,
+    engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
+    profile: Annotated[list[str] | None, typer.Option(help="Profile; may be repeated.")] = None,
+    at: Annotated[
+        float | None, typer.Option(help="Only this value of the one case that is named.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
+    ] = None,
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0,
+    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
+) -> None:
+    """Grade the engines on hard cases, and find how far each holds them."""
+    with guarded():
+        from reports.commands import stability as command
+
+        request = command.Request(
+            cases=cases or (),
+            engines=engine or (),
+            profiles=profile or (),
+            at=at,
+            folder=output,
+            jobs=jobs,
+            limit_s=limit_s,
+            memory_gb=memory_gb,
+        )
+        code = command.stability(request, terminal(), terminal(stderr=True))
+    raise typer.Exit(code)

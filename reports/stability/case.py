@@ -25,7 +25,8 @@ class Trial:
     """A run, ready for an engine.
 
     ``scene`` is the reference; ``start`` where the engine is put in its place (None: where the
-    reference is), and errors count from ``settled_turns`` on. ``every`` so many steps are logged.
+    reference is), with joints open by up to ``open_m`` [m]; errors count from ``settled_turns`` on.
+    ``every`` so many steps are logged.
     ``limit_rad`` is the driver angle that cannot be passed, where that is what is to be seen.
     """
 
@@ -36,6 +37,7 @@ class Trial:
     drive: Drive = "prescribed"
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
     start: State | None = None
+    open_m: float = 0.0
     settled_turns: float = 0.0
     limit_rad: float = math.nan
 

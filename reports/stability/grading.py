@@ -60,6 +60,7 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
             every=trial.every,
             drive=trial.drive,
             settings=trial.settings,
+            open_m=trial.open_m,
         )
     except EngineError as error:
         return replace(blank, outcome="unsupported", reason=str(error)), None

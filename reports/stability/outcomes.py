@@ -161,3 +161,7 @@ RULES: tuple[Rule, ...] = (
     Rule("degraded", "the error is over the class, and bounded", _degraded),
     Rule("ok", "within the class throughout", _ok),
 )
+MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
+    "unsupported": "the engine cannot hold the scene",
+}
+"""What each outcome means, for people."""

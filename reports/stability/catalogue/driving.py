@@ -37,7 +37,9 @@ def _changed(before: float, after: float, rise_turns: float) -> Trial:
     """A change of speed after most of a turn, its ramp in turns of the first speed."""
     period = math.tau / SPEED_RAD_S
     at, rise = CHANGE_TURNS * period, rise_turns * period
-    return Trial(_driven(SpeedChange(START_RAD, before, after, at, rise)))
+    law = SpeedChange(START_RAD, before, after, at, rise)
+    turns = (CHANGE_TURNS + rise_turns) * period / law.period_s + 1.0
+    return Trial(_driven(law), turns=turns)
 
 
 def _reversed(value: float) -> Trial:

@@ -1,0 +1,113 @@
+"""How far an engine holds a case: the grid of values, then a bisection between good and bad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator
+
+from reports.stability.case import Case, label
+from reports.stability.matrix import Critical, Graded
+
+LOOKS = 7
+"""Runs of a bisection at most: a factor of 10 is then known to 2 %."""
+NEAR = 0.05
+"""Good and bad this near to each other, relatively, are near enough."""
+Grade = Callable[[float, bool], Graded]
+
+
+def line(case: Case, grade: Grade) -> Generator[Graded]:
+    """All runs of one engine with one profile: the case's values, then what a bisection looks at.
+
+    Parameters
+    ----------
+    grade : Callable
+        The run at a value; True for a value of the grid.
+    """
+    held: float | None = None
+    failed: float | None = None
+    for value in case.values:
+        found = grade(value, True)
+        yield found
+        if failed is None and found.outcome in case.good:
+            held = value
+        elif failed is None:
+            failed = value
+    if held is None or failed is None:
+        return
+    for _ in range(LOOKS):
+        middle = between(case, held, failed)
+        if middle is None:
+            return
+        found = grade(middle, False)
+        yield found
+        if found.outcome in case.good:
+            held = middle
+        else:
+            failed = middle
+
+
+def between(case: Case, held: float, failed: float) -> float | None:
+    """The value to look at next; None where the two are near enough, or nothing lies between."""
+    if case.scale == "linear":
+        width = max(case.values) - min(case.values)
+        return None if abs(failed - held) <= NEAR * width else _short(0.5 * (held + failed))
+    if held <= 0.0 or failed <= 0.0 or abs(failed / held - 1.0) <= NEAR:
+        return None
+    middle = math.sqrt(held * failed)
+    middle = float(round(middle)) if case.scale == "whole" else _short(middle)
+    return None if middle in (held, failed) else middle
+
+
+def _short(value: float) -> float:
+    """A value that is what its label says, so that the command that is told repeats it."""
+    return float(label(value))
+
+
+def critical(case: Case, runs: list[Graded]) -> Critical:
+    """How far the runs of one line hold; they are in the order in which `line` gave them."""
+    first = runs[0]
+    grid = [run for run in runs if run.grid]
+    harder = -1.0 if len(case.values) > 1 and case.values[-1] < case.values[0] else 1.0
+    bad = [run for run in runs if run.outcome not in case.good]
+    fails = min(bad, key=lambda run: harder * run.value, default=None)
+    good = [
+        run
+        for run in runs
+        if run.outcome in case.good and (fails is None or harder * (fails.value - run.value) > 0.0)
+    ]
+    holds = max(good, key=lambda run: harder * run.value, default=None)
+    shown = fails or holds or first
+    return Critical(
+        case=case.name,
+        engine=first.engine,
+        profile=first.profile,
+        holds=math.nan if holds is None else holds.value,
+        fails=math.nan if fails is None else fails.value,
+        outcome=shown.outcome,
+        words=_words(case, holds, fails, len(grid) > 1, harder),
+        command=command(shown),
+    )
+
+
+def command(run: Graded) -> str:
+    """The command that repeats a run alone."""
+    return (
+        f"crankcheck stability {run.case} --engine {run.engine} --profile {run.profile} "
+        f"--at {run.label}"
+    )
+
+
+def _words(
+    case: Case, holds: Graded | None, fails: Graded | None, several: bool, harder: float
+) -> str:
+    """The critical value in a line."""
+    if fails is None:
+        assert holds is not None
+        if holds.outcome not in ("ok", "locked"):
+            return holds.outcome
+        return f"holds all, error up to {holds.error:.0e}" if several else "holds"
+    if holds is None:
+        return f"{fails.outcome} at once" if several else fails.outcome
+    way = "down to" if harder < 0.0 else "up to"
+    value = f"{label(holds.value)} {case.unit}".strip()
+    return f"holds {way} {value}, then {fails.outcome}"

@@ -1,0 +1,115 @@
+"""Run the catalogue: every case in every engine and profile, each run in a process apart."""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+
+from reports.stability.case import Case, label
+from reports.stability.catalogue import CATALOGUE
+from reports.stability.critical import critical, line
+from reports.stability.grading import Found, graded
+from reports.stability.matrix import Critical, Graded, Picture
+from reports.sweep.isolation import Isolated, Limits, Lost
+
+LIMIT_S = 120.0
+MEMORY_GB = 4.0
+
+
+@dataclass(frozen=True)
+class Line:
+    """A case in one engine with one profile."""
+
+    case: str
+    engine: str
+    profile: str
+
+
+@dataclass(frozen=True)
+class Held:
+    """What came of a line: its runs, how far it holds, and pictures of what failed."""
+
+    line: Line
+    runs: tuple[Graded, ...]
+    critical: Critical
+    pictures: tuple[Picture, ...]
+
+
+def run_lines(
+    lines: Sequence[Line], jobs: int, limits: Limits, done: Callable[[Held], None]
+) -> list[Held]:
+    """Run the lines, several at a time, the longest first; gives them in the order of ``lines``.
+
+    ``done`` hears of each as it ends, in this thread.
+    """
+    apart = [Isolated[Found](limits) for _ in range(max(min(jobs, len(lines)), 1))]
+    free: queue.SimpleQueue[Isolated[Found]] = queue.SimpleQueue()
+    for one in apart:
+        free.put(one)
+    pool = ThreadPoolExecutor(len(apart))
+    waiting: dict[Future[Held], int] = {}
+    found: dict[int, Held] = {}
+    try:
+        for index in sorted(range(len(lines)), key=lambda i: -_work(CATALOGUE[lines[i].case])):
+            waiting[pool.submit(_line, lines[index], free)] = index
+        for future in as_completed(waiting):
+            held = future.result()
+            found[waiting[future]] = held
+            done(held)
+    finally:
+        for future in waiting:
+            future.cancel()
+        for one in apart:
+            one.close()
+        pool.shutdown()
+    return [found[index] for index in range(len(lines))]
+
+
+def _work(case: Case) -> int:
+    """The steps of a line, roughly."""
+    return sum(case.trial(value).steps for value in case.values)
+
+
+def _line(given: Line, free: queue.SimpleQueue[Isolated[Found]]) -> Held:
+    """One line, in a child process that is free."""
+    case, isolated = CATALOGUE[given.case], free.get()
+    pictures: list[Picture] = []
+
+    def grade(value: float, grid: bool) -> Graded:
+        answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
+        if isinstance(answer, Lost):
+            return _lost(given, value, answer, grid)
+        found, drawn = answer
+        if drawn is not None:
+            pictures.append(drawn)
+        return replace(found, grid=grid)
+
+    try:
+        runs = list(line(case, grade))
+    finally:
+        free.put(isolated)
+    return Held(given, tuple(runs), critical(case, runs), tuple(pictures))
+
+
+def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> Found:
+    """As `grading.graded`, for a case by its name: what travels to the child process is small."""
+    return graded(CATALOGUE[case], engine, profile, value, draw=draw)
+
+
+def _lost(given: Line, value: float, lost: Lost, grid: bool) -> Graded:
+    """A run that its process did not survive."""
+    trial = CATALOGUE[given.case].trial(value)
+    return Graded(
+        case=given.case,
+        engine=given.engine,
+        profile=given.profile,
+        value=value,
+        label=label(value),
+        outcome="crashed",
+        reason=lost.reason,
+        steps=trial.steps,
+        dt_s=trial.dt_s,
+        grid=grid,
+    )

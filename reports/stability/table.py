@@ -1,0 +1,122 @@
+"""The matrix on the terminal: case by case, a line per engine and profile."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from reports.stability.case import label
+from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
+from reports.stability.outcomes import MEANINGS
+
+LETTERS: Mapping[Outcome, str] = {
+    "ok": "",
+    "degraded": "d",
+    "drifts": "~",
+    "branch-changed": "B",
+    "locked": "L",
+    "silently-open": "S",
+    "diverged": "X",
+    "crashed": "!",
+    "unsupported": "-",
+}
+STYLES: Mapping[Outcome, str] = {
+    "ok": "green",
+    "locked": "green",
+    "degraded": "yellow",
+    "drifts": "yellow",
+    "unsupported": "dim",
+}
+
+
+def show(console: Console, matrix: Matrix) -> None:
+    """Print the whole matrix, with its legend and where it comes from."""
+    group = ""
+    for case in matrix.cases:
+        if case.group != group:
+            group = case.group
+            console.print(Text(group.upper(), "bold"), "")
+        _case(console, matrix, case)
+    console.print(_legend(matrix), "", style="dim", highlight=False)
+    facts = ", ".join(f"{name} {value}" for name, value in matrix.facts.items())
+    console.print(facts, style="dim", highlight=False)
+
+
+def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
+    """One case: what is made harder, and how far each engine holds it."""
+    unit = f" [{case.unit}]" if case.unit else ""
+    console.print(Text.assemble((case.name, "bold"), f"  {case.title}; {case.parameter}{unit}"))
+    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
+    table.add_column("", no_wrap=True)
+    for text in case.labels:
+        table.add_column(text, justify="right", no_wrap=True, header_style="dim")
+    table.add_column("", overflow="fold")
+    for critical in (one for one in matrix.critical if one.case == case.name):
+        runs = {
+            run.value: run
+            for run in matrix.runs
+            if (run.case, run.engine, run.profile) == (case.name, critical.engine, critical.profile)
+            and run.grid
+        }
+        cells = [_cell(runs.get(value)) for value in case.values]
+        name = f"  {critical.engine} {critical.profile}"
+        table.add_row(name, *cells, Text(f" {critical.words}", STYLES.get(critical.outcome, "red")))
+    console.print(table, "")
+
+
+def _cell(run: Graded | None) -> Text:
+    """The error of a run, short, after the letter of its outcome."""
+    if run is None:
+        return Text("")
+    number = "" if math.isnan(run.error) or run.outcome == "unsupported" else label(_one(run.error))
+    letter = LETTERS[run.outcome]
+    return Text(
+        letter if letter in ("X", "!", "-") else letter + number, STYLES.get(run.outcome, "red")
+    )
+
+
+def _one(number: float) -> float:
+    """A number with one digit."""
+    return float(f"{number:.0e}")
+
+
+def _legend(matrix: Matrix) -> str:
+    """What letters and numbers mean, and how each is had alone."""
+    seen = {run.outcome for run in matrix.runs}
+    letters = "; ".join(
+        f"{LETTERS[outcome]} {outcome}: {meaning}"
+        for outcome, meaning in MEANINGS.items()
+        if outcome in seen and LETTERS[outcome]
+    )
+    within = sorted({case.within for case in matrix.cases})
+    classes = " or ".join(f"{one:g}" for one in within)
+    return (
+        "Numbers: the worst error of place (rad, or over the longest link); easy to hard from left "
+        f"to right; held is what stays within {classes}. {letters}.\n"
+        "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
+    )
+
+
+def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
+    """Print one run in full."""
+    good = run.outcome in case.good
+    head = f"{case.name}, {case.parameter} {run.label} {case.unit}".rstrip()
+    console.print(Text(f"{head}, {run.engine}, {run.profile}", "bold"))
+    console.print(Text(f"  {run.outcome}", "green" if good else "bold red"), Text(run.reason))
+    if not math.isnan(run.at_s):
+        degrees = math.degrees(run.at_driver_rad)
+        console.print(f"  at t = {run.at_s:.6g} s, driver {degrees:.4g} deg", highlight=False)
+    for name, number in (
+        ("error of place", run.error),
+        ("widest joint", run.gap),
+        ("error of the crank", run.drive),
+        ("distance from singular (sine)", run.sine),
+    ):
+        if not math.isnan(number):
+            console.print(f"  {name}: {number:.3g}", highlight=False)
+    console.print(f"  {run.steps} steps of {run.dt_s:.4g} s", highlight=False)
+    console.print(f"  truth: {case.truth}", f"  expected: {case.expected}", sep="\n", style="dim")
