@@ -86,7 +86,12 @@ FACTS = frozenset(CaseFacts.__dataclass_fields__) - {"labels"}
 
 
 def label(value: float) -> str:
-    """A value of a parameter in few characters."""
+    """A value of a parameter in few characters: three digits, whole numbers up to five."""
+    if value == round(value) and abs(value) < 1e5:
+        return str(round(value))
     text = f"{value:.3g}"
-    mantissa, exponent, power = text.partition("e")
-    return f"{mantissa}e{int(power)}" if exponent else text
+    if "e" not in text and abs(value) >= 1e-3:
+        return text
+    mantissa, _, power = f"{value:.2e}".partition("e")
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}e{int(power)}"

@@ -11,7 +11,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.errors import EngineError
 from reports.stability.case import Case, Trial, label
-from reports.stability.limit import at_limit
+from reports.stability.limit import at_limit, held_scene
 from reports.stability.matrix import Graded, Outcome, Picture
 from reports.stability.outcomes import Ending, outcome
 from reports.stability.picture import picture
@@ -42,7 +42,8 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     found = replace(found, wall_s=time.perf_counter() - began)
     if not draw or done is None or found.outcome in case.good:
         return found, None
-    return found, picture(case, trial.scene, found, done)
+    scene = held_scene(trial) if case.judge == "limit" else trial.scene
+    return found, picture(case, scene, found, done)
 
 
 def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:

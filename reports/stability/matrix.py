@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from models.errors import CrankcheckError
+from reports.finite import finite
 
 Outcome = Literal[
     "ok",
@@ -137,7 +138,7 @@ class Matrix:
 def to_json(matrix: Matrix) -> str:
     """The matrix as text; what is not finite as null."""
     content = {"format": FORMAT, **asdict(matrix)}
-    return json.dumps(_finite(content), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(finite(content), indent=1, ensure_ascii=False) + "\n"
 
 
 def read_matrix(folder: Path) -> Matrix:
@@ -173,17 +174,6 @@ def read_matrix(folder: Path) -> Matrix:
         raise CrankcheckError(
             f"{path}: can not be read ({why}); run `crankcheck stability -o {folder}` again"
         ) from None
-
-
-def _finite(value: object) -> object:
-    """The value with numbers that JSON has no name for as None."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
 
 
 def _numbers(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.page.drawing import INSTANTS, displacements, drawing, drawn_links, moving_points
+from reports.page.numbers import plain
 from reports.series import Array
 from reports.stability.case import Case
 from reports.stability.matrix import Graded, Picture
@@ -45,8 +48,8 @@ def picture(case: Case, scene: Scene, found: Graded, run: Run) -> Picture | None
         value=found.value,
         label=found.label,
         title=f"{case.title}: {case.parameter} {found.label} {case.unit}".strip(),
-        drawing=shape,
-        rows=rows,
+        drawing=cast(Mapping[str, object], plain(shape)),
+        rows=plain(rows),
     )
 
 

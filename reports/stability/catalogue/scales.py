@@ -55,7 +55,7 @@ def _case(
 
 
 SMALL, LARGE = (1.0, 0.1, 1e-2, 1e-3, 1e-4), (1.0, 10.0, 100.0, 1e3, 1e4)
-FAR = (1.0, 1e3, 1e6, 1e9, 1e12)
+FAR = (1.0, 1e3, 1e6, 1e8, 1e10)
 ANGLES = (0.0, 30.0, 45.0, 90.0, 137.0, 180.0, 270.0)
 CASES = (
     _case("small", "Smaller and smaller", "longest link", "m", SMALL, _sized),
