@@ -8,31 +8,23 @@ error, propagated from group to group (`analytic.closure`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analytic.chunk import Chunk
+from analytic.crossing import Passage, passages, passed
 from analytic.dyads.parts import OpenError
-from analytic.plane import (
-    EPS,
-    STEADY,
-    AngleError,
-    Array,
-    BodyKinematics,
-    Real,
-    Vec,
-    fixed_body,
-    fixed_point,
-)
+from analytic.plane import EPS, STEADY, AngleError, Array, Real
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted
-from analytic.steps import Step, prepare
+from analytic.steps import Step, prepare, stretched
 from analytic.structure import analyse
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
-from models.motion import Motion
-from models.scene import GROUND, Scene
+from models.motion import Crossing, Motion
+from models.scene import Scene
 
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
@@ -75,8 +67,8 @@ def solve(
     """
     time_s = _samples(time_s)
     law = scene.driver.law
-    steps = prepare(scene, analyse(scene))
-    result = Result(Wanted.of(scene, links, points, sliders), time_s, steps, bound=bound)
+    way = _Way.of(scene)
+    result = Result(Wanted.of(scene, links, points, sliders), time_s, way.steps, bound=bound)
     for first in range(0, len(time_s), CHUNK):
         span = slice(first, first + CHUNK)
         t = time_s[span]
@@ -90,8 +82,8 @@ def solve(
                 4 * EPS * peak * (1.0 + age),
                 4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
             )
-        result.write(span, _advance(scene, steps, theta, omega, alpha, error))
-    return result.motion()
+        result.write(span, way.chunk(theta, omega, alpha, error))
+    return replace(result.motion(), crossings=way.crossings())
 
 
 def solve_driven(
@@ -115,30 +107,18 @@ def solve_driven(
     theta = _samples(theta)
     omega, alpha = np.broadcast_to(omega, theta.shape), np.broadcast_to(alpha, theta.shape)
     labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
-    steps = prepare(scene, analyse(scene))
-    result = Result(Wanted.of(scene, links, points, sliders), labels, steps, bound=bound)
+    way = _Way.of(scene)
+    result = Result(Wanted.of(scene, links, points, sliders), labels, way.steps, bound=bound)
     for first in range(0, len(theta), CHUNK):
         span = slice(first, first + CHUNK)
         error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
-        chunk = _advance(scene, steps, theta[span], omega[span], alpha[span], error)
-        result.write(span, chunk)
-    return result.motion()
+        result.write(span, way.chunk(theta[span], omega[span], alpha[span], error))
+    return replace(result.motion(), crossings=way.crossings())
 
 
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
-    steps = prepare(scene, analyse(scene))
-    return ranges(lambda angles: stretched(scene, steps, angles))
-
-
-def stretched(scene: Scene, steps: list[Step], theta: Array) -> Chunk:
-    """The mechanism at driver angles that may be out of reach, its open dyads stretched in line."""
-    zero = np.zeros_like(theta)
-    chunk = _start(scene, theta, zero, zero, None, stretch=True)
-    with np.errstate(all="ignore"):  # parallel lines cross at infinity
-        for step in steps:
-            step.advance(chunk)
-    return chunk
+    return ranges(_Way.of(scene).stretched)
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
@@ -161,47 +141,48 @@ def _samples(values: Array) -> Array:
     return values
 
 
-def _start(
-    scene: Scene,
-    theta: Array,
-    omega: Real,
-    alpha: Real,
-    error: AngleError | None,
-    *,
-    stretch: bool = False,
-) -> Chunk:
-    """A chunk in which the ground and the driver are known."""
-    pivot = scene.driver_pivot
-    local = scene.links[scene.driver.link].points[pivot]
-    anchor = fixed_point(scene.ground[pivot])
-    driver = BodyKinematics(
-        local, anchor, Vec(np.cos(theta), np.sin(theta)), omega, alpha, error, theta
-    )
-    certified = error is not None
-    bodies = {GROUND: fixed_body(certified=certified), scene.driver.link: driver}
-    return Chunk(scene, certified, stretch, bodies, points={pivot: anchor})
+@dataclass
+class _Way:
+    """A scene made ready to be solved, and the driver angles that it was solved for."""
 
+    scene: Scene
+    steps: Sequence[Step]
+    passages: Mapping[str, Passage]
+    low: float
+    high: float
 
-@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-def _advance(
-    scene: Scene,
-    steps: list[Step],
-    theta: Array,
-    omega: Real,
-    alpha: Real,
-    error: AngleError | None,
-) -> Chunk:
-    """One chunk through all steps. Raises ReachError."""
-    chunk = _start(scene, theta, omega, alpha, error)
-    for step in steps:
-        try:
-            step.advance(chunk)
-        except OpenError as opened:
-            index = int(np.argmax(opened.short_m))
-            angle, short = math.degrees(theta[index]), float(opened.short_m[index])
-            reach = describe_reach(scene, lambda angles: stretched(scene, steps, angles))
-            raise ReachError(
-                f"{scene.name}: {scene.driver.link} at {angle:.6g} deg: the loop cannot close at "
-                f"{step.key}, it is open by {short:.3g} m. {reach}"
-            ) from None
-    return chunk
+    @staticmethod
+    def of(scene: Scene) -> _Way:
+        steps = prepare(scene, analyse(scene))
+        start = float(scene.driver.law.at(np.zeros(1))[0][0])
+        return _Way(scene, steps, passages(scene, steps), start, start)
+
+    def stretched(self, theta: Array) -> Chunk:
+        return stretched(self.scene, self.steps, theta, self.passages)
+
+    def crossings(self) -> tuple[Crossing, ...]:
+        """The change points on the way from time 0 to all that was solved for."""
+        return passed(self.passages, self.low, self.high)
+
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
+    def chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
+        """One chunk through all steps. Raises ReachError."""
+        if self.passages:
+            self.low = min(self.low, float(theta.min()))
+            self.high = max(self.high, float(theta.max()))
+        chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=self.passages)
+        for step in self.steps:
+            try:
+                step.advance(chunk)
+            except OpenError as opened:
+                raise ReachError(self._open(step, theta, opened.short_m)) from None
+        return chunk
+
+    def _open(self, step: Step, theta: Array, short_m: Array) -> str:
+        """Where the loop cannot close, by how much, and where it can."""
+        scene, index = self.scene, int(np.argmax(short_m))
+        return (
+            f"{scene.name}: {scene.driver.link} at {math.degrees(theta[index]):.6g} deg: the loop "
+            f"cannot close at {step.key}, it is open by {float(short_m[index]):.3g} m. "
+            f"{describe_reach(scene, self.stretched)}"
+        )

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol
 
+import numpy as np
+
 from analytic.bridge import BridgeStep
-from analytic.chunk import Chunk
+from analytic.chunk import Chunk, Passage
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.parts import Sliding, Turning
 from analytic.groups import Bridge, Group
-from analytic.plane import Vec, direction
+from analytic.plane import Array, Vec, direction
 from analytic.riding import (
     RidingLine,
     following_body,
@@ -52,6 +54,21 @@ def prepare(scene: Scene, structure: Structure) -> list[Step]:
     return steps
 
 
+def stretched(
+    scene: Scene,
+    steps: Sequence[Step],
+    theta: Array,
+    passages: Mapping[str, Passage] | None = None,
+) -> Chunk:
+    """The mechanism at driver angles that may be out of reach, its open dyads stretched in line."""
+    zero = np.zeros_like(theta)
+    chunk = Chunk.begin(scene, theta, zero, zero, stretch=True, passages=passages)
+    with np.errstate(all="ignore"):  # parallel lines cross at infinity
+        for step in steps:
+            step.advance(chunk)
+    return chunk
+
+
 class RRRStep:
     """Two links between two known pins."""
 
@@ -73,14 +90,15 @@ class RRRStep:
     def advance(self, chunk: Chunk) -> None:
         g = self.group
         p1, p2 = chunk.point(self.hold1, g.outer1), chunk.point(self.hold2, g.outer2)
-        dyad = rrr.solve(
-            p1, p2, self.l1, self.l2, self.branch, certified=chunk.certified, stretch=chunk.stretch
+        branch, stretch = chunk.assembly(self.key, self.branch)
+        found = rrr.solve(
+            p1, p2, self.l1, self.l2, branch, certified=chunk.certified, stretch=stretch
         )
+        dyad = chunk.keep(self.key, found)
         assert isinstance(dyad.first, Turning)
         assert isinstance(dyad.second, Turning)
         chunk.bodies[g.first] = turning_body(dyad.first, self.back1, self.local1, p1)
         chunk.bodies[g.second] = turning_body(dyad.second, self.back2, self.local2, p2)
-        chunk.keep(self.key, dyad)
 
 
 class RRPStep:
@@ -104,9 +122,9 @@ class RRPStep:
     def advance(self, chunk: Chunk) -> None:
         g = self.group
         p1, line = chunk.point(self.hold, g.outer1), self.through.line(chunk)
-        dyad = rrp.solve(
-            p1, line, self.length, self.branch, certified=chunk.certified, stretch=chunk.stretch
-        )
+        branch, stretch = chunk.assembly(self.key, self.branch)
+        found = rrp.solve(p1, line, self.length, branch, certified=chunk.certified, stretch=stretch)
+        dyad = chunk.keep(self.key, found)
         assert isinstance(dyad.first, Turning)
         assert isinstance(dyad.second, Sliding)
         chunk.bodies[g.first] = turning_body(dyad.first, self.back, self.local, p1)
@@ -114,7 +132,6 @@ class RRPStep:
         known = chunk.bodies[self.riding.known]
         chunk.bodies[g.second] = following_body(known, self.riding.follow, self.rider, pin)
         chunk.sliders[g.outer2] = self.through.displacement(dyad.second, self.lead)
-        chunk.keep(self.key, dyad)
 
 
 class RPRStep:
@@ -147,15 +164,16 @@ class RPRStep:
         if p1.error is not None and self.slack:
             error = replace(p1.error, position=p1.error.position + self.slack)
             block = replace(p1, error=error)
-        dyad = rpr.solve(
-            block, p2, self.offset, self.branch, certified=chunk.certified, stretch=chunk.stretch
+        branch, stretch = chunk.assembly(self.key, self.branch)
+        found = rpr.solve(
+            block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch
         )
+        dyad = chunk.keep(self.key, found)
         assert isinstance(dyad.first, Turning)
         assert isinstance(dyad.second, Sliding)
         chunk.bodies[self.body] = turning_body(dyad.first, self.back1, self.local1, p1)
         chunk.bodies[self.guide] = turning_body(dyad.first, self.back2, self.local2, p2)
         chunk.sliders[self.slider] = without_lead(dyad.second, self.lead, self.slack)
-        chunk.keep(self.key, dyad)
 
 
 class PRPStep:

@@ -54,12 +54,25 @@ class Bound:
 
 
 @dataclass(frozen=True)
+class Crossing:
+    """A change point that a motion goes through on the smooth branch.
+
+    ``dyad`` is named by its inner joint, as in the conditioning; ``driver_rad`` is the driver's
+    angle [rad], 0 to 2 pi.
+    """
+
+    dyad: str
+    driver_rad: float
+
+
+@dataclass(frozen=True)
 class Motion:
     """The motion of a mechanism, sampled at ``time_s`` (T,).
 
     What a producer does not give is NaN (an engine without accelerations). ``conditioning`` holds,
     per dyad of the reference (named by its inner joint), the sine of the transmission angle or its
     like: 1 is best, 0 is singular. ``bound`` is the reference's own error, where it was asked for.
+    ``crossings`` are the change points on the way from time 0 through the samples.
     """
 
     time_s: Array
@@ -68,6 +81,7 @@ class Motion:
     sliders: Mapping[str, SliderMotion]
     conditioning: Mapping[str, Array] = field(default_factory=dict)
     bound: Bound | None = None
+    crossings: tuple[Crossing, ...] = ()
 
     def state(self, index: int = 0) -> State:
         """The sample ``index`` as a state."""

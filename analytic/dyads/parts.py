@@ -100,17 +100,27 @@ class MovingLine:
 
 
 @dataclass(frozen=True, slots=True)
-class Dyad:
-    """The solved dyad.
+class Closure:
+    """How a dyad closes.
 
-    ``sine`` is its conditioning (1 best, 0 singular); ``short_m``, given for a stretched solution
-    only, is by how much the dyad is short of closing [m] (negative: it closes).
+    ``root`` is what its branch is the sign of, None for a dyad of one assembly; 0 where it is
+    singular. ``short_m``, given for a stretched solution only, is by how much the dyad is short of
+    closing [m] (negative: it closes), less half of ``rounding_m``, what rounding may open it by.
     """
+
+    root: Real | None
+    short_m: Real | None = None
+    rounding_m: Real = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Dyad:
+    """The solved dyad; ``sine`` is its conditioning (1 best, 0 singular)."""
 
     first: Turning | Sliding
     second: Turning | Sliding
     sine: Real
-    short_m: Real | None = None
+    closure: Closure
 
 
 class OpenError(Exception):
@@ -126,7 +136,7 @@ class OpenError(Exception):
 
 def closing_root(
     square: Real, shortage: Callable[[], tuple[Real, Real]], stretch: bool
-) -> tuple[Real, Real | None]:
+) -> tuple[Real, Closure]:
     """The square root of what closure leaves, 0 where rounding has taken it below 0.
 
     Parameters
@@ -135,14 +145,14 @@ def closing_root(
         Positive where the dyad closes.
     shortage : Callable
         By how much the dyad is short of closing [m] (negative: it closes), and the sum of the
-        lengths that this is the difference of; asked for only where it matters.
+        lengths and coordinates that this is the difference of; asked for only where it matters.
     stretch : bool
         Solve the dyad as if stretched where it is open, instead of raising.
 
     Returns
     -------
     tuple
-        The root, and the shortage, less what is taken for rounding, where ``stretch``.
+        The root, and how the dyad closes.
 
     Raises
     ------
@@ -152,10 +162,14 @@ def closing_root(
     if stretch:
         # A little less is let pass than when solving, so that the ends of a range can be solved.
         short, scale = shortage()
-        return np.sqrt(np.maximum(square, 0.0)), short - 0.5 * CLOSED * scale
+        rounding = CLOSED * scale
+        root = np.sqrt(np.maximum(square, 0.0))
+        return root, Closure(root, short - 0.5 * rounding, rounding)
     if np.min(square) < 0.0:
         short, scale = shortage()
         if np.any(short > CLOSED * scale):
             raise OpenError(np.broadcast_to(np.asarray(short), np.shape(square)))
-        return np.sqrt(np.maximum(square, 0.0)), None
-    return np.sqrt(square), None
+        root = np.sqrt(np.maximum(square, 0.0))
+    else:
+        root = np.sqrt(square)
+    return root, Closure(root)

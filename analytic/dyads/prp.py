@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, MovingLine, OpenError, SlideError, Sliding
+from analytic.dyads.parts import Closure, Dyad, MovingLine, OpenError, SlideError, Sliding
 from analytic.plane import EPS, Real
 
 
@@ -60,11 +60,12 @@ def solve(
         v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
         a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
     first, second = Sliding(s1, v1, a1, None), Sliding(s2, v2, a2, None)
+    # Lines that are parallel at one angle cross on both sides of it.
+    closure = Closure(None, -np.abs(det) if stretch else None)
     if not certified:
-        # Lines that are parallel at one angle cross on both sides of it.
-        return Dyad(first, second, np.abs(det), -np.abs(det) if stretch else None)
+        return Dyad(first, second, np.abs(det), closure)
     e1, e2 = _errors(line1, line2, jacobian, first, second)
-    return Dyad(Sliding(s1, v1, a1, e1), Sliding(s2, v2, a2, e2), np.abs(det))
+    return Dyad(Sliding(s1, v1, a1, e1), Sliding(s2, v2, a2, e2), np.abs(det), closure)
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.dyads import prp
-from analytic.dyads.parts import Dyad, MovingLine, Sliding
+from analytic.dyads.parts import Closure, Dyad, MovingLine, Sliding
 from analytic.plane import PointKinematics, Vec
 
 
@@ -64,4 +64,4 @@ def solve(
     if stretch:  # parallel for good, as the angle between the lines is constant
         gap = np.abs((p1.p - line.point.p).cross(line.along))
         short = np.where(found.sine == 0.0, gap, -gap)
-    return Dyad(found.first, block, found.sine, short)
+    return Dyad(found.first, block, found.sine, Closure(None, short))

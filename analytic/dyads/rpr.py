@@ -23,7 +23,7 @@ def solve(
     p1: PointKinematics,
     p2: PointKinematics,
     offset: float,
-    branch: int,
+    branch: Real,
     *,
     certified: bool = False,
     stretch: bool = False,
@@ -38,7 +38,7 @@ def solve(
         The pin of the link that carries the line.
     offset : float
         Distance h of the line from P2 [m], positive to the left of its direction.
-    branch : int
+    branch : int or Array
         The sign of the displacement s.
     certified, stretch
         As for `analytic.dyads.rrr.solve`.
@@ -64,9 +64,9 @@ def solve(
 
     def shortage() -> tuple[Real, Real]:
         apart = np.sqrt(d2)
-        return abs(offset) - apart, abs(offset) + apart
+        return abs(offset) - apart, abs(offset) + apart + p1.p.norm() + p2.p.norm()
 
-    root, short = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch)
     s = branch * root
     with np.errstate(divide="ignore", invalid="ignore"):
         along = (d * s - d.perp() * offset) * (1.0 / d2)
@@ -78,9 +78,9 @@ def solve(
         sine = np.abs(s) / np.sqrt(d2)
     turning, sliding = Turning(along, w, g, None), Sliding(s, speed, acceleration, None)
     if not certified:
-        return Dyad(turning, sliding, sine, short)
+        return Dyad(turning, sliding, sine, closure)
     e1, e2 = _errors(p1, p2, offset, jacobian, turning, sliding)
-    return Dyad(Turning(along, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
+    return Dyad(Turning(along, w, g, e1), Sliding(s, speed, acceleration, e2), sine, closure)
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

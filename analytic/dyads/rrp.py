@@ -23,7 +23,7 @@ def solve(
     p1: PointKinematics,
     line: MovingLine,
     length: float,
-    branch: int,
+    branch: Real,
     *,
     certified: bool = False,
     stretch: bool = False,
@@ -38,7 +38,7 @@ def solve(
         The line of the inner pin.
     length : float
         Distance from P1 to the inner pin [m].
-    branch : int
+    branch : int or Array
         +1 where the pin lies from the foot of P1 on the line in the line's direction, else -1.
     certified, stretch
         As for `analytic.dyads.rrr.solve`.
@@ -63,9 +63,10 @@ def solve(
     square = (length - height) * (length + height)
 
     def shortage() -> tuple[Real, Real]:
-        return np.abs(height) - length, np.abs(height) + length
+        scale = np.abs(height) + length + p1.p.norm() + line.point.p.norm()
+        return np.abs(height) - length, scale
 
-    root, short = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch)
     reach = branch * root
     if stretch:
         height = np.clip(height, -length, length)
@@ -79,9 +80,9 @@ def solve(
     sine = np.abs(reach) * (1.0 / length)
     turning, sliding = Turning(u, w, g, None), Sliding(s, speed, acceleration, None)
     if not certified:
-        return Dyad(turning, sliding, sine, short)
+        return Dyad(turning, sliding, sine, closure)
     e1, e2 = _errors(p1, line, length, jacobian, turning, sliding)
-    return Dyad(Turning(u, w, g, e1), Sliding(s, speed, acceleration, e2), sine)
+    return Dyad(Turning(u, w, g, e1), Sliding(s, speed, acceleration, e2), sine, closure)
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

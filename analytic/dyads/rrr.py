@@ -27,7 +27,7 @@ def solve(
     p2: PointKinematics,
     l1: float,
     l2: float,
-    branch: int,
+    branch: Real,
     *,
     certified: bool = False,
     stretch: bool = False,
@@ -40,7 +40,7 @@ def solve(
         The outer pins.
     l1, l2 : float
         Distances of the inner pin C from P1 and from P2 [m].
-    branch : int
+    branch : int or Array
         +1 where C lies to the left of the line from P1 to P2, else -1.
     certified : bool
         Give error bounds; the points must then carry theirs.
@@ -70,9 +70,10 @@ def solve(
 
     def shortage() -> tuple[Real, Real]:
         apart = np.sqrt(d2)
-        return np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart), apart + l1 + l2
+        scale = apart + l1 + l2 + p1.p.norm() + p2.p.norm()
+        return np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart), scale
 
-    root, short = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch)
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = 1.0 / d2
         along = (0.5 * (l1 - l2) * (l1 + l2)) * inverse
@@ -95,10 +96,10 @@ def solve(
     sine = root * (0.5 / (l1 * l2))
     first, second = Turning(r1, w1, g1, None, l1), Turning(r2, w2, g2, None, l2)
     if not certified:
-        return Dyad(first, second, sine, short)
+        return Dyad(first, second, sine, closure)
     jacobian = Jacobian(r1.perp(), r2.perp(-1.0), (-0.5 * branch) * root)
     e1, e2 = _errors(p1, p2, jacobian, first, second, np.sqrt(d2))
-    return Dyad(replace(first, error=e1), replace(second, error=e2), sine)
+    return Dyad(replace(first, error=e1), replace(second, error=e2), sine, closure)
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

@@ -119,15 +119,15 @@ def test_rates_in_toggle_are_uncertain_and_silent() -> None:
     assert (motion.conditioning["C"] < 1e-6).all()
 
 
-PARALLELOGRAM = """
-name = "parallelogram"
+HANGING = """
+name = "hanging"
 source = "test"
 [ground]
 points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.1] }
 [links]
 crank = { bar = ["A", "B"], length_m = 0.1 }
 coupler = { bar = ["B", "C"], length_m = 0.3 }
-rocker = { bar = ["D", "C"], length_m = 0.1, points = { E = [0.05, 0.05] } }
+rocker = { bar = ["D", "C"], length_m = 0.08, points = { E = [0.05, 0.05] } }
 rod = { bar = ["E", "F"], length_m = 0.3 }
 lever = { bar = ["G", "F"], length_m = 0.2 }
 [driver]
@@ -136,17 +136,16 @@ speed_rad_s = 1.0
 """
 
 
-def test_parallelogram_passes_its_change_point_uncertain_and_silent() -> None:
+def test_what_hangs_on_a_link_in_toggle_is_uncertain_and_silent() -> None:
     """What hangs on a link that is not certain is not certain either; never NaN."""
-    scene = parse_scene(PARALLELOGRAM, "test")
-    motion = solve(scene, np.array([0.0, 1.0, math.pi, 4.0]))
+    scene = parse_scene(HANGING, "test")
+    low, high = reach(scene)[-1]
+    motion = solve(scene, np.array([low, 0.5 * (low + high), high]))
     assert motion.bound is not None
     for track in (*motion.bound.links.values(), *motion.bound.points.values()):
         assert not any(np.isnan(array).any() for array in vars(track).values())
     for name in ("coupler", "rocker", "rod", "lever"):
-        assert np.isinf(motion.bound.links[name].omega).tolist() == [True, False, True, False]
-    assert motion.links["rocker"].omega[1] == pytest.approx(1.0, abs=1e-13)
-    assert motion.links["coupler"].theta[1] == pytest.approx(0.0, abs=1e-14)
+        assert np.isinf(motion.bound.links[name].omega).tolist() == [True, False, True]
 
 
 def test_angle_out_of_reach_raises() -> None:

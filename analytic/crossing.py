@@ -1,0 +1,334 @@
+"""Change points: driver angles in which the two assemblies of a dyad meet, and motion goes on.
+
+::
+
+    root | +1 \\         / +1      The root of a dyad, whose sign is the branch, touches zero:
+         |     \\       /          the smooth motion goes on to the other sign of it. To keep
+       0 |-------x-------         the sign would be to turn back, with a jump of all rates.
+         |  change point
+
+The sign at a driver angle is therefore that of the branch, which is stated at the driver's angle at
+time 0, times -1 for every change point between the two: a function of the driver's angle that may
+need two turns to repeat, or four. A root that crosses zero is a limit position instead, and one
+that comes near to zero is neither: it must touch zero to within rounding, `CLOSED`.
+
+Source: C. Galloway's mechanism and the parallelogram, e.g. Norton, Design of Machinery, section
+2.12 (the Grashof condition, special case).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.chunk import Chunk
+from analytic.dyads.parts import Dyad, OpenError
+from analytic.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Array, Real
+from analytic.smooth import WINDOW, Index, Piece, Rates, Unknown, put
+from analytic.steps import Step, stretched
+from models.errors import CrankcheckError
+from models.laws import Law
+from models.motion import Crossing
+from models.scene import Scene
+
+Mask = NDArray[np.bool_]
+
+SCAN = 360
+"""Angles of the first look at a turn: a touch is seen as a valley between its neighbours."""
+WIDTHS = (4e-3, 4e-4, 4e-5, 1e-6)
+"""Half-widths [rad] over which a valley, taken as a V, is followed to its tip; the last tells the
+place to about 1e-10 rad where rounding is taken a root of."""
+TIP = 1e-8
+SIDE = 1e-3
+"""Where a touch must be closed on both sides, and its root be a V [rad]."""
+AT_START = 1e-7
+"""A run that starts nearer to a change point than this [rad] is on the branch that it goes to."""
+HALVES = tuple(2.0**-k for k in range(7))
+"""Half-widths [rad] that are tried for the interpolation through a change point."""
+LEAST_CERTAIN = 1e-6
+"""The largest bound of a second derivative, by angles in rad, that is called a continuation."""
+UNSURE = 64.0
+"""How much more than by itself a dyad may be open in a change point of one before it."""
+
+
+@dataclass
+class Passage:
+    """The change points of one dyad, and the way through them.
+
+    ``angles`` are those of a ``period`` from ``start`` on, an even number: after a period all
+    signs are as before. ``steps`` end with the dyad's own; ``before`` are the passages of others.
+    """
+
+    scene: Scene
+    steps: Sequence[Step]
+    before: Mapping[str, Passage]
+    start: float
+    period: float
+    angles: Array
+    pieces: dict[int, Piece] = field(default_factory=dict)
+
+    def sign(self, theta: Array) -> Array:
+        phase = np.remainder(theta - self.start, self.period)
+        return np.asarray(1.0 - 2.0 * (np.searchsorted(self.angles - self.start, phase) % 2))
+
+    def mend(self, chunk: Chunk, dyad: Dyad) -> Dyad:
+        theta, closure = chunk.theta, dyad.closure
+        assert closure.short_m is not None
+        short = np.array(np.broadcast_to(closure.short_m, theta.shape))
+        first, second = dyad.first, dyad.second
+        for i, centre in enumerate(self.angles):
+            x = self._from(float(centre), theta)
+            if not (np.abs(x) < HALVES[0] * WINDOW).any():
+                continue
+            piece = self.piece(i)
+            index = np.flatnonzero(np.abs(x) < piece.window)
+            speed = _rates(chunk, index)
+            first = put(first, index, *piece.first.at(x[index], speed))
+            second = put(second, index, *piece.second.at(x[index], speed))
+            short[index] = np.minimum(short[index], 0.0)
+        if not chunk.stretch and np.any(open_ := short > 0.5 * closure.rounding_m):
+            raise OpenError(np.where(open_, short, -np.abs(short)))
+        sine = np.where(np.isnan(dyad.sine), 0.0, dyad.sine)  # 0/0 where two pins meet
+        return Dyad(first, second, sine, replace(closure, short_m=short))
+
+    def is_near(self, theta: Array) -> Mask:
+        """Whether driver angles are close to a change point."""
+        near = np.zeros(theta.shape, dtype=bool)
+        for centre in self.angles:
+            near |= np.abs(self._from(float(centre), theta)) < HALVES[0] * WINDOW
+        return near
+
+    def _from(self, centre: float, theta: Array) -> Array:
+        """Driver angles from one of the change points, within half a period."""
+        half = 0.5 * self.period
+        return np.asarray(np.remainder(theta - centre + half, self.period) - half)
+
+    def piece(self, i: int) -> Piece:
+        """The motion through change point ``i``, worked out once.
+
+        Raises
+        ------
+        CrankcheckError
+            It is not smooth on both sides.
+        """
+        if i not in self.pieces:
+            self.pieces[i] = self._piece(float(self.angles[i]))
+        return self.pieces[i]
+
+    @np.errstate(all="ignore")
+    def _piece(self, centre: float) -> Piece:
+        """The widest piece that is about as certain as any; narrower ones lose digits."""
+        best, least = None, math.inf
+        for half in HALVES:
+            try:
+                piece = Piece.of(self._solved, centre, half, self.scene.longest_m)
+            except OpenError:
+                continue
+            if piece.doubt < least:
+                best, least = piece, piece.doubt
+            elif piece.doubt > 4.0 * least:
+                break
+        if best is None or least > LEAST_CERTAIN:
+            raise CrankcheckError(
+                f"{self.scene.name}: at {self.scene.driver.link} "
+                f"{math.degrees(_turned(centre)):.6g} deg the dyad of {self.key} is in a change "
+                "point with no smooth motion through it that can be told from others to within "
+                "rounding; another dyad or a limit position is too near: change a length, or keep "
+                "the driver's range away from there"
+            )
+        return best
+
+    @property
+    def key(self) -> str:
+        return self.steps[-1].key
+
+    def _solved(self, theta: Array) -> tuple[Unknown, Unknown]:
+        """The dyad's unknowns as it stands, for a driver of unit speed."""
+        own = _Own(self)
+        chunk = Chunk.begin(
+            self.scene, theta, 1.0, STEADY, EXACT_ANGLE, passages={**self.before, self.key: own}
+        )
+        for step in self.steps:
+            step.advance(chunk)
+        return own.unknowns
+
+
+class _Own:
+    """In place of a passage while its own pieces are made: the dyad as its formulas have it."""
+
+    def __init__(self, passage: Passage) -> None:
+        self.sign = passage.sign
+        self.unknowns: tuple[Unknown, Unknown]
+
+    def mend(self, _: Chunk, dyad: Dyad) -> Dyad:
+        short = dyad.closure.short_m
+        assert short is not None
+        if np.any(short > 0.5 * dyad.closure.rounding_m):
+            raise OpenError(short)
+        self.unknowns = dyad.first, dyad.second
+        return dyad
+
+
+def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
+    """The dyads that go through change points, in solving order; none in most scenes.
+
+    Raises
+    ------
+    CrankcheckError
+        A dyad is as good as in a change point where one before it goes through its own.
+    """
+    start = _start(scene.driver.law)
+    found: dict[str, Passage] = {}
+    period = math.tau
+    theta = _grid(start, period)
+    chunk = stretched(scene, steps, theta)
+    for k, step in enumerate(steps):
+        closure = chunk.closures.get(step.key)
+        if closure is None or closure.root is None:
+            continue
+        valleys = theta[_valleys(closure.root)]
+        if not valleys.size:
+            continue
+        look = _Look(scene, steps[: k + 1], found)
+        angles = np.sort(start + np.remainder(look.touches(valleys) - start, period))
+        if not angles.size:
+            continue
+        if angles.size % 2:  # as many again, with the other sign
+            angles, period = np.concatenate([angles, angles + period]), 2.0 * period
+        found[step.key] = Passage(scene, steps[: k + 1], dict(found), start, period, angles)
+        # What hangs on this dyad stands differently where the sign is another.
+        theta = _grid(start, period)
+        chunk = stretched(scene, steps, theta, found)
+    return found
+
+
+def passed(found: Mapping[str, Passage], low: float, high: float) -> tuple[Crossing, ...]:
+    """The change points, each once, that a driver passes from angle ``low`` to ``high``."""
+    crossings = []
+    for key, passage in found.items():
+        first = np.ceil((low - AT_START - passage.angles) / passage.period)
+        met = passage.angles[passage.angles + first * passage.period <= high + AT_START]
+        places = sorted(_turned(float(angle)) for angle in met)
+        crossings += [
+            Crossing(key, place)
+            for before, place in zip([-1.0, *places], places, strict=False)
+            if place - before > AT_START
+        ]
+    return tuple(crossings)
+
+
+@dataclass(frozen=True)
+class _Look:
+    """Looks at one dyad, the last of ``steps``, beside the angles where its root has a valley."""
+
+    scene: Scene
+    steps: Sequence[Step]
+    found: Mapping[str, Passage]
+
+    def touches(self, theta: Array) -> Array:
+        """The angles in which the root touches zero, of those near which it might."""
+        width = math.tau / SCAN
+        for each in WIDTHS:
+            theta, width = self._tip(theta, width), each
+        theta = self._tip(theta, width)
+        keep = self._is_touched(theta) | self._is_touched(self._tip(theta, TIP))
+        keep &= self._is_crossed(theta)
+        return np.asarray(theta[keep])
+
+    def _closure(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Root, shortage and rounding at driver angles; open before this dyad is open."""
+        chunk = stretched(self.scene, self.steps, theta.ravel(), self.found)
+        closure = chunk.closures[self.steps[-1].key]
+        assert closure.short_m is not None
+        short = np.array(np.broadcast_to(closure.short_m, theta.size))
+        for step in self.steps[:-1]:
+            before = chunk.shortage.get(step.key)
+            short = short if before is None else np.where(before > 0.0, np.inf, short)
+        rows: tuple[Real, ...] = closure.root, short, closure.rounding_m
+        root, short, rounding = (np.broadcast_to(r, theta.size).reshape(theta.shape) for r in rows)
+        return root, short, rounding
+
+    def _tip(self, theta: Array, width: float) -> Array:
+        """Where the two sides of a V would meet."""
+        left, right = self._closure(theta + np.array([[-width], [width]]))[0]
+        with np.errstate(invalid="ignore"):
+            shift = np.nan_to_num(width * (left - right) / (left + right))
+        return np.asarray(theta + shift)
+
+    def _is_touched(self, theta: Array) -> Mask:
+        """Whether the root is zero there but for rounding.
+
+        Raises
+        ------
+        CrankcheckError
+            The dyads before this one are not known well enough to say.
+        """
+        _, short, rounding = self._closure(theta)
+        short = np.abs(short + 0.5 * rounding)
+        near = np.zeros(theta.shape, dtype=bool)
+        for passage in self.found.values():
+            near |= passage.is_near(theta)
+        touched: Mask = short <= rounding
+        unsure = near & ~touched & (short <= UNSURE * rounding)
+        if unsure.any():
+            raise CrankcheckError(
+                f"{self.scene.name}: at {self.scene.driver.link} "
+                f"{math.degrees(_turned(float(theta[unsure][0]))):.6g} deg the dyad of "
+                f"{self.steps[-1].key} is singular to within the rounding of the change point of "
+                "a dyad before it, so that its motion is not determined there; change a length, "
+                "or keep the driver's range away from there"
+            )
+        return touched
+
+    def _is_crossed(self, theta: Array) -> Mask:
+        """Whether the dyad closes on both sides, and its root grows there like the angle."""
+        sides = np.array([[-2.0], [-1.0], [1.0], [2.0]]) * SIDE
+        root, short, _ = self._closure(theta + sides)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            growth = (root[0] + root[3]) / (root[1] + root[2])
+        return np.asarray((short < 0.0).all(axis=0) & (growth > 1.4) & (growth < 2.9))
+
+
+def _start(law: Law) -> float:
+    """The driver's angle just after the time at which the branch is stated."""
+    theta = law.at(np.linspace(0.0, law.period_s, SCAN + 1))[0]
+    moved = theta[np.abs(theta - theta[0]) > AT_START]
+    way = float(np.sign(moved[0] - theta[0])) if moved.size else 1.0
+    return float(theta[0]) + way * AT_START
+
+
+def _grid(start: float, period: float) -> Array:
+    """Angles over a period, the first not in a place that anybody would choose."""
+    count = SCAN * round(period / math.tau)
+    return np.asarray(start + (np.arange(count) + 0.382) * (math.tau / SCAN))
+
+
+def _valleys(root: Array) -> Mask:
+    """Where a root that repeats is so much smaller than beside it that it may touch zero.
+
+    A V with its tip between two samples is at the nearer one at most a third of what it is at the
+    farther neighbour.
+    """
+    before, after = np.roll(root, 1), np.roll(root, -1)
+    far = np.maximum(before, after)
+    return np.asarray((root <= before) & (root <= after) & (root < 0.5 * far))
+
+
+def _rates(chunk: Chunk, index: Index) -> Rates:
+    """The driver's rates at the samples ``index``; those of a chunk without bounds are exact."""
+    theta, error = chunk.theta, chunk.driver.error or EXACT_ANGLE
+    each = (chunk.driver.omega, chunk.driver.alpha, error.theta, error.omega, error.alpha)
+    omega, alpha, *bounds = (np.broadcast_to(one, theta.shape)[index] for one in each)
+    # The distance from the change point is rounded as the angles are.
+    bounds[0] = bounds[0] + 4 * EPS * (np.abs(theta[index]) + math.tau)
+    return Rates(omega, alpha, AngleError(*bounds))
+
+
+def _turned(angle: float) -> float:
+    """A driver angle in [0, 2 pi), free of rounding below 0."""
+    turned = angle % math.tau
+    return 0.0 if math.tau - turned < AT_START else turned
