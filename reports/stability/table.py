@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from reports.stability.case import label
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
 from reports.stability.outcomes import MEANINGS
 
@@ -24,6 +23,8 @@ LETTERS: Mapping[Outcome, str] = {
     "crashed": "!",
     "unsupported": "-",
 }
+BARE = ("X", "!", "-")
+"""Letters that stand alone: their error says nothing."""
 STYLES: Mapping[Outcome, str] = {
     "ok": "green",
     "locked": "green",
@@ -72,16 +73,15 @@ def _cell(run: Graded | None) -> Text:
     """The error of a run, short, after the letter of its outcome."""
     if run is None:
         return Text("")
-    number = "" if math.isnan(run.error) or run.outcome == "unsupported" else label(_one(run.error))
     letter = LETTERS[run.outcome]
-    return Text(
-        letter if letter in ("X", "!", "-") else letter + number, STYLES.get(run.outcome, "red")
-    )
+    bare = letter in BARE or math.isnan(run.error)
+    return Text(letter + ("" if bare else _short(run.error)), STYLES.get(run.outcome, "red"))
 
 
-def _one(number: float) -> float:
+def _short(number: float) -> str:
     """A number with one digit."""
-    return float(f"{number:.0e}")
+    digit, _, power = f"{number:.0e}".partition("e")
+    return digit if int(power) == 0 else f"{digit}e{int(power)}"
 
 
 def _legend(matrix: Matrix) -> str:

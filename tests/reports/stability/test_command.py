@@ -1,0 +1,125 @@
+"""`crankcheck stability` from the command line: the matrix, its files, and every mistake."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from reports.cli import app
+from reports.stability.catalogue import CATALOGUE
+from reports.stability.matrix import read_matrix
+
+Crank = Callable[..., Result]
+LINE = ["stability", "grashof-excess", "--engine", "mujoco", "--profile", "tuned"]
+
+
+@pytest.fixture(scope="module")
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def stored(crank: Crank, tmp_path_factory: pytest.TempPathFactory) -> tuple[Result, Path]:
+    """A case in two profiles, printed and stored."""
+    folder = tmp_path_factory.mktemp("matrix")
+    args = ["stability", "grashof-excess", "wrong-branch", "--engine", "mujoco"]
+    return crank(*args, "-o", str(folder)), folder
+
+
+def test_the_matrix_is_printed_with_critical_values(stored: tuple[Result, Path]) -> None:
+    result, _ = stored
+    assert result.exit_code == 0, result.output
+    flat = " ".join(result.stdout.split())
+    assert "mujoco tuned" in flat
+    assert "holds down to" in flat
+    assert "crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE" in flat
+    assert "mujoco 4" in flat
+    assert max(map(len, result.stdout.splitlines())) <= 100
+
+
+def test_every_run_is_stored_with_the_command_that_repeats_it(
+    stored: tuple[Result, Path], crank: Crank
+) -> None:
+    _, folder = stored
+    rows = pd.read_csv(folder / "stability.csv")
+    matrix = read_matrix(folder)
+    assert len(rows) == len(matrix.runs) > 10
+    lost = rows[(rows["case"] == "grashof-excess") & (rows["outcome"] != "ok")].iloc[-1]
+    words = lost["command"].split()
+    assert words[0] == "crankcheck"
+    alone = crank(*words[1:])
+    assert alone.exit_code == 1
+    assert lost["outcome"] in alone.stdout
+    assert f"error of place: {lost['error']:.3g}" in alone.stdout
+
+
+def test_the_page_and_the_pictures_of_failures_are_written(stored: tuple[Result, Path]) -> None:
+    _, folder = stored
+    matrix = read_matrix(folder)
+    failed = {
+        (run.profile, run.label)
+        for run in matrix.runs
+        if run.grid and run.outcome not in CATALOGUE[run.case].good
+    }
+    assert {(one.profile, one.label) for one in matrix.pictures} == failed
+    assert (folder / "stability.html").stat().st_size > 10_000
+    assert json.loads((folder / "stability.json").read_text(encoding="utf-8"))["format"] == 1
+
+
+def test_a_second_run_takes_the_place_of_the_first(
+    stored: tuple[Result, Path], crank: Crank, tmp_path: Path
+) -> None:
+    args = ["stability", "wrong-branch", "--engine", "pymunk", "-o", str(tmp_path)]
+    assert crank(*args).exit_code == crank(*args).exit_code == 0
+    assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
+
+
+def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Crank) -> None:
+    held = crank(*LINE, "--at", "1e-3")
+    assert (held.exit_code, "ok" in held.stdout) == (0, True)
+    lost = crank(*LINE, "--at", "1e-6")
+    assert (lost.exit_code, "branch-changed" in lost.stdout) == (1, True)
+    assert "driver 18" in lost.stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "parts"),
+    [
+        (["stability", "grashof-exces"], ["grashof-exces", "did you mean grashof-excess"]),
+        (["stability", "zzz"], ["'zzz': unknown; use grashof-excess"]),
+        (["stability", "--at", "1e-3"], ["a value of one case", "name one"]),
+        ([*LINE, "--at", "nan"], ["not a finite number"]),
+        ([*LINE, "--at", "-0.5"], ["rocker"]),
+        ([*LINE, "--at", "1e-3", "-o", "x"], ["--at and -o"]),
+        (["stability", "--engine", "mujocco"], ["did you mean mujoco"]),
+        (["stability", "--profile", "tund"], ["did you mean tuned"]),
+        ([*LINE, "-o", "/dev/null/x"], ["-o /dev/null/x"]),
+    ],
+)
+def test_a_mistake_ends_with_2_and_says_what_would_work(
+    crank: Crank, args: list[str], parts: list[str]
+) -> None:
+    result = crank(*args)
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    flat = " ".join(result.stderr.split())
+    for part in parts:
+        assert part in flat, flat
+
+
+def test_a_run_over_its_limit_is_a_row_with_its_reason(crank: Crank) -> None:
+    args = ["stability", "tiny-step", "--engine", "pymunk", "--profile", "as-shipped"]
+    result = crank(*args, "--limit-s", "0.3")
+    assert result.exit_code == 0, result.output
+    assert "crashed" in result.stdout
