@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -14,12 +14,16 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
 from models.errors import CrankcheckError
 from reports.series import Array
+from reports.store.damage import Damage, notice
+from reports.store.examine import Examined, examine
+from reports.store.folder import has_parts, paths_of
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
+from reports.store.part import UnreadableError
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A store in memory.
+    """A store in memory: what of it can be read, and what is wrong with the rest.
 
     ``cells`` has one row per cell, and the columns of its timing beside its own (NaN where it was
     not timed); ``timings`` and ``errors`` are the tables as they stand.
@@ -29,17 +33,29 @@ class Stored:
     manifest: Manifest
     cells: pd.DataFrame
     timings: pd.DataFrame
+    examined: Examined | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def damage(self) -> tuple[Damage, ...]:
+        """What is wrong with the store."""
+        return self.examined.damage if self.examined else ()
+
+    @property
+    def notice(self) -> list[str]:
+        """The lines that name every damage; none where there is none."""
+        return notice(self.folder, self.damage, len(self.cells), self.manifest)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
         """Every error of every cell, in long form."""
-        return _frame(self.folder, "errors")
+        return _frame(self.examined, "errors")
 
     @cached_property
     def _traces(self) -> Mapping[str, Mapping[str, Array]]:
-        frame = _frame(self.folder, "traces")
+        frame = _frame(self.examined, "traces")
         found: dict[str, dict[str, Array]] = {}
-        for key, series, values in frame.itertuples(index=False):
+        for row in frame[["key", "series", "values"]].itertuples(index=False) if len(frame) else ():
+            key, series, values = row
             found.setdefault(key, {})[series] = np.asarray(values, dtype=np.float64)
         return found
 
@@ -49,27 +65,44 @@ class Stored:
 
 
 def read_store(folder: Path) -> Stored:
-    """The store in a folder.
+    """The store in a folder, as far as it can be read.
 
     Raises
     ------
     CrankcheckError
-        No store, or one without cells.
+        No store, or one without a cell that can be read.
     """
-    if not (folder / MANIFEST).is_file():
+    try:
+        _refuse_none(folder)
+        found = examine(folder)
+    except OSError as error:
         raise CrankcheckError(
-            f"{folder}: no store of a sweep there (no {MANIFEST}); `crankcheck sweep -o {folder}` "
-            "makes one"
-        )
-    manifest = read_manifest(folder)
-    cells = _frame(folder, "cells")
+            f"{folder}: can not be read: {error.strerror or error}; name the folder of a sweep"
+        ) from None
+    cells = _frame(found, "cells")
     if cells.empty:
-        raise CrankcheckError(f"{folder}: a store without cells; run its sweep again")
-    timings = _frame(folder, "timings")
+        lines = notice(folder, found.damage, 0, found.manifest)
+        usual = f"{folder}: a store without cells; run its sweep again"
+        raise CrankcheckError("\n".join(lines) or usual)
+    timings = _frame(found, "timings")
     if timings.empty:
         timings = pd.DataFrame({"key": pd.Series(dtype="str"), "us_per_step": []})
-    joined = _named(cells, manifest).merge(timings, on="key", how="left", validate="one_to_one")
-    return Stored(folder, manifest, joined, timings)
+    named = _named(cells, found.manifest)
+    joined = named.merge(timings, on="key", how="left", validate="one_to_one")
+    return Stored(folder, found.manifest, joined, timings, found)
+
+
+def _refuse_none(folder: Path) -> None:
+    """Raise CrankcheckError for a folder that is no store, whole or not."""
+    if has_parts(folder):
+        return
+    try:
+        read_manifest(folder)
+    except UnreadableError as error:
+        raise CrankcheckError(
+            f"{folder}: no store of a sweep there ({MANIFEST}: {error}); `crankcheck sweep -o` "
+            "with a new folder makes one"
+        ) from None
 
 
 def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
@@ -121,21 +154,15 @@ def stored_costs(folder: Path) -> dict[str, float]:
     return {key: cost for key, status, cost in rows if status == "ok" and cost is not None}
 
 
-def _frame(folder: Path, name: str) -> pd.DataFrame:
-    found = _parts(folder, name)
-    return pd.DataFrame() if found is None else found.to_pandas()
+def _frame(found: Examined | None, name: str) -> pd.DataFrame:
+    """What can be read of a table."""
+    table = found.table(name) if found else None
+    return pd.DataFrame() if table is None else table.to_pandas()
 
 
-def _parts(folder: Path, name: str, columns: list[str] | None = None) -> pa.Table | None:
-    """All parts of a table, in the order of writing; None where there are none."""
-    found = []
-    for path in sorted((folder / name).glob("part-*.parquet")):
-        try:
-            found.append(pq.read_table(path, columns=columns))
-        except (OSError, pa.ArrowInvalid) as error:
-            raise CrankcheckError(
-                f"{path}: can not be read ({error}); delete all files of this name "
-                f"({folder}/*/{path.name}) and run the sweep again: only their cells are then "
-                "missing"
-            ) from None
-    return pa.concat_tables(found, promote_options="default") if found else None
+def _parts(folder: Path, name: str, columns: list[str]) -> pa.Table | None:
+    """Some columns of all parts of a table that was mended; None where there are none."""
+    found = [
+        pq.ParquetFile(path).read(columns, use_threads=False) for path in paths_of(folder, name)
+    ]
+    return pa.concat_tables(found, promote_options="permissive") if found else None

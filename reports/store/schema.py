@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 
+FORMAT = 1
+"""Raised when a store is laid out in a way that an older reader would take for something else."""
 TABLES = ("cells", "errors", "traces", "timings")
-"""A part of ``cells`` is written last of its name: what has none was cut short, and is dropped."""
+"""A part of ``cells`` is written last of its name: what has none was cut short."""
+PART = re.compile(r"part-\d{20}-\d+-\d+\.parquet")
+"""The name of a part, by which it is told from what others put there: time [ns], process, count."""
+TRAJECTORIES, DAMAGED, LOCK = "trajectories", "damaged", ".lock"
 TEXT = {
     "key",
     "line",
@@ -42,6 +48,18 @@ TEXT = {
     "made",
 }
 FLAGS = {"gated"}
+NEEDED: Mapping[str, tuple[str, ...]] = {
+    "cells": (
+        *("key", "line", "variant", "asked", "scene", "engine", "version", "profile", "drive"),
+        *("dt_s", "steps_per_turn", "turns", "gated", "verdict", "status", "reason"),
+        *("failed_rules", "settings", "stopped_at_s", "logged_us_per_step"),
+        *("place_pure", "drive_pure", "gap_pure", "velocity_pure"),
+    ),
+    "errors": ("key", "quantity", "body_kind", "body", "source", "kind", "maximum_pure"),
+    "traces": ("key", "series", "values"),
+    "timings": ("key", "us_per_step"),
+}
+"""The columns that readers take for granted: a table without them is another table."""
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
@@ -53,6 +71,34 @@ def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
     return pa.table(
         {name: pa.array([_plain(row[name]) for row in rows], type=_type(name)) for name in names}
     )
+
+
+def typed(found: pa.Table, name: str) -> pa.Table:
+    """A table that was read, with the types of its columns as they are written.
+
+    Raises
+    ------
+    ValueError
+        Not the table ``name``: a needed column is not there, or holds something else.
+    """
+    lacking = [column for column in NEEDED[name] if column not in found.column_names]
+    if lacking:
+        raise ValueError(f"no column {lacking[0]}")
+    wanted = pa.schema(
+        # What another version of crankcheck adds may be text, and hurts nobody.
+        [(one.name, _type_of(one, name)) for one in found.schema]
+    )
+    if not found.schema.equals(wanted):
+        found = found.cast(wanted)
+    if found.column("key").null_count:
+        raise ValueError("rows without a key")
+    return found
+
+
+def _type_of(field: pa.Field, table: str) -> pa.DataType:
+    """The type that a column of a table that was read should have."""
+    text = pa.types.is_string(field.type) or pa.types.is_large_string(field.type)
+    return pa.string() if text and field.name not in NEEDED[table] else _type(field.name)
 
 
 def _type(name: str) -> pa.DataType:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import os
 import time
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
-import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 from filelock import FileLock, Timeout
 
 from models.errors import CrankcheckError
@@ -18,11 +15,15 @@ from models.motion import Motion
 from reports.frames import parquet
 from reports.motion_frame import motion_frame
 from reports.series import Array
+from reports.store.examine import examine
+from reports.store.folder import has_parts, paths_of
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
-from reports.store.schema import TABLES, table
+from reports.store.mending import mend, refuse_other_format
+from reports.store.part import UnreadableError, open_part, part_bytes
+from reports.store.rebuilding import digests
+from reports.store.schema import LOCK, TABLES, table
 from reports.writing import check_folder, write
 
-LOCK = ".lock"
 EVERY_S = 1.0
 """What is lost when the process is killed is the work of so many seconds, at most."""
 Row = Mapping[str, object]
@@ -31,6 +32,9 @@ Row = Mapping[str, object]
 class Writer:
     """A store that is open for adding; to be used as a context, which writes the rest at its end.
 
+    What was damaged in it is mended at once, as ``mended`` says; ``bare`` are the keys of cells
+    that are whole, and have lost their errors or their trace.
+
     Raises
     ------
     CrankcheckError
@@ -38,26 +42,39 @@ class Writer:
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
-        check_folder(folder, "-o", (MANIFEST,))
+        check_folder(folder, "-o")
         self.folder = folder
+        self.bare: frozenset[str] = frozenset()
+        self.mended: list[str] = []
         self._waiting: dict[str, list[Row]] = {name: [] for name in TABLES}
         self._written = time.monotonic()
         self._count = 0
+        self._manifest = ""
         _refuse_other(folder)
-        _create(folder)
-        self._lock = FileLock(folder / LOCK, timeout=0)
+        self._lock = _locked(folder)
         try:
-            self._lock.acquire()
-        except Timeout:
-            raise CrankcheckError(
-                f"-o {folder}: another sweep writes there now; wait for it, or choose another"
-            ) from None
-        try:
-            write(folder / MANIFEST, read_manifest(folder).joined(manifest, folder).text())
-            self._drop_unfinished()
+            self._open(manifest)
         except BaseException:
             self._lock.release()
             raise
+
+    def _open(self, later: Manifest) -> None:
+        """Mend what is there, and write in the manifest what is to come, unless that is nothing
+        new: then as soon as there is something to write."""
+        known, cells, lost = Manifest(), None, False
+        if not _is_new(self.folder):
+            found = examine(self.folder)
+            refuse_other_format(self.folder, found)
+            self.mended, self.bare = mend(self.folder, found), found.bare
+            known, cells = found.manifest, found.table("cells")
+            lost = any(each.path == MANIFEST and each.hides for each in found.damage)
+        joined = known.joined(later, self.folder, digests(cells)).text()
+        _create(self.folder, TABLES)
+        self._drop_unfinished()
+        if known.covers(later) and not lost:
+            self._manifest = joined
+        else:
+            write(self.folder / MANIFEST, joined)
 
     def __enter__(self) -> Writer:
         return self
@@ -101,13 +118,13 @@ class Writer:
         if not keys:
             return
         for each in ("errors", "traces", "cells"):
-            for path in sorted((self.folder / each).glob("part-*.parquet")):
-                content = pq.read_table(path)
+            for path in paths_of(self.folder, each):
+                content = open_part(path, each).content
                 kept = content.filter([k not in keys for k in content.column("key").to_pylist()])
                 if kept.num_rows == 0:
                     path.unlink()
                 elif kept.num_rows < content.num_rows:
-                    write(path, _table_bytes(kept))
+                    write(path, part_bytes(kept))
 
     def flush(self) -> None:
         """Write what waits, the cells last: they are what says that a part is whole."""
@@ -117,47 +134,76 @@ class Writer:
         for each in ("errors", "traces", "cells", "timings"):
             rows = self._waiting[each]
             if rows:
-                write(self.folder / each / name, _table_bytes(table(rows)))
+                self._write_manifest()
+                write(self.folder / each / name, part_bytes(table(rows)))
                 rows.clear()
+
+    def _write_manifest(self) -> None:
+        """Write the manifest that waited for the first thing to be kept."""
+        if self._manifest:
+            write(self.folder / MANIFEST, self._manifest)
+            self._manifest = ""
 
     def _flush_in_time(self) -> None:
         if time.monotonic() - self._written >= EVERY_S:
             self.flush()
 
     def _drop_unfinished(self) -> None:
-        """Remove what a killed sweep left: files aside, and parts whose cells were not written."""
+        """Remove the files aside that a killed sweep left."""
         for aside in (*self.folder.glob(".*.tmp"), *self.folder.glob("*/.*.tmp")):
             aside.unlink(missing_ok=True)
-        whole = {path.name for path in (self.folder / "cells").glob("part-*.parquet")}
-        for each in ("errors", "traces"):
-            for path in (self.folder / each).glob("part-*.parquet"):
-                if path.name not in whole:
-                    path.unlink(missing_ok=True)
+
+
+def _is_new(folder: Path) -> bool:
+    """Whether there is nothing of a store yet."""
+    return not (os.path.lexists(folder / MANIFEST) or has_parts(folder))
 
 
 def _refuse_other(folder: Path) -> None:
-    """Refuse a folder that holds something else than a store."""
-    if not folder.is_dir() or (folder / MANIFEST).exists():
+    """Refuse a folder that holds something else than a store, or a file of that name."""
+    if not folder.is_dir() or has_parts(folder):
         return
-    found = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
+    try:
+        read_manifest(folder)
+        return
+    except UnreadableError as error:
+        why = f"no {MANIFEST}" if _is_new(folder) else f"a {MANIFEST} that is no store's ({error})"
+    found = sorted(path.name for path in folder.iterdir() if not _begun(path))
     if found:
         raise CrankcheckError(
-            f"-o {folder}: holds {found[0]} and no {MANIFEST}, so it is no store of a sweep; "
+            f"-o {folder}: holds {found[0]} and {why}, so it is no store of a sweep; "
             "name a new or an empty folder"
         )
 
 
-def _create(folder: Path) -> None:
+def _begun(path: Path) -> bool:
+    """Whether it is what a sweep makes first: a lock, and folders with nothing in them."""
+    return path.name == LOCK or (path.name in TABLES and path.is_dir() and not any(path.iterdir()))
+
+
+def _locked(folder: Path) -> FileLock:
+    """The lock of a store, taken; its folder is made where there is none."""
+    _create(folder, ("",))
+    lock = FileLock(folder / LOCK, timeout=0)
     try:
-        for name in TABLES:
+        lock.acquire()
+    except Timeout:
+        raise CrankcheckError(
+            f"-o {folder}: another sweep writes there now; wait for it, or choose another"
+        ) from None
+    except OSError as error:
+        raise CrankcheckError(
+            f"-o {folder}: {LOCK} can not be locked: {error.strerror or error}; remove it, or "
+            "choose another place"
+        ) from None
+    return lock
+
+
+def _create(folder: Path, names: Iterable[str]) -> None:
+    try:
+        for name in names:
             (folder / name).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CrankcheckError(
             f"-o {folder}: {error.strerror or error}; choose another place"
         ) from None
-
-
-def _table_bytes(content: pa.Table) -> bytes:
-    buffer = io.BytesIO()
-    pq.write_table(content, buffer, compression="zstd")
-    return buffer.getvalue()
