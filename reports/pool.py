@@ -1,4 +1,4 @@
-"""Check many cells, several at a time; a cell that kills its process costs that cell alone."""
+"""Do many things, several at a time; one that kills its process costs that one alone."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from typing import TypeVar
 
 from reports.cell import Cell, Checked, check, unfinished
 from reports.stopping import Stopped, held_back, leave_to_parent
 
 FEW = 4
 """Up to so many cells are done in this process: a second one takes longer to start."""
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 def check_all(
@@ -25,14 +28,35 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
+    return do_all(check, cells, jobs, _lost, done)
+
+
+def do_all(
+    work: Callable[[Item], Result],
+    items: Sequence[Item],
+    jobs: int,
+    lost: Callable[[Item], Result],
+    done: Callable[[Result], None] = lambda _: None,
+) -> list[Result]:
+    """``work`` on all items, in their order; ``done`` hears of each result as it comes.
+
+    Parameters
+    ----------
+    work : Callable
+        A function of a module, that another process can import.
+    jobs : int
+        Processes; 0 for one per processor.
+    lost : Callable
+        The result of an item that ends the process which works on it.
+    """
     jobs = jobs or processors()
-    if jobs == 1 or len(cells) <= FEW:
-        return [_tell(check(cell), done) for cell in cells]
-    found = _parallel(cells, jobs, done)
-    for index, cell in enumerate(cells):
+    if jobs == 1 or len(items) <= FEW:
+        return [_tell(work(item), done) for item in items]
+    found = _parallel(work, items, jobs, done)
+    for index, item in enumerate(items):
         if index not in found:  # lost when a neighbour broke the pool; alone it shows who it was
-            found[index] = _tell(_alone(cell), done)
-    return [found[index] for index in range(len(cells))]
+            found[index] = _tell(_alone(work, item, lost), done)
+    return [found[index] for index in range(len(items))]
 
 
 def processors() -> int:
@@ -49,15 +73,18 @@ def _pool(jobs: int) -> ProcessPoolExecutor:
 
 
 def _parallel(
-    cells: Sequence[Cell], jobs: int, done: Callable[[Checked], None]
-) -> dict[int, Checked]:
+    work: Callable[[Item], Result],
+    items: Sequence[Item],
+    jobs: int,
+    done: Callable[[Result], None],
+) -> dict[int, Result]:
     """What the pool finished, by index; less than all where a process died."""
-    found: dict[int, Checked] = {}
-    pool = _pool(min(jobs, len(cells)))
+    found: dict[int, Result] = {}
+    pool = _pool(min(jobs, len(items)))
     wait = True
     try:
         with held_back():  # submitting starts the workers
-            waiting = {pool.submit(check, cell): index for index, cell in enumerate(cells)}
+            waiting = {pool.submit(work, item): index for index, item in enumerate(items)}
         for future in as_completed(waiting):
             found[waiting[future]] = _tell(future.result(), done)
     except BrokenProcessPool:
@@ -70,17 +97,21 @@ def _parallel(
     return found
 
 
-def _alone(cell: Cell) -> Checked:
-    """One cell in a process of its own."""
+def _alone(work: Callable[[Item], Result], item: Item, lost: Callable[[Item], Result]) -> Result:
+    """One item in a process of its own."""
     with _pool(1) as pool:
         try:
             with held_back():
-                future = pool.submit(check, cell)
+                future = pool.submit(work, item)
             return future.result()
         except BrokenProcessPool:
-            return unfinished(cell, "crashed", "the engine ended its process")
+            return lost(item)
 
 
-def _tell(checked: Checked, done: Callable[[Checked], None]) -> Checked:
-    done(checked)
-    return checked
+def _lost(cell: Cell) -> Checked:
+    return unfinished(cell, "crashed", "the engine ended its process")
+
+
+def _tell(result: Result, done: Callable[[Result], None]) -> Result:
+    done(result)
+    return result

@@ -16,8 +16,8 @@ ALLOWED = {
     "reports": {"models", "analytic", "sim", "reports"},
 }
 ENGINES = {
-    "mujoco": {"mujoco_engine", "mujoco_viewer"},
-    "pymunk": {"space", "rail", "pymunk_engine"},
+    "mujoco": {"mujoco_engine", "mujoco_viewer", "mujoco_spoil"},
+    "pymunk": {"space", "rail", "pymunk_engine", "pymunk_spoil"},
 }
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 

@@ -165,3 +165,35 @@ def history(
         )
         code = command.run_history(request, terminal(), terminal(stderr=True))
     raise typer.Exit(code)
+
+
+@app.command()
+def selftest(
+    engine: Annotated[
+        list[str] | None, typer.Option(help="Engine; may be repeated; all if none.")
+    ] = None,
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Fault of the table; may be repeated; all if none."),
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
+    csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None,
+    json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write both into a folder.")
+    ] = None,
+) -> None:
+    """Plant faults in healthy runs, and see that the right rule catches each; exit 1 if not."""
+    with guarded():
+        from reports.commands import selftest as command
+
+        request = command.Request(
+            engines=engine or (),
+            faults=fault or (),
+            jobs=jobs,
+            csv=csv,
+            json=json,
+            folder=output,
+        )
+        code = command.selftest(request, terminal(), terminal(stderr=True))
+    raise typer.Exit(code)

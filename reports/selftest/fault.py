@@ -1,0 +1,128 @@
+"""What a fault is, and the four places where one is planted: scene, settings, engine, log.
+
+A plant makes a runner of a size: something that runs a cell as `sim.run.run` does, with the fault
+in it. A size of 0 goes the same way and changes nothing, which must not be noticed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.scene import Scene
+from reports.cell import Runner
+from sim.engine import Run, Session, SettingValue
+from sim.registry import ENGINES, engine
+from sim.run import run
+from sim.spoil import Opening, Spoiler, SpoiltEngine
+
+FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
+Plant = Callable[[float], Runner]
+Group = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something that goes wrong, and the rule that must say so.
+
+    ``what`` says what it is. ``size`` is how large it is planted, in ``unit``; None for a fault
+    that is there or not; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail,
+    with the words ``says`` in what it says. ``scenes`` and ``engines`` are where it is planted.
+    """
+
+    name: str
+    group: Group
+    what: str
+    rule: str
+    plant: Plant
+    size: float | None = None
+    unit: str = ""
+    says: tuple[str, ...] = ()
+    scenes: tuple[str, ...] = (FOURBAR, SLIDER)
+    engines: tuple[str, ...] = tuple(ENGINES)
+    whole: bool = False
+    shown: Callable[[float], str] | None = None
+
+    @property
+    def planted(self) -> float:
+        """The size that the plant is given."""
+        return 1.0 if self.size is None else self.size
+
+    def words(self, size: float) -> str:
+        """A size with its unit."""
+        digits = 3 if size > 1.0 else 2
+        return self.shown(size) if self.shown else f"{size:.{digits}g} {self.unit}"
+
+
+def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
+    """The engine is given another scene than the reference, well assembled."""
+
+    def plant(size: float) -> Runner:
+        def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
+            wrong = change(scene, size)
+            return run(wrong, solve(wrong, np.zeros(1)).state(), *args, **options)
+
+        return runner
+
+    return plant
+
+
+def in_settings(choose: Callable[[str, float], Mapping[str, SettingValue]]) -> Plant:
+    """The engine is set otherwise than asked for; ``choose`` is given its name."""
+
+    def plant(size: float) -> Runner:
+        def runner(
+            scene: Scene, state: Any, name: str, *args: Any, settings: Any = None, **options: Any
+        ) -> Run:
+            wrong = {**(settings or {}), **(choose(name, size) if size else {})}
+            return run(scene, state, name, *args, settings=wrong, **options)
+
+        return runner
+
+    return plant
+
+
+def in_engine(
+    at: Callable[[int], Iterable[int]],
+    spoil: Callable[[Spoiler, Session, Opening, float, float], None],
+) -> Plant:
+    """The engine is meddled with while it runs.
+
+    ``at`` says after which of so many steps; ``spoil`` is given the size, and the share of the run
+    that is over.
+    """
+
+    def plant(size: float) -> Runner:
+        def runner(scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
+            steps = options["steps"]
+
+            def act(tools: Spoiler, session: Session, opening: Opening, done: int) -> None:
+                spoil(tools, session, opening, size, done / steps)
+
+            spoilt = SpoiltEngine(engine(name), tuple(at(steps)), act)
+            return run(scene, state, spoilt, *args, **options)
+
+        return runner
+
+    return plant
+
+
+def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
+    """The engine runs the scene as ever; what it has logged is changed afterwards."""
+
+    def plant(size: float) -> Runner:
+        def runner(scene: Scene, *args: Any, **options: Any) -> Run:
+            return change(scene, run(scene, *args, **options), size)
+
+        return runner
+
+    return plant
+
+
+def switched(change: Callable[[Scene, Run], Run]) -> Callable[[Scene, Run, float], Run]:
+    """A change of a log that is there or not."""
+    return lambda scene, done, size: change(scene, done) if size else done

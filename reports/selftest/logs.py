@@ -1,0 +1,100 @@
+"""Change one thing of a log, and leave the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.motion import LinkMotion, Motion, PointMotion
+from models.scene import Scene
+from sim.engine import Run
+
+Array = NDArray[np.float64]
+Part = TypeVar("Part")
+Rows = slice | Array | NDArray[np.intp]
+WHEN = 100
+"""The sample that is spoilt where one is: well within the run, behind the start."""
+
+
+def moved(done: Run) -> Motion:
+    """The motion of a run that has one."""
+    assert done.motion is not None
+    return done.motion
+
+
+def last(scene: Scene) -> str:
+    """The link whose log is spoilt: the last one, which is not the driver."""
+    return list(scene.links)[-1]
+
+
+def output(scene: Scene, done: Run) -> LinkMotion:
+    """The motion of the last link."""
+    return moved(done).links[last(scene)]
+
+
+def with_link(done: Run, name: str, **changed: Array) -> Run:
+    """The run with other series of one link."""
+    motion = moved(done)
+    links = {**motion.links, name: replace(motion.links[name], **changed)}
+    return replace(done, motion=replace(motion, links=links))
+
+
+def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
+    """The run with the positions, velocities and accelerations of all points changed."""
+    motion = moved(done)
+    points = {
+        name: PointMotion(*(change(series) for series in vars(point).values()))
+        for name, point in motion.points.items()
+    }
+    return replace(done, motion=replace(motion, points=points))
+
+
+def spoilt(series: Array, at: int | slice, value: float) -> Array:
+    """The series with one stretch of it added to."""
+    wrong = series.copy()
+    wrong[at] += value
+    return wrong
+
+
+def parts(bodies: Mapping[str, Any], change: Callable[[Array], Array]) -> dict[str, Any]:
+    """Every series of every body changed."""
+    return {
+        name: replace(body, **{key: change(series) for key, series in vars(body).items()})
+        for name, body in bodies.items()
+    }
+
+
+def every_series(done: Run, change: Callable[[Array], Array]) -> Run:
+    """The run with every logged series changed, but for the instants that they belong to."""
+    motion = moved(done)
+    return replace(
+        done,
+        motion=replace(
+            motion,
+            links=parts(motion.links, change),
+            points=parts(motion.points, change),
+            sliders=parts(motion.sliders, change),
+        ),
+        gaps={name: change(gap) for name, gap in done.gaps.items()},
+    )
+
+
+def with_times(done: Run, change: Callable[[Array], Array]) -> Run:
+    """The run with all its time stamps changed."""
+    assert done.velocity_time_s is not None
+    assert done.acceleration_time_s is not None
+    return replace(
+        done,
+        motion=replace(moved(done), time_s=change(moved(done).time_s)),
+        velocity_time_s=change(done.velocity_time_s),
+        acceleration_time_s=change(done.acceleration_time_s),
+    )
+
+
+def rows(done: Run, keep: Rows, stamps: Rows) -> Run:
+    """The samples ``keep`` with the time stamps ``stamps``."""
+    return with_times(every_series(done, lambda series: series[keep]), lambda t: t[stamps])

@@ -1,0 +1,165 @@
+"""Faults of what the engine is given: another mechanism than the scene, itself sound."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from models.laws import ConstantSpeed
+from models.scene import Link, Point, Scene
+from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_scene
+
+
+def _long(scene: Scene, share: float) -> Scene:
+    """The link that is pinned to the driver."""
+    name = list(scene.links)[1]
+    return _with_link(scene, _scaled(scene.links[name], 1.0 + share))
+
+
+def _scaled(link: Link, factor: float) -> Link:
+    return replace(link, points=_times(link.points, factor))
+
+
+def _times(points: Mapping[str, Point], factor: float) -> dict[str, Point]:
+    return {name: (factor * x, factor * y) for name, (x, y) in points.items()}
+
+
+def _with_link(scene: Scene, link: Link) -> Scene:
+    return replace(scene, links={**scene.links, link.name: link})
+
+
+def _moved_pin(scene: Scene, share: float) -> Scene:
+    """The last pin of the ground, or the line of the slider."""
+    off = share * scene.longest_m
+    if scene.sliders:
+        (slider,) = scene.sliders.values()
+        x, y = slider.through_m
+        return replace(scene, sliders={slider.name: replace(slider, through_m=(x, y + off))})
+    name, (x, y) = list(scene.ground.items())[-1]
+    return replace(scene, ground={**scene.ground, name: (x + off, y)})
+
+
+def _turned_line(scene: Scene, angle_rad: float) -> Scene:
+    (slider,) = scene.sliders.values()
+    aside = replace(slider, direction_rad=slider.direction_rad + angle_rad)
+    return replace(scene, sliders={slider.name: aside})
+
+
+def _larger(scene: Scene, share: float) -> Scene:
+    """Every length: the angles stay what they are."""
+    factor = 1.0 + share
+    sliders = {
+        name: replace(slider, through_m=_times({"": slider.through_m}, factor)[""])
+        for name, slider in scene.sliders.items()
+    }
+    links = {name: _scaled(link, factor) for name, link in scene.links.items()}
+    return replace(scene, ground=_times(scene.ground, factor), links=links, sliders=sliders)
+
+
+def _swapped(scene: Scene, swap: float) -> Scene:
+    """The last two links have each other's length."""
+    one, two = list(scene.links.values())[-2:]
+    factor = _length(two) / _length(one) if swap else 1.0
+    scene = _with_link(scene, _scaled(one, factor))
+    return _with_link(scene, _scaled(two, 1.0 / factor))
+
+
+def _length(link: Link) -> float:
+    (x, y) = list(link.points.values())[-1]
+    return float((x * x + y * y) ** 0.5)
+
+
+def _driven(scene: Scene, law: ConstantSpeed) -> Scene:
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
+def _law(scene: Scene) -> ConstantSpeed:
+    law = scene.driver.law
+    assert isinstance(law, ConstantSpeed)
+    return law
+
+
+def _faster(scene: Scene, share: float) -> Scene:
+    law = _law(scene)
+    return _driven(scene, replace(law, speed_rad_s=law.speed_rad_s * (1.0 + share)))
+
+
+def _ahead(scene: Scene, angle_rad: float) -> Scene:
+    return _driven(scene, _law(scene).turned(angle_rad))
+
+
+def _backwards(scene: Scene, swap: float) -> Scene:
+    law = _law(scene)
+    return _driven(scene, replace(law, speed_rad_s=-law.speed_rad_s)) if swap else scene
+
+
+def other_branch(scene: Scene, swap: float) -> Scene:
+    sign = -1 if swap else 1
+    return replace(scene, branch={name: sign * way for name, way in scene.branch.items()})
+
+
+FAULTS = (
+    Fault(
+        "link-too-long",
+        "scene",
+        "a link is too long",
+        "CC103",
+        in_scene(_long),
+        1e-3,
+        "of it",
+    ),
+    Fault(
+        "pin-moved",
+        "scene",
+        "a pin or a slider's line is elsewhere",
+        "CC110",
+        in_scene(_moved_pin),
+        1e-4,
+        "L",
+    ),
+    Fault(
+        "line-turned",
+        "scene",
+        "the slider's line points elsewhere",
+        "CC104",
+        in_scene(_turned_line),
+        1e-3,
+        "rad",
+        scenes=(SLIDER,),
+    ),
+    Fault(
+        "other-scale",
+        "scene",
+        "right shape, every length scaled",
+        "CC113",
+        in_scene(_larger),
+        1e-3,
+        "of it",
+    ),
+    Fault(
+        "lengths-swapped",
+        "scene",
+        "two links have each other's length",
+        "CC103",
+        in_scene(_swapped),
+        scenes=(FOURBAR,),
+    ),
+    Fault(
+        "wrong-branch",
+        "scene",
+        "the other of the two assemblies",
+        "CC103",
+        in_scene(other_branch),
+    ),
+    Fault("speed-off", "scene", "the crank turns too fast", "CC102", in_scene(_faster), 1e-5, "w"),
+    Fault(
+        "start-off",
+        "scene",
+        "the crank starts at another angle",
+        "CC102",
+        in_scene(_ahead),
+        1e-6,
+        "rad",
+    ),
+    Fault("turns-backwards", "scene", "the crank turns clockwise", "CC102", in_scene(_backwards)),
+)

@@ -1,0 +1,48 @@
+"""The faults by name."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+from models.errors import CrankcheckError
+from reports.selftest import clock, engines, mechanism, misplaced, missing, values
+from reports.selftest.fault import Fault
+
+FAULTS: dict[str, Fault] = {
+    fault.name: fault
+    for module in (mechanism, engines, clock, values, misplaced, missing)
+    for fault in module.FAULTS
+}
+"""To add a fault, add it to the module of its group."""
+GROUPS = {
+    "scene": "another mechanism in the engine",
+    "engine": "something wrong inside the engine",
+    "clock": "another instant than the log says",
+    "log": "wrong numbers in the log",
+    "misplaced": "numbers of the log in a wrong place",
+    "missing": "something missing from the log",
+}
+
+
+def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
+    """The named faults, each once, or all; of them those that one of the engines can have.
+
+    Raises
+    ------
+    CrankcheckError
+        An unknown name (the message suggests near ones), or one that these engines can not have.
+    """
+    held = set(engines)
+    for name in names:
+        if name not in FAULTS:
+            near = difflib.get_close_matches(name, FAULTS, n=3, cutoff=0.4)
+            hint = f"did you mean {' or '.join(near)}?" if near else f"use {', '.join(FAULTS)}"
+            raise CrankcheckError(f"--fault {name!r}: there is none of that name; {hint}")
+        if not held & set(FAULTS[name].engines):
+            raise CrankcheckError(
+                f"--fault {name}: it can be planted in {' and '.join(FAULTS[name].engines)} only; "
+                f"found --engine {', '.join(sorted(held))}"
+            )
+    wanted = dict.fromkeys(names or FAULTS)
+    return [FAULTS[name] for name in wanted if held & set(FAULTS[name].engines)]

@@ -1,0 +1,170 @@
+"""The faults on the terminal: those that escape first, then the table, then the count."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from reports.cell import Checked
+from reports.rules import RULES
+from reports.selftest.fault import Fault
+from reports.selftest.registry import GROUPS
+from reports.selftest.trial import PROFILE, STEPS, Place, Verdict, passes
+
+WIDE = 96
+"""Columns of a terminal that have room for what a fault is."""
+FEW = 3
+"""Up to so many faults are shown with what the rule says of each."""
+
+
+def show(
+    console: Console,
+    healthy: Sequence[Checked],
+    verdicts: Sequence[Verdict],
+    engines: Sequence[str],
+    facts: Mapping[str, str],
+) -> None:
+    """Print the whole selftest."""
+    for one in verdicts:
+        if not one.caught or len(verdicts) <= FEW:
+            _told(console, one)
+    for run in healthy:
+        console.print(_without(run))
+    console.print("", _table(verdicts, engines, console.width), "")
+    console.print(total(verdicts))
+    console.print(_footer(verdicts, facts), style="dim", highlight=False)
+
+
+def total(verdicts: Sequence[Verdict]) -> Text:
+    """The result in one line."""
+    caught = sum(one.caught for one in verdicts)
+    noun = "fault" if len(verdicts) == 1 else "faults"
+    text = f"{caught} of {len(verdicts)} {noun} caught by the named rule"
+    return Text(text, "bold green" if caught == len(verdicts) else "bold red")
+
+
+def _without(one: Checked) -> Text:
+    """A run without any fault."""
+    place = f"no fault: {one.cell.scene.name}, {one.cell.engine}: "
+    if passes(one):
+        return Text(f"{place}all {len(one.findings)} rules pass", "green")
+    bad = [finding.rule for finding in one.findings if finding.level != "pass"]
+    return Text(f"{place}{', '.join(bad)} {'does' if len(bad) == 1 else 'do'} not pass", "bold red")
+
+
+def _told(console: Console, verdict: Verdict) -> None:
+    """A fault with what the rules say of it, place by place."""
+    fault, rule = verdict.fault, RULES[verdict.fault.rule]
+    head = "caught" if verdict.caught else "ESCAPES"
+    style = "bold green" if verdict.caught else "bold red"
+    console.print(Text(f"{head}  {fault.name}: {fault.what}", style))
+    if not verdict.places:
+        console.print("  it ended the process")
+    for place in verdict.places:
+        where = f"  {place.scene}, {place.engine}: "
+        if place.finding is not None:
+            console.print(Text(f"{where}{rule.id} {rule.title}: {place.finding.text}"))
+        else:
+            others = ", ".join(place.failed) or "none"
+            words = f" with {' and '.join(map(repr, fault.says))}" if fault.says else ""
+            console.print(
+                Text(f"{where}{rule.id} {rule.title}{words} does not fail; failing: {others}")
+            )
+        if place.false:
+            console.print(Text(f"{where}with a size of 0 there fail: {', '.join(place.false)}"))
+    console.print()
+
+
+def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
+    """One row a fault, in groups."""
+    wide = width >= WIDE
+    table = Table(box=None, padding=(0, 1, 0, 0), collapse_padding=True)
+    table.add_column("")
+    table.add_column("fault", no_wrap=True)
+    if wide:
+        table.add_column("what is wrong", overflow="fold")
+    table.add_column("planted size", overflow="fold")
+    table.add_column("caught\nby", no_wrap=True)
+    for engine in engines:
+        table.add_column(f"from on,\n{engine}", no_wrap=True, justify="right")
+    for group in dict.fromkeys(one.fault.group for one in verdicts):
+        table.add_row("", Text(group, "bold"), *([Text(GROUPS[group], "bold")] if wide else []))
+        for one in verdicts:
+            if one.fault.group == group:
+                table.add_row(*_cells(one, engines, wide))
+    return table
+
+
+def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
+    """The row of a fault."""
+    fault = one.fault
+    mark = Text("ok", "green") if one.caught else Text("OUT", "bold red")
+    size = "" if fault.size is None else fault.words(fault.size)
+    return [
+        mark,
+        Text(fault.name),
+        *([Text(fault.what)] if wide else []),
+        Text(size),
+        Text(fault.rule),
+        *(_from(one, engine) for engine in engines),
+    ]
+
+
+def _from(one: Verdict, engine: str) -> Text:
+    """The smallest size that is caught in an engine."""
+    places = [place for place in one.places if place.engine == engine]
+    if engine not in one.fault.engines:
+        return Text("-")
+    if not places or not all(place.finding for place in places):
+        return Text("escapes", "bold red")
+    least = one.least(engine)
+    return Text("yes" if least is None else least_words(one.fault, least))
+
+
+def least_words(fault: Fault, least: float) -> str:
+    """The smallest size that is caught, without its unit where that stands beside it."""
+    if least == 0.0:
+        return "any"
+    if fault.shown:
+        return fault.words(least)
+    return f"{least:.0f}" if fault.whole else f"{least:.1e}"
+
+
+def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
+    """Rules, units, settings and versions."""
+    named = {one.fault.rule for one in verdicts}
+    rules = ", ".join(f"{name} {rule.title}" for name, rule in RULES.items() if name in named)
+    lines = [
+        f"{rules}.",
+        "From on: the smallest size that its rule still sees in every scene, to 10 % (any: down to "
+        "1e-12 of the planted size; yes: there or not; -: can not be planted there). With a size "
+        "of 0 nothing may be found.",
+        f"Profile {PROFILE}, {STEPS} steps a turn, 1 turn. L longest link, w driver's speed.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    return escape("\n".join(lines))
+
+
+def place_row(verdict: Verdict, place: Place) -> dict[str, object]:
+    """A fault in one place, as plain values."""
+    fault, finding = verdict.fault, place.finding
+    return {
+        "fault": fault.name,
+        "group": fault.group,
+        "what": fault.what,
+        "size": fault.size,
+        "unit": fault.unit,
+        "rule": fault.rule,
+        "title": RULES[fault.rule].title,
+        "scene": place.scene,
+        "engine": place.engine,
+        "caught": finding is not None,
+        "from_size": place.least,
+        "said": finding.text if finding else "",
+        "failed": ", ".join(place.failed),
+        "failed_at_size_0": ", ".join(place.false),
+    }

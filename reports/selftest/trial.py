@@ -1,0 +1,177 @@
+"""Plant a fault, see which rules fail, and find the size from which on its own rule does.
+
+The runs are short: one turn, profile tuned. A fault is caught where the rule that it names fails
+at the size planted, while the same run without it, and with it at size 0, passes every rule.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+
+from models.files import load_scene
+from models.scene import Scene
+from reports.cell import Cell, Checked, check, examined
+from reports.pool import do_all
+from reports.rules.base import Finding
+from reports.selftest.fault import Fault
+from reports.selftest.registry import FAULTS
+
+STEPS = 360
+PROFILE = "tuned"
+DECADES = 12
+"""How many powers of ten below the planted size are looked at."""
+CLOSE = 1.1
+"""Sizes over each other that are near enough."""
+NEEDS_FINER_RUNS = "CC110"
+"""The rule that looks at runs with half and a quarter of the step."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A fault in one scene and engine, and what became of it.
+
+    ``finding`` is that of the rule that should fail, None where it passed; ``failed`` are all
+    rules that did. ``false`` are rules that fail with a size of 0. ``least`` is the smallest size
+    that is caught, 0 where every size was that was looked at, None where there is no size or the
+    fault escapes.
+    """
+
+    scene: str
+    engine: str
+    finding: Finding | None
+    failed: tuple[str, ...]
+    false: tuple[str, ...]
+    least: float | None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A fault, by name, in all its places; ``sound`` says that the runs without it pass every
+    rule. There are no places where the fault ended the process."""
+
+    name: str
+    places: tuple[Place, ...]
+    sound: bool
+
+    @property
+    def fault(self) -> Fault:
+        return FAULTS[self.name]
+
+    @property
+    def caught(self) -> bool:
+        """Whether the named rule fails, everywhere, and no rule does without the fault."""
+        found = all(place.finding is not None and not place.false for place in self.places)
+        return self.sound and found and bool(self.places)
+
+    def least(self, engine: str) -> float | None:
+        """The size that is caught in every scene of an engine; None where there is none."""
+        sizes = [place.least for place in self.places if place.engine == engine]
+        known = [size for size in sizes if size is not None]
+        return max(known) if known and len(known) == len(sizes) else None
+
+
+@cache
+def healthy(scene: str, engine: str, steps: int = STEPS) -> Checked:
+    """A run without any fault."""
+    return check(_cell(load_scene(scene), engine, steps, converge=True))
+
+
+def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
+    """The scenes and engines that the faults are planted in."""
+    pairs = {(s, e): None for f in faults for s in f.scenes for e in f.engines if e in engines}
+    return list(pairs)
+
+
+def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = True) -> Verdict:
+    """Plant the fault of that name in all its places; ``search`` for the smallest sizes too."""
+    fault = FAULTS[name]
+    pairs = sites([fault], engines)
+    sound = all(passes(healthy(scene, engine, steps)) for scene, engine in pairs)
+    places = [_place(fault, load_scene(scene), engine, steps, search) for scene, engine in pairs]
+    return Verdict(name, tuple(places), sound)
+
+
+def tried_all(
+    names: Sequence[str], engines: Sequence[str], jobs: int, done: Callable[[Verdict], None]
+) -> list[Verdict]:
+    """Plant all faults, in ``jobs`` processes (0: one per processor)."""
+    return do_all(partial(tried, engines=engines), names, jobs, _lost, done)
+
+
+def _lost(name: str) -> Verdict:
+    return Verdict(name, (), sound=False)
+
+
+def passes(checked: Checked) -> bool:
+    """Whether every rule passes."""
+    return all(finding.level == "pass" for finding in checked.findings)
+
+
+def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) -> Place:
+    """A fault in one place."""
+
+    def planted(size: float) -> Checked:
+        needs = fault.rule == NEEDS_FINER_RUNS
+        return examined(_cell(scene, engine, steps, converge=needs), fault.plant(size))[0]
+
+    full, none = planted(fault.planted), planted(0.0)
+    finding = _named(fault, full)
+    sized = search and finding is not None and fault.size is not None
+    return Place(
+        scene=scene.name,
+        engine=engine,
+        finding=finding,
+        failed=tuple(one.rule for one in full.failures),
+        false=tuple(one.rule for one in none.failures),
+        least=_least(fault, lambda size: _named(fault, planted(size)) is not None)
+        if sized
+        else None,
+    )
+
+
+def _cell(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+    dt_s = scene.driver.law.period_s / steps
+    return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge)
+
+
+def _named(fault: Fault, checked: Checked) -> Finding | None:
+    """The failure of the rule that should see the fault, in the words that it should."""
+    return next(
+        (
+            finding
+            for finding in checked.failures
+            if finding.rule == fault.rule and all(word in finding.text for word in fault.says)
+        ),
+        None,
+    )
+
+
+def _least(fault: Fault, caught: Callable[[float], bool]) -> float:
+    """The smallest size that is caught, as are all larger ones that were tried; 0 where none that
+    was tried escapes."""
+    high = fault.planted
+    for low in _smaller(fault):
+        if not low or not caught(low):
+            break
+        high = low
+    else:
+        return 0.0
+    while high > CLOSE * low and not (fault.whole and high - low <= 1.0):
+        middle = math.sqrt(high * low) if low else high / 2.0
+        if fault.whole:
+            middle = min(max(round(middle), low + 1.0), high - 1.0)
+        low, high = (low, middle) if caught(middle) else (middle, high)
+    return high
+
+
+def _smaller(fault: Fault) -> Iterator[float]:
+    """Sizes below the planted one, a power of ten apart; whole ones end with 0."""
+    for decade in range(1, DECADES + 1):
+        size = fault.planted / 10.0**decade
+        if fault.whole and size < 1.0:
+            yield 0.0
+            return
+        yield round(size) if fault.whole else size

@@ -1,0 +1,208 @@
+"""An engine broken on purpose: opened as ever, then meddled with at chosen steps.
+
+What is done to a session is the engine's own affair, and stands in a file per engine
+(`sim.mujoco_spoil`, `sim.pymunk_spoil`): the model in the engine is changed, not its log.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.motion import State
+from models.scene import Point, Scene
+from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, SettingValue
+from sim.run import joined, stretch
+
+Array = NDArray[np.float64]
+SPOILERS: Mapping[str, str] = {"mujoco": "sim.mujoco_spoil", "pymunk": "sim.pymunk_spoil"}
+"""Engine to module; each module has a ``SPOILER``."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """What a session was opened with."""
+
+    scene: Scene
+    state: State
+    settings: Mapping[str, SettingValue]
+    dt_s: float
+    drive: Drive
+
+
+@dataclass(frozen=True)
+class Post:
+    """A round post fixed to the ground: its centre and radius [m]."""
+
+    centre: Point
+    radius_m: float
+
+
+class Spoiler(Protocol):
+    """What can be broken in the sessions of one engine. Every size of 0 changes nothing."""
+
+    def open_loop(self, session: Session) -> None:
+        """Take away the joint that closes the loop."""
+        ...
+
+    def soften(self, session: Session, opening: Opening, share: float) -> None:
+        """Let the joints give way, at each step, by a share more of what they should hold."""
+        ...
+
+    def slip(self, session: Session, by_m: float) -> None:
+        """Move the joint that closes the loop on one of its two bodies [m]."""
+        ...
+
+    def pull(self, session: Session, gravity_m_s2: float) -> None:
+        """Add gravity, downwards."""
+        ...
+
+    def load(self, session: Session, share: float) -> None:
+        """Make the last body heavier by a share of its mass."""
+        ...
+
+    def turn(self, session: Session, angle_rad: float) -> None:
+        """Turn the last body."""
+        ...
+
+    def block(self, session: Session, opening: Opening, body: str, post: Post) -> None:
+        """Put a post in the way of a link, which from now on can touch it."""
+        ...
+
+    def round_state(self, session: Session, relative: float) -> None:
+        """Round all positions and velocities, see `rounded`."""
+        ...
+
+    def lose(self, session: Session) -> None:
+        """Make the velocity of the last body NaN."""
+        ...
+
+
+Spoil = Callable[[Spoiler, Session, Opening, int], None]
+"""What is done to a session that stands after so many steps."""
+
+
+def spoiler(engine: str) -> Spoiler:
+    """What can be broken in that engine; its package is imported now."""
+    return cast(Spoiler, importlib.import_module(SPOILERS[engine]).SPOILER)
+
+
+@dataclass(frozen=True)
+class SpoiltEngine:
+    """An engine whose sessions are spoilt after the steps ``at``, in rising order.
+
+    What is done after 0 steps the look at the model before the run (`sim.check`) can see.
+    """
+
+    engine: Engine
+    at: tuple[int, ...]
+    spoil: Spoil
+
+    @property
+    def name(self) -> str:
+        return self.engine.name
+
+    @property
+    def profiles(self) -> Mapping[str, Profile]:
+        return self.engine.profiles
+
+    def version(self) -> str:
+        """The version of the engine."""
+        return self.engine.version()
+
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """Raise SettingError as the engine does."""
+        self.engine.check(settings)
+
+    def open(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> SpoiltSession:
+        """A session of the engine, spoilt already where that is to be after no step."""
+        session = self.engine.open(scene, state, settings, dt_s, drive)
+        opening = Opening(scene, state, settings, dt_s, drive)
+        return SpoiltSession(session, opening, self.at, self.spoil, spoiler(self.engine.name))
+
+
+class SpoiltSession:
+    """A session that is stepped in stretches, and spoilt between them."""
+
+    def __init__(
+        self,
+        session: Session,
+        opening: Opening,
+        at: tuple[int, ...],
+        spoil: Spoil,
+        tools: Spoiler,
+    ) -> None:
+        self._session, self._opening, self._spoil, self._tools = session, opening, spoil, tools
+        self._ahead, self._done = list(at), 0
+        self._meddle()
+
+    def facts(self) -> Facts:
+        """The model as the engine holds it now."""
+        return self._session.facts()
+
+    def read(self) -> Poses:
+        """The current state."""
+        return self._session.read()
+
+    def step(self, steps: int) -> None:
+        """Advance without logging."""
+        for count in self._stretches(steps, 1):
+            self._session.step(count)
+            self._advance(count)
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance and log; spoilt only where a sample is logged, so that all are."""
+        logs: list[Log] = []
+        for count in self._stretches(steps, every):
+            logs.append(self._session.record(count, every))
+            self._advance(count)
+            if logs[-1].diverged:
+                break
+        parts = [
+            stretch(log.poses, len(log.poses.time_s), int(k > 0)) for k, log in enumerate(logs)
+        ]
+        return replace(
+            logs[-1],
+            poses=joined(parts),
+            steps_done=sum(log.steps_done for log in logs),
+            wall_s=sum(log.wall_s for log in logs),
+        )
+
+    def _stretches(self, steps: int, every: int) -> list[int]:
+        """The next ``steps``, cut where the session is to be spoilt, or at the next sample."""
+        cuts = {math.ceil((at - self._done) / every) * every for at in self._ahead}
+        edges = [0, *sorted(cut for cut in cuts if 0 < cut < steps), steps]
+        return [b - a for a, b in pairwise(edges)]
+
+    def _advance(self, count: int) -> None:
+        self._done += count
+        self._meddle()
+
+    def _meddle(self) -> None:
+        """Spoil, once, if that is due."""
+        due = [at for at in self._ahead if at <= self._done]
+        if due:
+            self._ahead = self._ahead[len(due) :]
+            self._spoil(self._tools, self._session, self._opening, self._done)
+
+
+def rounded(values: Array, relative: float) -> Array:
+    """The values with mantissas rounded to multiples of ``relative``; 2^-24 makes them float32."""
+    if not relative:
+        return values
+    mantissa, exponent = np.frexp(values)
+    return np.asarray(np.ldexp(np.rint(mantissa / relative) * relative, exponent))

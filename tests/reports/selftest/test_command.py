@@ -1,0 +1,170 @@
+"""`crankcheck selftest` from the command line: table, files, exit codes, mistakes."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+from reports.cli import app
+from reports.rules import RULES
+from reports.rules.base import Evidence, Finding
+from reports.selftest.registry import FAULTS
+from reports.selftest.table import show
+from reports.selftest.trial import Place, Verdict, healthy
+
+ENGINES = ("mujoco", "pymunk")
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+    return lambda *args: runner.invoke(app, ["selftest", *args], catch_exceptions=False)
+
+
+def flat(text: str) -> str:
+    return " ".join(text.replace("│", " ").split())
+
+
+def named(*faults: str) -> list[str]:
+    return [word for fault in faults for word in ("--fault", fault)]
+
+
+def test_faults_that_are_caught_end_with_0_and_their_smallest_sizes(crank: Crank) -> None:
+    result = crank(*named("jump", "nan-at-end"), "--engine", "mujoco")
+    assert result.exit_code == 0, result.output
+    assert "2 of 2 faults caught by the named rule" in result.output
+    text = flat(result.output)
+    assert "no fault: fourbar-lecture-1, mujoco: all 15 rules pass" in text
+    assert "ok jump an angle jumps, and stays 0.0001 rad CC107 4.2e-05" in text
+    assert "ok nan-at-end the last angle is NaN CC109 yes" in text
+    assert "Profile tuned, 360 steps a turn, 1 turn." in text
+    assert "mujoco 4" in text
+    assert "pymunk" not in text.replace("numpy", "")
+
+
+def test_few_faults_are_shown_with_what_the_rule_says(crank: Crank) -> None:
+    result = crank(*named("gravity-left-on"), "--engine", "pymunk")
+    assert "caught gravity-left-on: gravity, of which the scene has none" in flat(result.output)
+    assert "gravity is (0.0, -9.81), not (0.0, 0.0) m/s^2" in flat(result.output)
+    assert "1 of 1 fault caught" in result.output
+
+
+def test_a_blind_rule_lets_its_faults_escape_and_ends_with_1(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sharp = RULES["CC107"]
+
+    class Blind:
+        id, title, explanation, cure = sharp.id, sharp.title, sharp.explanation, sharp.cure
+
+        def check(self, evidence: Evidence) -> Finding | None:
+            return Finding(self.id, "pass", "all is well")
+
+    monkeypatch.setitem(RULES, "CC107", Blind())
+    result = crank(*named("jump", "spike"), "--engine", "mujoco", "--jobs", "1")
+    assert result.exit_code == 1
+    text = flat(result.output)
+    assert "1 of 2 faults caught by the named rule" in text
+    assert "ESCAPES jump: an angle jumps, and stays" in text
+    assert "mujoco: CC107 velocity, differenced does not fail; failing: CC114" in text
+    assert "OUT jump" in text
+    assert "ok spike" in text
+
+
+def test_files_hold_every_fault_in_every_place(crank: Crank, tmp_path: Path) -> None:
+    extra = tmp_path / "extra.json"
+    result = crank(
+        *named("jump", "wrong-branch"), "-o", str(tmp_path / "out"), "--json", str(extra)
+    )
+    assert result.exit_code == 0
+    table = pd.read_csv(tmp_path / "out" / "selftest.csv")
+    assert table.groupby("fault").size().to_dict() == {"jump": 4, "wrong-branch": 4}
+    assert table["caught"].all()
+    assert (table.loc[table["fault"] == "jump", "from_size"] < 1e-4).all()
+    assert table.loc[table["fault"] == "wrong-branch", "from_size"].isna().all()
+    content = json.loads(extra.read_text())
+    assert json.loads((tmp_path / "out" / "selftest.json").read_text()).keys() == content.keys()
+    assert (content["caught"], content["escaped"]) == (2, [])
+    assert content["settings"] == {"profile": "tuned", "steps_per_turn": 360, "turns": 1}
+    assert {row["passes"] for row in content["without_a_fault"]} == {True}
+    assert content["provenance"]["mujoco"].startswith("4")
+
+
+@pytest.mark.parametrize(
+    ("args", "parts"),
+    [
+        (["--fault", "gravity-left"], ["'gravity-left'", "did you mean gravity-left-on"]),
+        (["--fault", "qqq"], ["'qqq'", "use link-too-long, pin-moved"]),
+        (["--fault", "first-order", "--engine", "mujoco"], ["planted in pymunk only", "mujoco"]),
+        (["--engine", "mujoko"], ["'mujoko'", "did you mean mujoco"]),
+        (["--csv", "/nowhere/at/all.csv"], ["--csv", "no folder"]),
+    ],
+)
+def test_what_can_not_be_planted_ends_with_2(
+    crank: Crank, args: list[str], parts: list[str]
+) -> None:
+    result = crank(*args)
+    assert result.exit_code == 2, result.output
+    for part in parts:
+        assert part in flat(result.stderr)
+
+
+def test_an_engine_alone_gets_the_faults_that_it_can_have(crank: Crank, tmp_path: Path) -> None:
+    file = tmp_path / "some.csv"
+    crank(*named("drive-too-light", "nan-at-end"), "--engine", "mujoco", "--csv", str(file))
+    assert set(pd.read_csv(file)["engine"]) == {"mujoco"}
+
+
+@pytest.fixture(scope="module")
+def every_fault() -> list[Verdict]:
+    """A verdict on each fault, with sizes as wide as they come; one escapes, one is lost."""
+    found = []
+    for fault in FAULTS.values():
+        finding = Finding(fault.rule, "fail", "seen")
+        least = fault.size if fault.whole or fault.shown or not fault.size else 1.2345e-12
+        places = [
+            Place(scene, engine, finding, (fault.rule,), (), least)
+            for scene in fault.scenes
+            for engine in fault.engines
+        ]
+        found.append(Verdict(fault.name, tuple(places), sound=True))
+    found[2] = Verdict(found[2].name, (), sound=False)
+    lost = Place("fourbar-lecture-1", "mujoco", None, ("CC101", "CC103"), ("CC114",), None)
+    found[5] = Verdict(found[5].name, (lost, *found[5].places[1:]), sound=True)
+    return found
+
+
+@pytest.mark.parametrize("width", [80, 100])
+def test_the_table_fits_the_terminal_with_nothing_clipped(
+    every_fault: list[Verdict], width: int
+) -> None:
+    stream = io.StringIO()
+    sound = [healthy("fourbar-lecture-1", engine) for engine in ENGINES]
+    show(Console(file=stream, width=width), sound, every_fault, ENGINES, {"crankcheck": "1"})
+    text = stream.getvalue()
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= width
+    assert "\u2026" not in text
+    rows = [line.split() for line in text.splitlines()]
+    for fault in FAULTS.values():
+        assert [row for row in rows if row[1:2] == [fault.name] and fault.rule in row], fault.name
+    assert f"{len(FAULTS) - 2} of {len(FAULTS)} faults caught" in text
+    assert "it ended the process" in text
+    assert "with a size of 0 there fail: CC114" in flat(text)
+    assert "escapes" in text
+
+
+def test_at_100_columns_a_fault_takes_one_line(every_fault: list[Verdict]) -> None:
+    stream = io.StringIO()
+    show(Console(file=stream, width=100), [], every_fault, ENGINES, {})
+    table = stream.getvalue().partition("from on")[2].partition("faults caught")[0]
+    lines = [line for line in table.splitlines()[2:] if line.strip()][:-1]  # heads and count
+    assert len(lines) == len(FAULTS) + len({fault.group for fault in FAULTS.values()})

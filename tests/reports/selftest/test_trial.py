@@ -1,0 +1,135 @@
+"""How the smallest size is found, and what counts as caught."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from reports.rules import RULES
+from reports.rules.base import Evidence, Finding
+from reports.selftest import trial
+from reports.selftest.fault import FOURBAR, Fault
+from reports.selftest.registry import FAULTS
+
+SPIKE = FAULTS["spike"]
+WHOLE = FAULTS["log-cut"]
+
+
+@pytest.fixture(autouse=True)
+def _fresh() -> Iterator[None]:
+    """Nothing remembered of runs without a fault, before and after."""
+    trial.healthy.cache_clear()
+    yield
+    trial.healthy.cache_clear()
+
+
+class Blind:
+    """A rule that sees nothing."""
+
+    title = explanation = cure = ""
+
+    def __init__(self, rule: str) -> None:
+        self.id = rule
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        return Finding(self.id, "pass", "all is well")
+
+
+class Nervous(Blind):
+    """A rule that is never content."""
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        return Finding(self.id, "fail", "nothing is well")
+
+
+def planted(fault: Fault, monkeypatch: pytest.MonkeyPatch) -> trial.Verdict:
+    monkeypatch.setitem(FAULTS, fault.name, replace(fault, scenes=(FOURBAR,)))
+    return trial.tried(fault.name, ("mujoco",))
+
+
+@pytest.mark.parametrize("threshold", [3e-12, 4.4e-8, 9.99e-6])
+def test_the_smallest_size_that_is_caught_is_found_to_a_tenth(threshold: float) -> None:
+    tried: list[float] = []
+
+    def caught(size: float) -> bool:
+        tried.append(size)
+        return size >= threshold
+
+    least = trial._least(SPIKE, caught)
+    assert threshold <= least <= 1.1 * threshold
+    assert len(tried) < 15
+
+
+@pytest.mark.parametrize("threshold", [1, 2, 7, 100, 309, 310])
+def test_of_whole_sizes_a_whole_one_is_found(threshold: int) -> None:
+    least = trial._least(WHOLE, lambda size: size >= threshold)
+    assert threshold <= least <= max(threshold, 1.1 * threshold)
+    assert least == round(least)
+
+
+def test_what_is_caught_at_every_size_is_caught_from_0_on() -> None:
+    assert trial._least(SPIKE, lambda _: True) == 0.0
+
+
+def test_a_size_that_escapes_between_two_that_are_caught_bounds_the_search() -> None:
+    least = trial._least(SPIKE, lambda size: size > 1e-7 or size < 1e-9)
+    assert 1e-7 < least < 1.1e-7
+
+
+def test_a_fault_is_caught_with_its_smallest_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    verdict = planted(SPIKE, monkeypatch)
+    assert verdict.caught
+    least = verdict.least("mujoco")
+    assert least is not None
+    assert 1e-7 < least < 1e-5
+    for size, seen in ((least, True), (0.8 * least, False)):
+        monkeypatch.setitem(FAULTS, "spike", replace(SPIKE, size=size, scenes=(FOURBAR,)))
+        assert trial.tried("spike", ("mujoco",), search=False).caught is seen
+
+
+def test_a_fault_escapes_where_its_rule_is_blind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(RULES, "CC114", Blind("CC114"))
+    verdict = planted(SPIKE, monkeypatch)
+    assert not verdict.caught
+    assert verdict.sound
+    assert verdict.places[0].finding is None
+    assert verdict.least("mujoco") is None
+
+
+def test_another_rule_that_fails_does_not_make_up_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    verdict = planted(replace(SPIKE, rule="CC102"), monkeypatch)
+    assert "CC114" in verdict.places[0].failed
+    assert not verdict.caught
+
+
+def test_the_rule_must_say_the_words_that_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
+    gravity = FAULTS["gravity-left-on"]
+    assert planted(gravity, monkeypatch).caught
+    assert not planted(replace(gravity, says=("magnetism",)), monkeypatch).caught
+
+
+def test_a_rule_that_fails_without_any_fault_spoils_the_catch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(RULES, "CC105", Nervous("CC105"))
+    verdict = planted(FAULTS["joint-dropped"], monkeypatch)
+    assert verdict.places[0].finding is not None
+    assert verdict.places[0].false == ("CC105",)
+    assert not verdict.sound
+    assert not verdict.caught
+
+
+def test_a_fault_that_is_there_at_size_0_is_not_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    always = replace(SPIKE, plant=lambda _: SPIKE.plant(1e-5))
+    verdict = planted(always, monkeypatch)
+    assert verdict.sound
+    assert verdict.places[0].false == ("CC114",)
+    assert not verdict.caught
+
+
+def test_a_fault_that_ends_the_process_is_not_caught() -> None:
+    verdict = trial._lost("spike")
+    assert not verdict.caught
+    assert verdict.least("mujoco") is None
