@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.commands.notice import tell
 from reports.diff.changes import FACTOR, compare
 from reports.diff.junit import junit
 from reports.diff.markdown import markdown
@@ -49,7 +50,8 @@ def run_diff(request: Request, console: Console) -> int:
     Raises
     ------
     CrankcheckError
-        A folder that holds no run, two runs with nothing in common, an option that makes no sense.
+        A folder that holds no run, two runs with nothing in common, an option that makes no sense;
+        a damaged run that may have lost a cell which the other one has.
     """
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use {' or '.join(FORMATS)}")
@@ -60,6 +62,8 @@ def run_diff(request: Request, console: Console) -> int:
     check_different(named)
     old = read_run(request.old, request.old_version, "--old-version")
     new = read_run(request.new, request.new_version, "--new-version")
+    for run in (old, new) if request.old != request.new else (old,):
+        tell(run.notice)
     diff = compare(old, new, request.factor)
     page = markdown(diff, request.strict)
     try:

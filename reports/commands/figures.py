@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.progress import track
 
 from models.errors import CrankcheckError
+from reports.commands.notice import tell
 from reports.figures.registry import FIGURES
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
@@ -42,7 +43,9 @@ def run_figures(
     """
     names = _chosen(only, FIGURES, "--only", "figure")
     check_folder(output, "-o")
-    report = Report(read_store(folder))
+    stored = read_store(folder)
+    tell(stored.notice)
+    report = Report(stored)
     figures = _planned(report, names, scenes)
     check_folder(output, "-o", [f"{name}.{kind}" for name in figures for kind in FORMATS])
     empty = []

@@ -8,6 +8,7 @@ from typing import Literal
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.commands.notice import tell
 from reports.store.reader import read_store
 from reports.writing import check_file, write
 
@@ -30,18 +31,19 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
     """Write the report of the store in ``folder``; returns the exit code, 0.
 
     Without ``output`` a page goes to ``report.html`` in the working folder, and text to the
-    terminal.
+    terminal. What is damaged in the store is told, and the rest is reported.
 
     Raises
     ------
     CrankcheckError
-        No store there, or a file that can not be written.
+        No store there, none of which a cell can be read, or a file that can not be written.
     """
     if output is None and format == "html":
         output = Path("report.html")
     if output is not None:
         check_file(output, "-o", ENDINGS[format])
     stored = read_store(folder)
+    tell(stored.notice)
     if format == "md":
         from reports.figures.summary import summary
 

@@ -15,10 +15,12 @@ from reports.choice.lines import lines
 from reports.choice.recommend import recommendations
 from reports.choice.table import noise_line, recommendation_table
 from reports.commands.names import chosen_engines
+from reports.commands.notice import tell
 from reports.provenance import provenance
 from reports.stopping import Stopped
+from reports.store.examine import STOPPED
 from reports.store.manifest import Manifest
-from reports.store.reader import Stored, read_store, stored_keys
+from reports.store.reader import Stored, read_store
 from reports.store.writer import Writer
 from reports.sweep.grid import Grid, grid
 from reports.sweep.isolation import LIMIT_S, MEMORY_GB, Limits
@@ -53,7 +55,8 @@ class Request:
 def sweep(request: Request, console: Console, progress: Console) -> int:
     """Do what of the study is not done yet; returns the exit code, 0.
 
-    A cell that failed is a row with its status and reason, and no failure of the sweep.
+    A cell that failed is a row with its status and reason, and no failure of the sweep. What is
+    damaged in the store is mended, and told.
 
     Raises
     ------
@@ -74,6 +77,7 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
         "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
     }
     with Writer(request.folder, Manifest(laid.texts, (run,))) as writer:
+        tell(writer.mended)
         running = Running(writer, laid.tasks, limits, facts, progress)
         try:
             done = running.errors(request.keep_trajectories, where, request.again)
@@ -83,8 +87,11 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
             progress.print("what is done is kept; the same command goes on from there")
             raise
     _summary(console, request.folder, laid, done)
-    if stored_keys(request.folder, "timings"):
-        _recommend(console, read_store(request.folder))
+    stored = read_store(request.folder)
+    if any(each.cure == "sweep" and each.what != STOPPED for each in stored.damage):
+        tell(stored.notice)  # of cells that were not asked for now
+    if not stored.timings.empty:
+        _recommend(console, stored)
     return 0
 
 

@@ -15,6 +15,7 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from reports.cell import Cell, Checked
 from reports.commands.names import chosen_engines, chosen_profiles, chosen_scenes
+from reports.commands.notice import tell
 from reports.commands.steps import counted
 from reports.diff.changes import FACTOR, Diff, compare
 from reports.diff.junit import joined
@@ -173,6 +174,7 @@ def _baseline(request: Request, cells: Sequence[Cell], digests: Mapping[str, str
     if request.baseline is None:
         return None
     base = read_run(request.baseline)
+    tell(base.notice)
     planned = planned_run(cells, digests)
     compare(base, planned, request.factor)  # raises, where nothing is to be compared
     return base.only(planned.cells)

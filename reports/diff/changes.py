@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import CrankcheckError
+from reports.diff.gone import refuse_gone
 from reports.diff.runs import Found, Name, Run
 from reports.tolerance import DEFAULTS, ROUNDING
 
@@ -133,10 +134,12 @@ def compare(old: Run, new: Run, factor: float = FACTOR) -> Diff:
     Raises
     ------
     CrankcheckError
-        A factor that is not at least 1; no cell that both runs have, of the same scene.
+        A factor that is not at least 1; no cell that both runs have, of the same scene; a cell
+        that may be lost in a damaged run.
     """
     if not (math.isfinite(factor) and factor >= 1.0):
         raise CrankcheckError(f"--factor {factor:g}: give a number of at least 1, such as 1.1")
+    refuse_gone(old, new)
     both = [name for name in new.cells if name in old.cells]
     if not both:
         raise CrankcheckError(f"no cell in common: {old.holds}; {new.holds}")

@@ -4,19 +4,35 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
 from models.errors import CrankcheckError
 from models.files import scene_texts
 from reports.diff.runs import Found, Name, Row, Run, found_in, text
+from reports.store.examine import STOPPED
+from reports.store.folder import has_parts
 from reports.store.key import digest
 from reports.store.manifest import MANIFEST
 from reports.store.reader import read_store
 
 CELLS, FACTS = "verify.csv", "verify.json"
 WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
+
+
+@dataclass(frozen=True)
+class _Contents:
+    """What stands in a folder: rows of the cells, facts, digests of scenes, and what is damaged
+    (see `reports.diff.runs.Run`)."""
+
+    rows: list[Row]
+    facts: dict[str, str]
+    digests: dict[str, str]
+    notice: tuple[str, ...] = ()
+    gone: tuple[str, ...] = ()
+    lost: bool = False
 
 
 def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
@@ -32,9 +48,9 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
     CrankcheckError
         No such folder, no stored run in it, one that can not be read, a version that it has not.
     """
-    rows, facts, digests = _contents(folder)
+    there = _contents(folder)
     try:
-        found = [found_in(row, facts, digests) for row in rows]
+        found = [found_in(row, there.facts, there.digests) for row in there.rows]
     except (KeyError, ValueError, OverflowError) as error:
         why = f"no column {error}" if isinstance(error, KeyError) else str(error)
         raise CrankcheckError(
@@ -43,7 +59,7 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
     if not any(cell.errors for cell in found):
         raise CrankcheckError(f"{folder}: no errors in its cells; make it again with {WRITERS}")
     kept, notes = _chosen(found, folder, version, option)
-    return Run(str(folder), kept, facts, notes)
+    return Run(str(folder), kept, there.facts, notes, there.notice, there.gone, there.lost)
 
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
@@ -51,14 +67,13 @@ def scene_digests(names: Iterable[str]) -> dict[str, str]:
     return {name: digest(text) for name, text in scene_texts(names).items()}
 
 
-def _contents(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
-    """Rows of the cells, facts, and digests of scenes, by the kind of folder."""
-    kinds: dict[str, Callable[[Path], tuple[list[Row], dict[str, str], dict[str, str]]]] = {
-        MANIFEST: _store,
-        CELLS: _verification,
-    }
+def _contents(folder: Path) -> _Contents:
+    """What stands in a folder, by its kind."""
+    kinds: dict[str, Callable[[Path], _Contents]] = {MANIFEST: _store, CELLS: _verification}
     try:
         there = [name for name in kinds if (folder / name).is_file()]
+        if MANIFEST not in there and has_parts(folder):
+            there = [MANIFEST, *there]
         if len(there) == 1:
             return kinds[there[0]](folder)
         raise CrankcheckError(f"{folder}: {_not_a_run(folder, there)}")
@@ -88,15 +103,23 @@ def _not_a_run(folder: Path, there: list[str]) -> str:
     return f"no stored run there (no {MANIFEST}, no {CELLS}); {WRITERS} makes one"
 
 
-def _store(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
+def _store(folder: Path) -> _Contents:
     stored = read_store(folder)
     runs = stored.manifest.runs
     facts = runs[-1].get("provenance") if runs else None
     rows = cast("list[Row]", stored.cells.to_dict("records"))
-    return rows, _texts(facts), {}
+    gone = [each for each in stored.damage if each.hides]
+    return _Contents(
+        rows,
+        _texts(facts),
+        {},
+        tuple(stored.notice),
+        tuple(each.line for each in gone),
+        any(each.what != STOPPED for each in gone),
+    )
 
 
-def _verification(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, str]]:
+def _verification(folder: Path) -> _Contents:
     path = folder / CELLS
     try:
         with path.open(encoding="utf-8", newline="") as lines:
@@ -108,15 +131,26 @@ def _verification(folder: Path) -> tuple[list[Row], dict[str, str], dict[str, st
         raise CrankcheckError(f"{path}: not a CSV file ({error}); verify again") from None
     if not rows:
         raise CrankcheckError(f"{path}: no cells in it; verify again")
+    notice: tuple[str, ...] = ()
     try:
         known = json.loads((folder / FACTS).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        known = {}  # the cells are enough to compare
-    except ValueError as error:
+    except FileNotFoundError:  # the cells are enough to compare
+        known, notice = {}, (f"{folder}: no {FACTS}, so {CELLS} can not be checked",)
+    except (ValueError, RecursionError) as error:
         raise CrankcheckError(f"{folder / FACTS}: not JSON ({error}); verify again") from None
     if not isinstance(known, dict):
         raise CrankcheckError(f"{folder / FACTS}: no facts of a verification; verify again")
-    return rows, _texts(known.get("provenance")), _texts(known.get("scenes"))
+    if cut := _cut(rows, known.get("cells")):
+        raise CrankcheckError(f"{path}: cut short ({cut}); verify again")
+    return _Contents(rows, _texts(known.get("provenance")), _texts(known.get("scenes")), notice)
+
+
+def _cut(rows: Sequence[Row], cells: object) -> str:
+    """How one sees that the file of the cells was cut short; the other one knows their number."""
+    known = len(cells) if isinstance(cells, list) and cells else len(rows)
+    if known != len(rows):
+        return f"{len(rows)} of the {known} cells that {FACTS} knows"
+    return "its last row is not whole" if None in rows[-1].values() else ""
 
 
 def _texts(value: object) -> dict[str, str]:

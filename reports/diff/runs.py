@@ -79,13 +79,17 @@ class Found:
 class Run:
     """All cells of a run; ``label`` is what it is called, ``facts`` its versions, processor, time.
 
-    ``notes`` say what was left out of it, and why.
+    ``notes`` say what was left out of it, and why. ``notice`` names what is damaged in it, and
+    ``gone`` which of that may hide cells that it had (``lost``), or was to have.
     """
 
     label: str
     cells: Mapping[Name, Found]
     facts: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    notice: tuple[str, ...] = ()
+    gone: tuple[str, ...] = ()
+    lost: bool = False
 
     def only(self, names: Collection[Name]) -> Run:
         """The same run with these cells alone."""

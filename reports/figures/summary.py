@@ -22,6 +22,7 @@ from reports.rules import RULES
 from reports.store.reader import Stored
 
 ROOM = {
+    "damage": 4_000,
     "outside": 6_000,
     "set": 8_000,
     "snippets": 12_000,
@@ -51,6 +52,7 @@ def summary(stored: Stored) -> str:
     parts = [
         f"## crankcheck: {HEADLINES[level(gated)]}",
         f"**{plain(verdict(gated))}** {_ended(report)}",
+        *_damaged(report),
         *_outside(report),
         "### What to set",
         _recommended(report),
@@ -69,6 +71,14 @@ def _ended(report: Report) -> str:
     number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
     rest = f"{bad} did not end well" if bad else "none failed to end well"
     return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
+
+
+def _damaged(report: Report) -> Iterator[str]:
+    """What can not be read of the store."""
+    kept, left = fitted(report.stored.notice, ROOM["damage"])
+    if kept:
+        yield "### Damage"
+        yield code("\n".join([*kept, *([f"and {left} more"] if left else [])]), "text")
 
 
 def _outside(report: Report) -> Iterator[str]:

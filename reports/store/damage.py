@@ -35,10 +35,17 @@ class Damage:
 
     @property
     def line(self) -> str:
+        """In a line: what is wrong with what, and how many cells that costs."""
+        said = printable(f"{self.path}: {self.what}")
         if not self.hides or self.lost == 0:
-            return f"{self.path}: {self.what}"
+            return said
         many = "an unknown number of cells" if self.lost is None else counted(self.lost)
-        return f"{self.path}: {self.what}; {many} missing"
+        return f"{said}; {many} missing"
+
+
+def printable(text: str) -> str:
+    """A text without characters that a terminal would obey, or could not show."""
+    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
 def counted(number: int) -> str:
@@ -60,12 +67,10 @@ def notice(folder: object, damage: Sequence[Damage], safe: int, manifest: Manife
         return []
     bad = [each for each in damage if each.cure != "nothing"]
     named = [each.line for each in (*bad, *(one for one in damage if one.cure == "nothing"))]
-    if len(named) > MOST:
-        named = [*named[:MOST], f"and {len(named) - MOST} more"]
     if not bad:
-        return [f"{folder}: {safe_and_lost(damage, safe)}; there is also", *_indented(named)]
-    lines = [f"{folder}: not whole; {safe_and_lost(damage, safe)}", *_indented(named)]
-    return [*lines, *_indented(cures(folder, bad, manifest))]
+        return [f"{folder}: {safe_and_lost(damage, safe)}; there is also", *indented(named)]
+    lines = [f"{folder}: not whole; {safe_and_lost(damage, safe)}", *indented(named)]
+    return [*lines, *indented(cures(folder, bad, manifest))]
 
 
 def cures(folder: object, damage: Sequence[Damage], manifest: Manifest) -> list[str]:
@@ -82,12 +87,14 @@ def cures(folder: object, damage: Sequence[Damage], manifest: Manifest) -> list[
         if isinstance(words, list) and words[1:2] == ["sweep"]
     )
     usual = f"crankcheck sweep -o {shlex.quote(str(folder))}, with the options it was made with"
-    again = "; ".join(list(found)[:COMMANDS]) or usual
+    again = printable("; ".join(list(found)[:COMMANDS])) or usual
     return [
         f"what mends it: {again}",
         f"(moves what is damaged to {folder}/damaged, and runs what is missing)",
     ]
 
 
-def _indented(lines: Sequence[str]) -> list[str]:
-    return [f"  {line}" for line in lines]
+def indented(lines: Sequence[str]) -> list[str]:
+    """Lines below a head, no more than anyone reads."""
+    more = [f"  and {len(lines) - MOST} more"] if len(lines) > MOST else []
+    return [*(f"  {line}" for line in lines[:MOST]), *more]

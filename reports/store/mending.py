@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 
 from models.errors import CrankcheckError
-from reports.store.damage import Damage
+from reports.store.damage import Damage, indented
 from reports.store.examine import HANGING, STOPPED, Examined
 from reports.store.manifest import MANIFEST
 from reports.store.part import part_bytes
@@ -51,7 +51,7 @@ def mend(folder: Path, found: Examined) -> list[str]:
         told.append(f"moved to {folder / DAMAGED}: {', '.join(moved)}")
     if any(each.path == MANIFEST and each.cure == "sweep" for each in found.damage):
         told.append(f"{MANIFEST} is made again as far as the cells tell, with a note in it")
-    return told
+    return [f"{folder}: damaged", *indented(told)] if told else []
 
 
 def _worth_telling(damage: Damage) -> bool:

@@ -27,6 +27,7 @@ def build(report: Report) -> Section:
             "runs": runs,
             "written_by": crankcheck_version(),
             "older": older,
+            "damage": report.stored.notice,
             "other_processors": left_out(report.stored.cells),
             "settings": [_settings(report, engine) for engine in report.engines],
             "cells": [_cell(report, line, row) for line in report.lines for row in _rows(line)],
