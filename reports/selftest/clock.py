@@ -121,7 +121,7 @@ FAULTS = (
         in_log(_one_sided),
         0.5,
         "steps",
-        scenes=(FOURBAR,),
+        scenes=(FOURBAR,),  # half a step in the slider-crank is 0.6 of its limit
         engines=("mujoco",),
     ),
     Fault("step-off", "clock", "the engine's step is too long", "CC102", _other_step, 1e-5, "dt"),

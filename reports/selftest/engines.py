@@ -12,7 +12,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene, span
 from reports.cell import Runner
-from reports.selftest.fault import FOURBAR, Fault, Plant, in_engine, in_settings
+from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, in_engine, in_settings
 from reports.selftest.logs import last, moved
 from sim.engine import Run, Session, SettingValue
 from sim.run import run
@@ -22,8 +22,6 @@ CLEAR_RAD = 0.01
 """How far beyond the end of its swing a link does not touch what stands there."""
 TIMES = 36
 """How often in a run something that changes over time is changed."""
-REFUSED = "the engine does not hold"
-"""What `sim.check` says where the model in the engine is not the scene."""
 Act = Callable[[Spoiler, Session, float], None]
 
 

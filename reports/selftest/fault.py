@@ -21,6 +21,8 @@ from sim.run import run
 from sim.spoil import Opening, Spoiler, SpoiltEngine
 
 FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
+REFUSED = "the engine does not hold"
+"""What `sim.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], Runner]
 Group = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
 
@@ -51,6 +53,11 @@ class Fault:
     def planted(self) -> float:
         """The size that the plant is given."""
         return 1.0 if self.size is None else self.size
+
+    @property
+    def refused(self) -> bool:
+        """Whether it is the look at the model before the run that sees it."""
+        return REFUSED in self.says
 
     def words(self, size: float) -> str:
         """A size with its unit."""

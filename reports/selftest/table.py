@@ -17,6 +17,8 @@ from reports.selftest.trial import PROFILE, STEPS, Place, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""
+MODEL_CHECK = "*"
+"""Marks the rule where the run is refused before its first step."""
 FEW = 3
 """Up to so many faults are shown with what the rule says of each."""
 
@@ -109,7 +111,7 @@ def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
         Text(fault.name),
         *([Text(fault.what)] if wide else []),
         Text(size),
-        Text(fault.rule),
+        Text(fault.rule + MODEL_CHECK * fault.refused),
         *(_from(one, engine) for engine in engines),
     ]
 
@@ -138,8 +140,13 @@ def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
     """Rules, units, settings and versions."""
     named = {one.fault.rule for one in verdicts}
     rules = ", ".join(f"{name} {rule.title}" for name, rule in RULES.items() if name in named)
+    refused = any(one.fault.refused for one in verdicts)
     lines = [
         f"{rules}.",
+        *(
+            [f"{MODEL_CHECK} by the model check: the run is refused before its first step."]
+            * refused
+        ),
         "From on: the smallest size that its rule still sees in every scene, to 10 % (any: down to "
         "1e-12 of the planted size; yes: there or not; -: can not be planted there). With a size "
         "of 0 nothing may be found.",
