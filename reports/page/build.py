@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -16,33 +17,76 @@ from reports.page.numbers import NONE, count, duration, error_text
 from reports.page.report import Report
 from reports.page.sections import SECTIONS
 from reports.page.sections.base import Section
+from reports.page.sections.hard import ROOM, hard
 from reports.page.sections.motion import build as motion
 from reports.page.thinning import BUDGET
+from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
 HERE = Path(__file__).parent
 MOST_BYTES = 7_900_000
 """Over this, drawings and curves give way: fewer steps of each line are drawn."""
+ALONE = 6_500_000
+"""Characters for the moving pictures of hard cases on a page of their own."""
 FIRST = ("page.js", "tables.js")
 """Scripts that every page has, before those of its sections."""
 
 
-def page(stored: Stored) -> str:
-    """The report of a store as one HTML file.
+@dataclass(frozen=True)
+class Head:
+    """What stands over a page: its title, and what was measured; ``made`` is when, as text.
+
+    ``first`` says what the first section is, ``looks`` are those of the diagrams.
+    """
+
+    title: str
+    facts: Sequence[str]
+    made: str
+    first: str
+    looks: Sequence[Look] = ()
+
+
+def page(stored: Stored, matrix: Matrix | None = None) -> str:
+    """The report of a store as one HTML file, with the hard cases that were run beside it.
 
     Raises
     ------
     CrankcheckError
         A store that can not be read, part by part.
     """
-    report = Report(stored)
+    report = Report(stored, matrix)
     found = {name: build(report) for name, build in SECTIONS.items()}
     text = _rendered(report, found)
     over = len(text.encode()) - MOST_BYTES
     if over > 0 and found["motion"] is not None:
         found["motion"] = motion(report, BUDGET - over)
         text = _rendered(report, found)
+    over = len(text.encode()) - MOST_BYTES
+    if over > 0 and matrix is not None:
+        found["hard"] = hard(matrix, ROOM - over)
+        text = _rendered(report, found)
     return text
+
+
+def stability_page(matrix: Matrix) -> str:
+    """The hard cases alone as one HTML file."""
+    text = assembled(_stability_head(matrix), [hard(matrix, ALONE)])
+    over = len(text.encode()) - MOST_BYTES
+    return text if over <= 0 else assembled(_stability_head(matrix), [hard(matrix, ALONE - over)])
+
+
+def _stability_head(matrix: Matrix) -> Head:
+    engines = dict.fromkeys(run.engine for run in matrix.runs)
+    return Head(
+        title="crankcheck: hard cases",
+        facts=(
+            *(f"{engine} {matrix.facts.get(engine, '')}".strip() for engine in engines),
+            count(len(matrix.cases), "case"),
+            count(len(matrix.runs), "run"),
+        ),
+        made=str(matrix.facts.get("made", "")),
+        first="map",
+    )
 
 
 def _rendered(report: Report, found: Mapping[str, Section | None]) -> str:
@@ -51,7 +95,24 @@ def _rendered(report: Report, found: Mapping[str, Section | None]) -> str:
 
 
 def render(report: Report, sections: Sequence[Section]) -> str:
-    """A page of some sections."""
+    """A page of some sections of a report."""
+    head = Head(
+        title="crankcheck report",
+        facts=(
+            *(f"{engine} {version}" for engine, version in report.engines.items()),
+            count(len(report.looks), "set of settings", "sets of settings"),
+            count(len(report.scenes), "scene"),
+            count(len(report.cells), "cell"),
+        ),
+        made=max((str(run.get("started", "")) for run in stored_runs(report)), default=""),
+        first="verdict",
+        looks=list(report.looks.values()),
+    )
+    return assembled(head, sections)
+
+
+def assembled(head: Head, sections: Sequence[Section]) -> str:
+    """A page of some sections under a head."""
     environment = _environment()
     bodies = [
         Markup(environment.get_template(f"sections/{one.template}").render(one.words))
@@ -61,10 +122,11 @@ def render(report: Report, sections: Sequence[Section]) -> str:
     early = _script("theme.js")
     late = "\n".join(_script(name) for name in names)
     plotly = _plotly() if any(one.plotly for one in sections) else ""
-    looks = [_shape(look) for look in report.looks.values()]
+    styles = dict.fromkeys(["page.css", *(style for one in sections for style in one.styles)])
+    looks = [_shape(look) for look in head.looks]
     return environment.get_template("page.html").render(
         policy=policy([script for script in (early, plotly, late) if script]),
-        style=Markup(_asset("page.css")),
+        style=Markup("\n".join(_asset(name) for name in styles)),
         early=Markup(early),
         plotly=Markup(plotly),
         late=Markup(late),
@@ -73,11 +135,7 @@ def render(report: Report, sections: Sequence[Section]) -> str:
             ("looks", embedded(looks)),
             *((one.anchor, embedded(one.embedded)) for one in sections if one.embedded),
         ],
-        cells=count(len(report.cells), "cell"),
-        scenes=count(len(report.scenes), "scene"),
-        engines=report.engines,
-        settings=count(len(report.looks), "set of settings", "sets of settings"),
-        made=max((str(run.get("started", "")) for run in stored_runs(report)), default=""),
+        head=head,
     )
 
 

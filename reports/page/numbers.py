@@ -62,8 +62,9 @@ def plain(value: object) -> object:
     number = float(value)  # type: ignore[arg-type]  # all that is left are numbers
     if not math.isfinite(number):
         return None
-    return int(number) if number.is_integer() and abs(number) < 1e15 else _rounded(number)
+    return _whole(number if number.is_integer() else float(f"{number:.{DIGITS}g}"))
 
 
-def _rounded(number: float) -> float:
-    return float(f"{number:.{DIGITS}g}")
+def _whole(number: float) -> float | int:
+    """A whole number without its point."""
+    return int(number) if number.is_integer() and abs(number) < 1e15 else number

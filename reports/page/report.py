@@ -17,14 +17,19 @@ from reports.choice.held import settings_told
 from reports.choice.lines import Line, Named, lines, named
 from reports.choice.recommend import TARGETS, Recommendation, recommendations
 from reports.page.looks import Look, looks
+from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
 
 @dataclass(frozen=True)
 class Report:
-    """A store as the page sees it: its newest lines, and the cells of those."""
+    """A store as the page sees it: its newest lines, and the cells of those.
+
+    ``matrix`` are the hard cases that were run beside it, if any.
+    """
 
     stored: Stored
+    matrix: Matrix | None = None
 
     @cached_property
     def lines(self) -> tuple[Line, ...]:

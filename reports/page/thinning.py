@@ -1,6 +1,8 @@
-"""Which cells of a line a page draws, when it can not hold all of them."""
+"""Which cells of a line, and which pictures, a page draws when it can not hold all of them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -33,3 +35,16 @@ def chosen(line: Line, sizes: dict[str, int], number: int) -> list[str]:
         return keys
     places = np.unique(np.round(np.linspace(0, len(keys) - 1, number)).astype(int))
     return [keys[place] for place in places]
+
+
+def fitting(order: Sequence[int], sizes: Sequence[int], room: int) -> list[int]:
+    """Which things a page holds, in their own order, when it takes them in the ``order`` given.
+
+    ``sizes`` says what each takes [characters]. One that does not fit makes way for smaller ones.
+    """
+    kept = []
+    for index in order:
+        if sizes[index] <= room:
+            room -= sizes[index]
+            kept.append(index)
+    return sorted(kept)

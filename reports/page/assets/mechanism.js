@@ -6,6 +6,7 @@ crankcheck.mechanism = (() => {
   const { svg, unpacked } = crankcheck;
   const MARGIN = 0.12; // room around what moves, over its size
   const FARTHEST = 0.6; // a magnified displacement is cut off here, over the size of the drawing
+  const CROWD = 24; // so many pins have no room for letters
   const TURNED = 0.7; // and a magnified turn of a block here [rad]
 
   /** A row at a position between samples. */
@@ -36,12 +37,15 @@ crankcheck.mechanism = (() => {
 
   /**
    * Draw into an SVG element. Gives `samples`, `degrees(position)`, and
-   * `show(position, overlays, factor)`, which draws overlays `{rows, paint}` and tells
-   * whether any of them was cut off.
+   * `show(position, overlays, factor)`, which draws overlays `{rows, paint, trail}` and tells
+   * whether any of them was cut off: at `reach` times the size of the drawing. With a `trail` the
+   * way that its points have come is drawn.
    */
-  return (element, drawing) => {
+  return (element, drawing, reach = FARTHEST) => {
     const scene = read(drawing);
     const samples = scene.crank_deg.length;
+    const names = [...Object.keys(scene.ground), ...scene.points];
+    element.classList.toggle("crowded", names.length > CROWD);
     const layers = ["paths", "ground", "guides", "reference", "overlays", "pins"].map((name) => svg("g", { class: name }));
     const [paths, ground, guides, reference, over, pins] = layers;
     element.replaceChildren(...layers);
@@ -69,11 +73,12 @@ crankcheck.mechanism = (() => {
       if (fixed) return fixed;
       const [xs, ys] = scene.rows.get(name);
       const exact = [between(xs, position), between(ys, position)];
+      if (!exact.every(Number.isFinite)) return null;
       if (!run) return exact;
       const row = 2 * scene.points.indexOf(name);
       const off = [0, 1].map((i) => run.factor * between(run.rows[row + i], position));
       if (!off.every(Number.isFinite)) return null;
-      const [moved, cut] = held(off, FARTHEST * scene.size);
+      const [moved, cut] = held(off, reach * scene.size);
       run.cut ||= cut;
       return [exact[0] + moved[0], exact[1] + moved[1]];
     }
@@ -110,9 +115,28 @@ crankcheck.mechanism = (() => {
       return [...found, ...blocks].filter(Boolean);
     }
 
+    /** A line through the places of a point, in parts where some are missing. */
+    function way(places, attributes) {
+      const parts = [[]];
+      for (const each of places) {
+        if (each) parts.at(-1).push(each);
+        else parts.push([]);
+      }
+      const d = parts.filter((each) => each.length).map((each) => `M${text(each)}`).join("");
+      return svg("path", { d, ...attributes });
+    }
+
+    /** The way that the points of a run have come. */
+    function trails(position, run) {
+      if (!run.trail) return [];
+      const past = [...Array(Math.floor(position) + 1).keys(), position];
+      return scene.points.map((name) => way(past.map((at) => place(name, at, run)), { class: "trail" }));
+    }
+
     /** The line of a guide, as far as its slider runs. */
     function guide(slider, position) {
-      const [x, y] = place(slider.point, position);
+      const [x, y] = place(slider.point, position) ?? [];
+      if (x === undefined) return "";
       const angle = direction(slider, position);
       const along = between(slider.along, position);
       const spare = 22 * pixel;
@@ -123,22 +147,22 @@ crankcheck.mechanism = (() => {
     /** What does not move: the paths of the points, and the ground's pins on their triangles. */
     function still() {
       fit();
-      paths.replaceChildren(...scene.points.map((name) => {
-        const [xs, ys] = scene.rows.get(name);
-        return path([...xs].map((x, i) => [x, ys[i]]), { class: "path" });
-      }));
+      const every = [...Array(samples).keys()];
+      paths.replaceChildren(...scene.points.map((name) => way(every.map((at) => place(name, at)), { class: "path" })));
       const foot = 11 * pixel;
       ground.replaceChildren(...Object.values(scene.ground).map(([x, y]) =>
         path([[x, y], [x - foot, y - 1.6 * foot], [x + foot, y - 1.6 * foot]], { class: "foot" }, true)));
     }
 
     function pin(name, position) {
-      const [x, y] = toScreen(place(name, position));
+      const found = place(name, position);
+      if (!found) return [];
+      const [x, y] = toScreen(found);
       const block = scene.sliders.some((slider) => slider.point === name);
       const away = block ? 15 : 8;
       return [
-        svg("circle", { class: "pin", cx: x, cy: y, r: 4 }),
-        svg("text", { class: "letter", x: x + away, y: y - away }, name),
+        svg("circle", { class: "pin", cx: x, cy: y, r: names.length > CROWD ? 2 : 4 }),
+        ...(names.length > CROWD ? [] : [svg("text", { class: "letter", x: x + away, y: y - away }, name)]),
       ];
     }
 
@@ -148,8 +172,8 @@ crankcheck.mechanism = (() => {
       reference.replaceChildren(...bodies(position));
       // Runs that lie on each other are seen as rims: the first is the widest.
       over.replaceChildren(...runs.map((run, i) =>
-        svg("g", { class: `run ${run.paint}`, "stroke-width": Math.min(2 + 2 * (runs.length - 1 - i), 6.5) }, ...bodies(position, run))));
-      const names = [...Object.keys(scene.ground), ...scene.points];
+        svg("g", { class: `run ${run.paint}`, "stroke-width": Math.min(2 + 2 * (runs.length - 1 - i), 6.5) },
+          ...trails(position, run), ...bodies(position, run))));
       pins.replaceChildren(...names.flatMap((name) => pin(name, position)));
       return runs.some((run) => run.cut);
     }

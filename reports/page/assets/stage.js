@@ -18,6 +18,7 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
   let position = 0;
   let clock = 0; // samples since the start of the round; beyond the last the stage rests
   let playing = false;
+  let ticket = 0; // of the next frame
   let before = null; // when the last frame was drawn
   let left = Infinity; // samples to go
   let greeted = false; // it has moved by itself once
@@ -47,7 +48,6 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
   }
 
   function frame(now) {
-    if (!playing) return;
     const last = mechanism.samples - 1;
     const round = last * (1 + rest);
     const moved = ((now - (before ?? now)) / lasts(mechanism)) * last;
@@ -60,18 +60,19 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
       run(false);
     }
     draw();
-    requestAnimationFrame(frame);
+    if (playing) ticket = requestAnimationFrame(frame);
   }
 
   /** Play or stop; `turns` is how often it goes round. */
   function run(on, turns = Infinity) {
-    const starts = on && !playing;
+    if (!mechanism) return;
+    if (on && !playing && position === home(mechanism)) stand(0);
     playing = on;
     before = null;
     left = turns * (mechanism.samples - 1) * (1 + rest);
-    if (on && home(mechanism) > 0 && position >= home(mechanism)) stand(0);
     play.textContent = on ? "Pause" : "Play";
-    if (starts) requestAnimationFrame(frame);
+    cancelAnimationFrame(ticket);
+    if (on) ticket = requestAnimationFrame(frame);
   }
 
   /** Go round once where motion is welcome. */

@@ -12,6 +12,7 @@ from reports.page.report import Report
 from reports.page.sections.base import Section
 from reports.page.sections.convergence import build as convergence
 from reports.page.sections.fairness import build as fairness
+from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
 from reports.page.sections.precision import build as precision
 from reports.page.sections.provenance import build as provenance
@@ -26,6 +27,7 @@ SECTIONS: dict[str, Callable[[Report], Section | None]] = {
     "convergence": convergence,
     "motion": motion,
     "stability": stability,
+    "hard": hard,
     "fairness": fairness,
     "provenance": provenance,
 }

@@ -12,7 +12,8 @@ class Section:
 
     ``template`` is a file of ``templates/sections``, rendered with ``words``. ``embedded`` is put
     into the page as JSON, to be read with ``crankcheck.embedded(anchor)``; ``scripts`` are files of
-    ``assets`` that the section needs, in order; ``plotly`` says that it draws diagrams.
+    ``assets`` that the section needs, in order, and ``styles`` its style sheets beside that of the
+    page; ``plotly`` says that it draws diagrams.
     """
 
     anchor: str
@@ -21,4 +22,5 @@ class Section:
     words: Mapping[str, object] = field(default_factory=dict)
     embedded: Mapping[str, object] | None = None
     scripts: tuple[str, ...] = ()
+    styles: tuple[str, ...] = ()
     plotly: bool = False

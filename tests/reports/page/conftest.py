@@ -14,8 +14,10 @@ from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_pla
 from rich.console import Console
 
 from reports.commands import sweep as command
-from reports.page.build import page
+from reports.page.build import page, stability_page
+from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
+from tests.reports.page import hard_runs
 
 STUDY = """
 scenes = ["fourbar-lecture-1", "shaper"]
@@ -71,6 +73,20 @@ def small_page(small: Stored, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of the small store, as a file."""
     path = tmp_path_factory.mktemp("page") / "report.html"
     path.write_text(page(small), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def hard_matrix() -> Matrix:
+    """Three scenes in ever larger steps, in both engines with both profiles."""
+    return hard_runs.matrix()
+
+
+@pytest.fixture(scope="session")
+def hard_page(hard_matrix: Matrix, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of the hard cases alone, as a file."""
+    path = tmp_path_factory.mktemp("hard") / "stability.html"
+    path.write_text(stability_page(hard_matrix), encoding="utf-8")
     return path
 
 

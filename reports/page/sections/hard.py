@@ -1,0 +1,156 @@
+"""Hard cases: a map of where each engine breaks, what happened there in motion, and the truths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from reports.page.embed import embedded
+from reports.page.heat import SHADES, amount, heat, kind, outcomes_seen, same, shade, sign
+from reports.page.numbers import count, error_text
+from reports.page.report import Report
+from reports.page.sections.base import Section
+from reports.page.thinning import fitting
+from reports.stability.critical import command
+from reports.stability.matrix import CaseFacts, Graded, Matrix, Picture
+from reports.stability.outcomes import MEANINGS
+
+ROOM = 800_000
+"""Characters for all moving pictures, where other sections need room as well."""
+SCRIPTS = ("mechanism.js", "stage.js", "copying.js", "map.js", "hard.js")
+
+
+def build(report: Report) -> Section | None:
+    """The section; None for a store without hard cases beside it."""
+    return None if report.matrix is None else hard(report.matrix)
+
+
+def hard(matrix: Matrix, room: int = ROOM) -> Section:
+    """The section of a matrix, its moving pictures in ``room`` characters."""
+    drawn = _drawn(matrix, room)
+    shown = [number for number, _ in drawn]
+    found = heat(matrix, frozenset(shown))
+    engines: dict[str, int] = {}
+    for column in found.columns:
+        engines[column.engine] = engines.get(column.engine, 0) + 1
+    known = {case.name: case for case in matrix.cases}
+    return Section(
+        anchor="hard",
+        title="Hard cases",
+        template="hard.html",
+        words={
+            "columns": found.columns,
+            "engines": engines,
+            "groups": found.groups,
+            "legend": [
+                (sign(name), kind(name), name, _meaning(name), number)
+                for name, number in outcomes_seen(matrix).items()
+            ],
+            "shades": [f"below {error_text(SHADES[0], 1)}", *map(_from, SHADES)],
+            "failures": _failures(matrix, shown),
+            "left_out": count(len(matrix.pictures) - len(drawn), "moving picture"),
+            "thinned": len(drawn) < len(matrix.pictures),
+            "cases": matrix.cases,
+            "facts": matrix.facts,
+        },
+        embedded={
+            "cases": {name: _case(case) for name, case in known.items()},
+            "runs": [_run(known.get(run.case), run) for run in matrix.runs],
+            **_pictures(drawn),
+        },
+        scripts=SCRIPTS,
+        styles=("map.css",),
+    )
+
+
+def _meaning(outcome: str) -> str:
+    """What an outcome means, in words."""
+    known = (meaning for name, meaning in MEANINGS.items() if name == outcome)
+    return next(known, "not known to this page")
+
+
+def _from(error: float) -> str:
+    return f"from {error_text(error, 1) if error < 1.0 else '1'}"
+
+
+def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
+    """The pictures that are shown with the numbers of their runs, in the order of the map.
+
+    Where the room is short, the easiest failures of each case in each engine come first: they
+    are where it breaks.
+    """
+    places = {case.name: index for index, case in enumerate(matrix.cases)}
+    lines = {(run.engine, run.profile): None for run in matrix.runs}
+    columns = {line: index for index, line in enumerate(lines)}
+    found = []
+    for picture in matrix.pictures:
+        number = _number(matrix, picture)
+        if number is not None and picture.case in places:
+            found.append((number, picture))
+    found.sort(key=lambda x: (places[x[1].case], columns[x[1].engine, x[1].profile], x[0]))
+    ranks: dict[tuple[str, str, str], int] = {}
+    order = []
+    for index, (_, one) in enumerate(found):
+        line = (one.case, one.engine, one.profile)
+        ranks[line] = ranks.get(line, 0) + 1
+        order.append((ranks[line], index))
+    sizes = [len(embedded([one.drawing, one.rows])) for _, one in found]
+    return [found[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
+
+
+def _number(matrix: Matrix, picture: Picture) -> int | None:
+    """The number of the run that a picture is of."""
+    wanted = (picture.case, picture.engine, picture.profile)
+    for number, run in enumerate(matrix.runs):
+        if (run.case, run.engine, run.profile) == wanted and same(run.value, picture.value):
+            return number
+    return None
+
+
+def _pictures(drawn: Sequence[tuple[int, Picture]]) -> dict[str, object]:
+    """The pictures as the page reads them; a truth that several share is there once."""
+    drawings: dict[str, tuple[int, Mapping[str, object]]] = {}
+    pictures = []
+    for number, picture in drawn:
+        key = str(embedded(picture.drawing))
+        index, _ = drawings.setdefault(key, (len(drawings), picture.drawing))
+        pictures.append(
+            {"run": number, "drawing": index, "rows": picture.rows, "title": picture.title}
+        )
+    return {"drawings": [drawing for _, drawing in drawings.values()], "pictures": pictures}
+
+
+def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int, str]]]:
+    """The runs with a picture by the title of their case: number, and what the choice says."""
+    found: dict[str, list[tuple[int, str]]] = {}
+    for number in shown:
+        run = matrix.runs[number]
+        case = matrix.case(run.case)
+        words = f"{run.engine} {run.profile}, {amount(run.value, case.unit)}: {run.outcome}"
+        found.setdefault(case.title, []).append((number, words))
+    return found
+
+
+def _case(case: CaseFacts) -> dict[str, object]:
+    """What the scripts need of a case."""
+    return {
+        "title": case.title,
+        "parameter": case.parameter,
+        "unit": case.unit,
+        "within": case.within,
+        "good": ", ".join(case.good),
+    }
+
+
+def _run(case: CaseFacts | None, run: Graded) -> dict[str, object]:
+    """What the scripts need of a run."""
+    return {
+        **vars(run),
+        "value_told": amount(run.value, case.unit if case else ""),
+        "sign": sign(run.outcome),
+        "kind": kind(run.outcome),
+        "shade": shade(run.error),
+        "held": case is not None and run.outcome in case.good,
+        "at_deg": None if run.at_driver_rad is None else math.degrees(run.at_driver_rad),
+        "command": command(run),
+    }

@@ -1,0 +1,318 @@
+"""The page of hard cases as a file: what its map says, also of odd matrices."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+from reports.page import build
+from reports.page.build import page, stability_page
+from reports.page.embed import embedded
+from reports.page.heat import SHADES, SIGNS, heat, same, shade
+from reports.page.numbers import plain
+from reports.page.sections import SECTIONS
+from reports.page.sections.hard import hard
+from reports.page.thinning import fitting
+from reports.stability.critical import command
+from reports.stability.matrix import FILE, OUTCOMES, Matrix, Picture, read_matrix, to_json
+from reports.stability.outcomes import MEANINGS
+from reports.store.reader import Stored
+from tests.reports.page.test_page import EVIL, MEGABYTES_8, Outline
+
+
+@pytest.fixture(scope="module")
+def text(hard_matrix: Matrix) -> str:
+    return stability_page(hard_matrix)
+
+
+def buttons(text: str) -> dict[int, dict[str, str | None]]:
+    """The cells of the map by the number of their run."""
+    return {
+        int(each["data-run"] or ""): each
+        for each in Outline(text).named("button")
+        if "data-run" in each
+    }
+
+
+def carried(text: str) -> dict[str, list[dict[str, object]]]:
+    """What the page of hard cases carries for its scripts."""
+    found = re.search(r'id="embedded-hard">(.*?)</script>', text, re.DOTALL)
+    assert found
+    return json.loads(found.group(1))
+
+
+def one_case(matrix: Matrix, **run: object) -> Matrix:
+    """The first run of a matrix alone, changed, with its case of one value."""
+    first = replace(matrix.runs[0], **run)
+    case = replace(matrix.cases[0], values=(first.value,), labels=(first.label,))
+    return Matrix(matrix.facts, (case,), (first,), ())
+
+
+def test_every_outcome_has_a_sign_of_its_own_and_a_meaning() -> None:
+    assert set(SIGNS) == set(MEANINGS) == set(OUTCOMES)
+    assert len(set(SIGNS.values())) == len(OUTCOMES)
+
+
+def test_the_page_stands_alone(text: str, hard_matrix: Matrix) -> None:
+    outline = Outline(text)
+    assert outline.open == []
+    assert [each["id"] for each in outline.named("section")] == ["hard"]
+    ids = [attributes["id"] for _, attributes in outline.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'aria-labelledby="([^"]+)"', text)) <= set(ids)
+    assert "3 cases, 60 runs" in text
+    assert all(value in text for value in hard_matrix.facts.values())
+    assert len(text) < 500_000  # without Plotly
+
+
+def test_there_is_a_cell_for_each_run_of_the_grid_and_it_says_how_it_went(
+    text: str, hard_matrix: Matrix
+) -> None:
+    found = buttons(text)
+    grid = {number for number, run in enumerate(hard_matrix.runs) if run.grid}
+    assert set(found) == grid
+    assert len(grid) < len(hard_matrix.runs)
+    for number in grid:
+        run, cell = hard_matrix.runs[number], found[number]
+        words, classes = cell["aria-label"] or "", (cell["class"] or "").split()
+        assert words == cell["title"]
+        assert f"{run.value:g}, {run.engine} {run.profile}: {run.outcome}" in words
+        assert ("(holds)" in words) == (run.outcome == "ok") == ("held" in classes)
+        assert f"error {run.error:.1e}".replace("e-0", "e-").replace("e+00", "e0") in words
+        assert run.reason in words
+        assert f"s{shade(run.error)}" in classes
+        assert f"o-{run.outcome}" in classes
+        assert ("pictured" in classes) == (run.outcome != "ok")
+
+
+def test_the_map_is_a_table_of_cases_by_engine_and_profile(text: str, hard_matrix: Matrix) -> None:
+    outline = Outline(text)
+    scopes = [each.get("scope") for each in outline.named("th")]
+    assert scopes.count("row") == len(hard_matrix.cases)
+    assert scopes.count("rowgroup") == 2
+    assert scopes.count("colgroup") == 2
+    assert scopes.count("col") == 1 + 4
+    found = heat(hard_matrix)
+    assert [column.name for column in found.columns][:2] == ["mujoco as-shipped", "mujoco tuned"]
+    assert found.columns[1].words == "holds 3 of 3 cases throughout"
+    assert found.columns[0].words == "holds 0 of 3 cases throughout"
+    for one in hard_matrix.critical:
+        assert one.words in text
+
+
+def test_each_failure_has_its_picture_and_a_shared_truth_is_carried_once(
+    text: str, hard_matrix: Matrix
+) -> None:
+    found = carried(text)
+    failed = [n for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
+    assert sorted(picture["run"] for picture in found["pictures"]) == failed
+    assert len(failed) > 10
+    assert len(found["drawings"]) < len(failed)
+    options = [each["value"] for each in Outline(text).named("option")]
+    assert set(map(str, failed)) <= set(options)
+    run = found["runs"][failed[0]]
+    assert run["command"] == command(hard_matrix.runs[failed[0]])
+
+
+def test_a_matrix_that_was_stored_gives_the_same_page(
+    hard_matrix: Matrix, text: str, tmp_path: pytest.TempPathFactory
+) -> None:
+    drawn = [
+        replace(one, drawing=plain(one.drawing), rows=plain(one.rows))
+        for one in hard_matrix.pictures
+    ]
+    (tmp_path / FILE).write_text(to_json(replace(hard_matrix, pictures=tuple(drawn))))
+    assert stability_page(read_matrix(tmp_path)) == text
+
+
+@pytest.mark.parametrize(
+    ("error", "wanted"),
+    [(0.0, 0), (9e-7, 0), (1e-6, 1), (5e-3, 2), (1e-2, 3), (1.0, 4), (1e9, 4)],
+)
+def test_the_shade_follows_the_power_of_the_error(error: float, wanted: int) -> None:
+    assert shade(error) == wanted
+    assert len(SHADES) == 4
+
+
+@pytest.mark.parametrize("error", [math.nan, math.inf, None])
+def test_an_error_that_is_no_number_has_a_look_of_its_own(
+    hard_matrix: Matrix, error: float | None
+) -> None:
+    (cell,) = buttons(stability_page(one_case(hard_matrix, error=error))).values()
+    assert "blank" in (cell["class"] or "").split()
+    assert "error \N{EN DASH}" in (cell["title"] or "")
+
+
+def test_a_run_without_any_number_is_shown(hard_matrix: Matrix) -> None:
+    lost = dict.fromkeys(
+        ("error", "gap", "drive", "sine", "at_s", "at_driver_rad", "dt_s", "wall_s"), math.nan
+    )
+    for numbers in (lost, dict.fromkeys(lost)):
+        found = carried(stability_page(one_case(hard_matrix, **numbers)))["runs"][0]
+        assert {found[name] for name in lost} == {None}
+        assert found["at_deg"] is None
+
+
+def test_a_value_that_is_no_number_is_found_again(hard_matrix: Matrix) -> None:
+    assert same(None, math.nan)
+    assert not same(1.0, math.nan)
+    assert not same(1.0, None)
+    (cell,) = buttons(stability_page(one_case(hard_matrix, value=math.nan))).values()
+    assert (cell["title"] or "").startswith("nan, mujoco")
+
+
+def test_an_outcome_that_is_not_known_is_shown_as_such(hard_matrix: Matrix) -> None:
+    text = stability_page(one_case(hard_matrix, outcome=f"{EVIL} exploded"))
+    (cell,) = buttons(text).values()
+    assert "o-strange" in (cell["class"] or "").split()
+    assert "exploded (fails)" in (cell["title"] or "")
+    assert "not known to this page" in text
+    assert Outline(text).named("img") == []
+
+
+def test_what_a_good_engine_does_is_held_whatever_it_is_called(hard_matrix: Matrix) -> None:
+    locked = one_case(hard_matrix, outcome="locked")
+    right = replace(locked, cases=(replace(locked.cases[0], good=("locked",)),))
+    for matrix, state in ((locked, "failed"), (right, "held")):
+        (cell,) = buttons(stability_page(matrix)).values()
+        assert state in (cell["class"] or "").split()
+        assert "o-locked" in (cell["class"] or "").split()
+    assert "right: locked" in stability_page(right)
+
+
+def test_a_value_that_was_not_run_says_so(hard_matrix: Matrix) -> None:
+    text = stability_page(replace(hard_matrix, runs=hard_matrix.runs[1:]))
+    assert 'title="360: not run"' in text
+    assert (
+        heat(replace(hard_matrix, runs=hard_matrix.runs[1:]))
+        .columns[0]
+        .words.startswith("holds 0 of 3")
+    )
+
+
+def test_a_matrix_of_one_run_and_no_picture_has_a_page(hard_matrix: Matrix) -> None:
+    text = stability_page(one_case(hard_matrix))
+    assert Outline(text).open == []
+    assert "hard-failures" not in text.split("<script>")[2]
+    assert "1 case, 1 run;" in text
+
+
+def test_a_matrix_of_nothing_has_a_page(hard_matrix: Matrix) -> None:
+    text = stability_page(Matrix({}, (), (), ()))
+    assert Outline(text).open == []
+    assert "0 cases, 0 runs" in text
+
+
+def test_long_reasons_are_cut_in_the_map_and_whole_where_the_run_is_told(
+    hard_matrix: Matrix,
+) -> None:
+    reason = "it broke " * 300
+    text = stability_page(one_case(hard_matrix, reason=reason))
+    (cell,) = buttons(text).values()
+    assert len(cell["title"] or "") < 400
+    assert carried(text)["runs"][0]["reason"] == reason
+
+
+def evil(matrix: Matrix) -> Matrix:
+    """The matrix with hostile text wherever a file may have it."""
+    names = {case.name: f"{EVIL}{case.name}" for case in matrix.cases}
+    bad = ("group", "title", "source", "truth", "expected", "parameter", "unit")
+    return Matrix(
+        facts={EVIL: EVIL, "made": EVIL},
+        cases=tuple(
+            replace(
+                case,
+                name=names[case.name],
+                labels=tuple(f"{EVIL}{label}" for label in case.labels),
+                **{name: f"{EVIL}{getattr(case, name)}" for name in bad},
+            )
+            for case in matrix.cases
+        ),
+        runs=tuple(
+            replace(
+                run,
+                case=names[run.case],
+                engine=f"{EVIL}{run.engine}",
+                profile=f"{EVIL}{run.profile}",
+                label=EVIL,
+                reason=EVIL,
+            )
+            for run in matrix.runs
+        ),
+        critical=tuple(
+            replace(
+                one,
+                case=names[one.case],
+                engine=f"{EVIL}{one.engine}",
+                profile=f"{EVIL}{one.profile}",
+                words=EVIL,
+            )
+            for one in matrix.critical
+        ),
+        pictures=tuple(
+            replace(
+                one,
+                case=names[one.case],
+                engine=f"{EVIL}{one.engine}",
+                profile=f"{EVIL}{one.profile}",
+                title=EVIL,
+                drawing={**one.drawing, "name": EVIL},
+            )
+            for one in matrix.pictures
+        ),
+    )
+
+
+def test_hostile_text_is_shown_and_not_read(hard_matrix: Matrix) -> None:
+    text = stability_page(evil(hard_matrix))
+    outline = Outline(text)
+    assert outline.open == []
+    assert outline.named("img") == []
+    assert not [each for _, each in outline.elements if "onerror" in each]
+    ours = [each for each in outline.named("script") if each.get("type") != "application/json"]
+    assert len(ours) == 2  # the theme, ours
+    assert len(buttons(text)) == 48
+
+
+def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
+    small: Stored, hard_matrix: Matrix
+) -> None:
+    without, found = page(small), page(small, hard_matrix)
+    assert [each["id"] for each in Outline(found).named("section")] == list(SECTIONS)
+    parts = [re.findall(r"<section.*?</section>", text, re.DOTALL) for text in (without, found)]
+    assert parts[0] == [part for part in parts[1] if not part.startswith('<section id="hard"')]
+
+
+def test_what_does_not_fit_makes_way_and_the_first_failures_stay(hard_matrix: Matrix) -> None:
+    room = 30_000
+    section = hard(hard_matrix, room)
+    numbers = [picture["run"] for picture in section.embedded["pictures"]]
+    assert 0 < len(numbers) < len(hard_matrix.pictures)
+    lines = {hard_matrix.runs[n].case + hard_matrix.runs[n].profile for n in numbers}
+    assert len(lines) > len(numbers) / 3
+    shown = [section.embedded[name] for name in ("pictures", "drawings")]
+    assert len(embedded(shown)) < room + 40 * len(numbers)
+    assert section.words["thinned"]
+    assert not hard(hard_matrix).words["thinned"]
+    assert fitting([0, 1, 2], [5, 5, 1], 6) == [0, 2]
+    assert fitting([1, 2, 0], [5, 5, 1], 6) == [1, 2]
+
+
+def test_a_page_of_many_large_pictures_is_below_8_megabytes(
+    hard_matrix: Matrix, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = hard_matrix.pictures[0]
+    wide = {**first.drawing, "places": {"base64": "A" * 200_000}}
+    many: list[Picture] = [
+        replace(one, drawing={**wide, "name": str(i)})
+        for i, one in enumerate(hard_matrix.pictures * 2)
+    ]
+    heavy = replace(hard_matrix, pictures=tuple(many))
+    text = stability_page(heavy)
+    assert 4_000_000 < len(text.encode()) < MEGABYTES_8
+    monkeypatch.setattr(build, "MOST_BYTES", 2_000_000)
+    assert len(stability_page(heavy).encode()) < 2_000_000
