@@ -161,6 +161,18 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True)
+class Energy:
+    """Kinetic and potential energy [J], (T,), both at the instants that velocities belong to."""
+
+    kinetic_j: Array
+    potential_j: Array
+
+    @property
+    def total_j(self) -> Array:
+        return self.kinetic_j + self.potential_j
+
+
+@dataclass(frozen=True)
 class Cost:
     """Wall time of stepping [s] and the steps it took; logging is part of it when ``logged``."""
 
@@ -183,6 +195,7 @@ class Run:
     is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
     logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
     that the run was given, and takes to be run again; ``settings`` what the engine then held.
+    ``energy`` is kept of free motion, where nothing adds to it.
     """
 
     scene: str
@@ -206,3 +219,4 @@ class Run:
     steps: int = 0
     every: int = 1
     reports_accelerations: bool = True
+    energy: Energy | None = None

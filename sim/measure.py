@@ -34,7 +34,7 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     then, accelerations with the velocities of now.
     """
     with np.errstate(all="ignore"):  # what has come apart may overflow; it is judged, not warned of
-        return _motion(scene, poses, _at_now(poses), _at_then(poses))
+        return _motion(scene, poses, _at_now(poses), at_velocities(poses))
 
 
 def _motion(scene: Scene, poses: Poses, now: Poses, then: Poses) -> Motion:
@@ -68,7 +68,7 @@ def _at_now(poses: Poses) -> Poses:
     return poses if lag == 0.0 else _each(poses, back)
 
 
-def _at_then(poses: Poses) -> Poses:
+def at_velocities(poses: Poses) -> Poses:
     """The poses moved on to the instants of their velocities."""
     lag = poses.lag_s
 

@@ -17,6 +17,7 @@ from models.motion import State
 from models.scene import Scene
 from sim.check import refuse_other_model
 from sim.drive import pace, period
+from sim.energy import energy
 from sim.engine import (
     BodyPose,
     Cost,
@@ -213,6 +214,7 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
         reason=reason,
         motion=motion(scene, poses),
         gaps=gaps(scene, poses),
+        energy=energy(scene, poses) if blank.drive == "free" else None,
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
         acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
         stopped_at_s=float(poses.time_s[-1]),

@@ -1,0 +1,38 @@
+"""The mechanical energy of an engine's bodies, from the masses of the scene and their motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.joints import block_name, bodies
+from models.poses import centre_of, mass_of
+from models.scene import Scene
+from sim.engine import Energy, Poses
+from sim.measure import at_velocities
+
+
+def energy(scene: Scene, poses: Poses) -> Energy:
+    """Kinetic and potential energy of all bodies [J], both at the instants of the velocities.
+
+    Where velocities lag, the positions are moved on to them, which is good to the second order of
+    the step. Heights count from the origin against gravity. A crank that a drive carries counts
+    with the mass of its link.
+    """
+    then = at_velocities(poses)
+    moving = {**then.links, **{block_name(scene.sliders[n]): p for n, p in then.blocks.items()}}
+    kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
+    gravity = np.array(scene.gravity_m_s2)
+    with np.errstate(all="ignore"):  # what has come apart may overflow
+        for body in bodies(scene):
+            pose, (mass, inertia), (x, y) = (
+                moving[body],
+                mass_of(scene, body),
+                centre_of(scene, body),
+            )
+            c, s = np.cos(pose.theta), np.sin(pose.theta)
+            arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
+            across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
+            speed = pose.velocity + pose.omega[:, None] * across
+            kinetic += 0.5 * mass * (speed**2).sum(axis=1) + 0.5 * inertia * pose.omega**2
+            potential -= mass * (pose.origin + arm) @ gravity
+    return Energy(kinetic, potential)

@@ -1,0 +1,300 @@
+"""Free motion: nothing drives the crank, and the engines still have to follow the closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from analytic.windows import Turning
+from models.errors import EngineError
+from models.files import load_scene
+from models.laws import ConstantSpeed, Oscillating
+from models.mjcf_options import has_control
+from models.motion import State
+from models.scene import Driver, Scene
+from models.windows import Chain
+from sim import mujoco_settings
+from sim.check import refuse_other_model
+from sim.drive import pace, period
+from sim.engine import Engine, Poses, Run, Session
+from sim.registry import ENGINES, engine
+from sim.run import run, time_run
+from sim.settings import resolved
+
+DT_S = 1e-3
+
+
+def start_of(chain: Chain) -> State:
+    return Turning(chain).motion(np.array([0.0])).state(0)
+
+
+def ran(chain: Chain, engine: Any, profile: str = "tuned", **given: Any) -> Run:
+    """A free run of 0.4 s of 1 ms steps unless told otherwise: the rods lean by 55 deg then."""
+    given = {"dt_s": DT_S, "steps": 400, "drive": "free", **given}
+    return run(chain.scene(), start_of(chain), engine, profile, **given)
+
+
+def angle_error(chain: Chain, dt_s: float, name: str) -> float:
+    """The largest error of any rod, in rad."""
+    result = ran(chain, name, dt_s=dt_s, steps=round(0.4 / dt_s))
+    assert (result.status, result.reason) == ("ok", "")
+    assert result.motion is not None
+    exact = Turning(chain).motion(result.motion.time_s)
+    rods = result.motion.links.items()
+    return max(float(np.abs(rod.theta - exact.links[k].theta).max()) for k, rod in rods)
+
+
+@pytest.fixture(params=[*ENGINES, "fake"])
+def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
+    """The engines, and one that follows the chain of two windows by itself."""
+    name = str(request.param)
+    if name in ENGINES:
+        return engine(name)
+    exact = Turning(Chain(2))
+    made: Engine = fake_engine.FakeEngine(lambda _, t: exact.motion(t), velocity_shift=0.5)
+    return made
+
+
+def opened(adapter: Engine, chain: Chain, profile: str = "tuned") -> Session:
+    settings = resolved(adapter.profiles[profile], None)
+    return adapter.open(chain.scene(), start_of(chain), settings, DT_S, "free")
+
+
+def numbers(poses: Poses) -> np.ndarray:
+    rows = [
+        (b.origin, b.velocity, b.theta[:, None], b.omega[:, None]) for b in poses.links.values()
+    ]
+    return np.concatenate([part for row in rows for part in row], axis=1)
+
+
+def test_a_free_session_starts_as_the_state_with_the_mass_of_every_link(adapter: Engine) -> None:
+    chain = Chain(2)
+    facts = opened(adapter, chain).facts()
+    refuse_other_model(chain.scene(), start_of(chain), facts, DT_S, "free")
+    assert facts.mass_kg == dict.fromkeys(chain.scene().links, 1.0)
+    assert facts.inertia_kg_m2 == pytest.approx(dict.fromkeys(chain.scene().links, 1.0 / 12.0))
+
+
+@pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
+def test_free_sessions_step_as_they_record_and_go_on_where_they_were(
+    adapter: Engine, profile: str
+) -> None:
+    stepped, recorded, whole = (opened(adapter, Chain(2), profile) for _ in range(3))
+    stepped.step(60)
+    first, second = recorded.record(20, 1), recorded.record(40, 1)
+    one = numbers(whole.record(60, 1).poses)
+    two = np.concatenate([numbers(first.poses), numbers(second.poses)[1:]])
+    np.testing.assert_allclose(two, one, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(numbers(stepped.read()), one[-1:], rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize(("name", "order", "most"), [("mujoco", 4.0, 1e-10), ("pymunk", 2.0, 2e-5)])
+def test_a_rod_falls_as_a_pendulum_does(name: str, order: float, most: float) -> None:
+    """No loop to close: the order is that of the integrator."""
+    rough, fine = angle_error(Chain(0), 8e-3, name), angle_error(Chain(0), 2e-3, name)
+    assert np.log(rough / fine) / np.log(4.0) == pytest.approx(order, abs=0.2)
+    assert fine < most
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize(("name", "order", "most"), [("mujoco", 2.0, 2e-8), ("pymunk", 2.0, 5e-6)])
+def test_free_windows_converge_to_the_reduced_equation(
+    name: str, order: float, most: float, count: int
+) -> None:
+    rough, fine = angle_error(Chain(count), 4e-3, name), angle_error(Chain(count), 1e-3, name)
+    assert np.log(rough / fine) / np.log(4.0) > order - 0.2
+    assert fine < most
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_mass_of_the_crank_counts(name: str) -> None:
+    """Ten times the mass of rocker0 alone: another motion than that of the chain."""
+    chain = Chain(1)
+    scene = chain.scene()
+    crank = scene.links["rocker0"]
+    heavy = replace(crank, mass_kg=10.0, inertia_kg_m2=10.0 / 12.0)
+    laden = replace(scene, links={**scene.links, "rocker0": heavy})
+    result = run(laden, start_of(chain), name, dt_s=DT_S, steps=400, drive="free")
+    assert result.motion is not None
+    weight, inertia = 10.0 / 2 + 1.0 / 2 + 1.0, 10.0 / 3 + 1.0 / 3 + 1.0
+    kappa = 9.81 * weight / inertia
+    found, lighter = result.motion.links["rocker1"].theta[-1], Turning(chain).stiffness
+    assert abs(found - pendulum(kappa, 0.4)) < 1e-4
+    assert abs(pendulum(kappa, 0.4) - pendulum(lighter, 0.4)) > 0.02
+
+
+def pendulum(kappa: float, time_s: float) -> float:
+    """The angle of the rods after a fall under kappa: that of a chain under another gravity."""
+    turning = Turning(Chain(1))
+    like = Turning(Chain(1, gravity_m_s2=9.81 * kappa / turning.stiffness))
+    return float(like.at(np.array([time_s]))[0][0])
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
+    """Neither in the motion, nor in what step is too long or what speed is too high."""
+    chain = Chain(1)
+    given = {"dt_s": DT_S, "steps": 300, "drive": "free"}
+    motions = []
+    for law in (ConstantSpeed(0.0, 1e-9), Oscillating(3.0, 0.1, 1e6)):
+        scene = replace(chain.scene(), driver=Driver("rocker0", law))
+        result = run(scene, start_of(chain), name, **given)  # type: ignore[arg-type]
+        assert result.status == "ok"
+        assert result.motion is not None
+        motions.append(result.motion.links["rocker1"].theta)
+    np.testing.assert_array_equal(*motions)
+
+
+def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleType) -> None:
+    chain = Chain(1)
+    fake = fake_engine.FakeEngine(lambda _, t: Turning(chain).motion(t))
+    facts = opened(fake, chain).facts()
+    told = (chain.scene(), start_of(chain))
+    without = {k: v for k, v in facts.mass_kg.items() if k != "rocker0"}
+    refuse_other_model(*told, replace(facts, mass_kg=without), DT_S, "prescribed")
+    with pytest.raises(EngineError, match="rocker0 has no mass_kg"):
+        refuse_other_model(*told, replace(facts, mass_kg=without), DT_S, "free")
+    session: Any = opened(engine("mujoco"), chain)
+    session._model.dof_armature[session._crank] = 0.01
+    with pytest.raises(EngineError, match=r"rocker0 has inertia_kg_m2 0\.0933333, not 0\.0833333"):
+        refuse_other_model(*told, session.facts(), DT_S, "free")
+
+
+def test_the_mjcf_of_a_free_crank_has_neither_flywheel_nor_motor() -> None:
+    chain = Chain(2)
+    swinging = replace(chain.scene(), driver=Driver("rocker0", Oscillating(1.0, 0.5, 2.0)))
+    held = resolved(engine("mujoco").profiles["as-shipped"], None)
+    for scene in (chain.scene(), swinging):
+        free = mujoco_settings.text(scene, start_of(chain), held, DT_S, "free")
+        driven = mujoco_settings.text(scene, start_of(chain), held, DT_S)
+        assert "armature" in driven
+        assert "armature" not in free
+        assert "actuator" not in free
+        assert 'tolerance="1e-08"' in free  # MuJoCo's own: it is scaled for a flywheel only
+        writing = mujoco_settings.writing(scene, held, DT_S, "free")
+        assert not has_control(scene, writing)
+    settings = ran(chain, "mujoco", "as-shipped", steps=10).settings
+    assert settings["tolerance"] == 1e-8
+    assert not {"flywheel_ratio", "servo_gain", "servo_integrator"} & settings.keys()
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_free_crank_without_mass_is_unsupported(name: str) -> None:
+    scene = Chain(1).scene()
+    bare = replace(scene.links["rocker0"], mass_kg=0.0, inertia_kg_m2=0.0)
+    light = replace(scene, links={**scene.links, "rocker0": bare})
+    result = run(light, start_of(Chain(1)), name, dt_s=DT_S, steps=10, drive="free")
+    assert result.status == "unsupported"
+    assert "rocker0: mass_kg 0" in result.reason
+
+
+def test_the_pace_of_free_motion_comes_from_the_state_and_from_gravity() -> None:
+    chain = Chain(1)
+    scene, state = chain.scene(), start_of(chain)
+    assert pace(scene, state, "prescribed") == 1.0
+    assert pace(scene, state, "free") == pytest.approx(np.sqrt(9.81))
+    fast = replace(state, omega={**state.omega, "rocker1": -50.0})
+    assert pace(scene, fast, "free") == 50.0
+    pushed = replace(state, alpha={**state.alpha, "rocker1": -400.0})
+    assert pace(scene, pushed, "free") == 20.0
+    assert period(scene, fast, "free") == pytest.approx(2.0 * np.pi / 50.0)
+    still = replace(state, omega=dict.fromkeys(state.omega, 0.0))
+    weightless = replace(scene, gravity_m_s2=(0.0, 0.0))
+    assert (pace(weightless, still, "free"), period(weightless, still, "free")) == (0.0, np.inf)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_steps_too_long_for_the_fall_are_refused(name: str) -> None:
+    with pytest.raises(EngineError, match=r"dt: 0\.5 s leaves 4 steps in a period of 2\.006 s"):
+        ran(Chain(1), name, dt_s=0.5)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_what_rests_without_weight_goes_on_resting(name: str) -> None:
+    chain = Chain(1, gravity_m_s2=0.0)
+    start = start_of(chain)
+    still = replace(
+        start,
+        omega=dict.fromkeys(start.omega, 0.0),
+        velocity=dict.fromkeys(start.velocity, (0.0, 0.0)),
+        acceleration=dict.fromkeys(start.acceleration, (0.0, 0.0)),
+    )
+    result = run(chain.scene(), still, name, dt_s=DT_S, steps=100, drive="free")
+    assert result.status == "ok"
+    assert result.motion is not None
+    assert np.ptp(result.motion.links["rocker0"].theta) < 1e-12
+
+
+def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None:
+    """Measured by the pace of the fall, 3.1 rad/s, and not by the driver's 1 rad/s."""
+
+    def spun(by: float) -> Any:
+        def faster(poses: Poses) -> Poses:
+            rod = poses.links["rocker1"]
+            at = np.where(poses.time_s > 0.2, by, rod.omega)
+            return replace(poses, links={**poses.links, "rocker1": replace(rod, omega=at)})
+
+        exact = Turning(Chain(1))
+        return fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=faster)
+
+    assert ran(Chain(1), spun(2e6)).status == "ok"
+    apart = ran(Chain(1), spun(4e6))
+    assert (apart.status, apart.stopped_at_s) == ("diverged", pytest.approx(0.2))
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_free_runs_can_be_timed(name: str) -> None:
+    given: dict[str, Any] = {"dt_s": DT_S, "steps": 100, "repeats": 2, "drive": "free"}
+    bare = time_run(Chain(1).scene(), start_of(Chain(1)), name, **given)
+    assert len(bare.walls_s) == 2
+    assert 0.1 < bare.best.us_per_step < 5000.0
+
+
+@pytest.mark.parametrize(
+    ("name", "profile"), [("mujoco", "tuned"), ("mujoco", "as-shipped"), ("pymunk", "tuned")]
+)
+def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_velocities(
+    name: str, profile: str
+) -> None:
+    """MuJoCo's Euler steps have velocities half a step early, pymunk's are half a step late."""
+    turning, offs = Turning(Chain(0)), []
+    for dt_s in (4e-3, 1e-3):
+        result = ran(Chain(0), name, profile, dt_s=dt_s, steps=round(0.4 / dt_s))
+        assert result.energy is not None
+        assert result.motion is not None
+        assert result.velocity_time_s is not None
+        theta, omega, _ = turning.at(result.velocity_time_s)
+        kinetic, height = omega**2 / 6, 0.5 * np.sin(theta)
+        pairs = (
+            (result.energy.kinetic_j, kinetic),
+            (result.energy.potential_j, 9.81 * height),
+            (result.energy.total_j, turning.energy(theta, omega)),
+        )
+        offs.append(max(float(np.abs(found - exact).max()) for found, exact in pairs))
+    assert offs[1] < min(2e-4, offs[0] / 12.0)
+    early = 9.81 * (height - 0.5 * np.sin(turning.at(result.motion.time_s)[0]))
+    if result.velocity_time_s[0] != 0.0:  # the heights of the positions' own instants would be off
+        assert np.abs(early).max() > 10.0 * offs[1]
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_energy_of_a_driven_run_is_not_kept(name: str) -> None:
+    assert ran(Chain(1), name, drive="prescribed", steps=10).energy is None
+
+
+def test_a_slider_crank_that_coasts_keeps_the_energy_of_its_links_and_block() -> None:
+    scene: Scene = load_scene("slider-crank-offset")
+    assert max(slider.mass_kg for slider in scene.sliders.values()) > 0.0
+    state = solve(scene, np.array([0.0])).state(0)
+    result = run(scene, state, "mujoco", dt_s=1e-4, steps=7000, every=10, drive="free")
+    assert result.energy is not None
+    assert result.motion is not None
+    energy, crank = result.energy.total_j, result.motion.links[scene.driver.link]
+    assert np.abs(energy / energy[0] - 1.0).max() < 1e-5
+    assert np.ptp(crank.omega) > 0.3 * np.abs(crank.omega).max()
+    assert np.ptp(crank.theta) > 2.0 * np.pi
