@@ -77,7 +77,7 @@ def _damaged(report: Report) -> Iterator[str]:
     """What can not be read of the store."""
     kept, left = fitted(report.stored.notice, ROOM["damage"])
     if kept:
-        yield "### Damage"
+        yield "### State of the store"
         yield code("\n".join([*kept, *([f"and {left} more"] if left else [])]), "text")
 
 

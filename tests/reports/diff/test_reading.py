@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -141,6 +142,27 @@ def test_a_spoilt_run_is_refused_with_its_place_and_fault(name: str, stored: Cop
     with pytest.raises(CrankcheckError, match=fault) as caught:
         read_run(folder)
     assert str(caught.value).startswith(str(folder))
+
+
+def test_cells_of_a_verification_that_were_cut_off_are_missed(stored: Copy) -> None:
+    folder = stored("v")
+    path, facts = folder / "verify.csv", folder / "verify.json"
+    known = json.loads(facts.read_text(encoding="utf-8"))
+    facts.write_text(json.dumps(known | {"cells": [{}] * 4}), encoding="utf-8")
+    assert len(read_run(folder).cells) == 4
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text[: text.rindex("\n", 0, -1) + 1], encoding="utf-8")
+    with pytest.raises(CrankcheckError, match=r"verify\.csv: cut short \(3 of the 4 cells"):
+        read_run(folder)
+    path.write_text(text[: text.rindex("\n", 0, -1) + 60], encoding="utf-8")
+    with pytest.raises(CrankcheckError, match=r"cut short \(its last row is not whole\)"):
+        read_run(folder)
+
+
+def test_a_verification_without_its_facts_is_told(stored: Copy) -> None:
+    folder = stored("v")
+    (folder / "verify.json").unlink()
+    assert "no verify.json, so verify.csv can not be checked" in read_run(folder).notice[0]
 
 
 def test_what_is_no_run_is_refused_with_what_would_be(stored: Copy, tmp_path: Path) -> None:

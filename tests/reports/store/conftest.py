@@ -1,0 +1,72 @@
+"""A small real store, made once, whose copies are damaged; and sweeps without processes apart."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from reports.commands.sweep import Request, sweep
+from reports.sweep.isolation import Limits
+
+SCENE = "fourbar-lecture-1"
+Sweep = Callable[..., int]
+
+
+class Here:
+    """Calls a function where others would start a process for it."""
+
+    closed = False
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+
+    def call(self, function: Callable[..., object], *arguments: object) -> object:
+        return function(*arguments)
+
+    def close(self) -> None:
+        """There is nothing to end."""
+
+
+@pytest.fixture(scope="session")
+def swept() -> Iterator[Sweep]:
+    """Sweeps two steps of both engines, or of one, into a folder."""
+    patch = pytest.MonkeyPatch()
+    patch.setattr("reports.sweep.parallel.Isolated", Here)
+    patch.setattr("reports.sweep.running.Isolated", Here)
+    patch.setattr("reports.sweep.outcome.REPEAT_S", 1e-5)  # nobody compares these times
+    patch.setattr("reports.sweep.outcome.LEAST_TIMED", 5)
+    nowhere = Console(file=StringIO())
+
+    def run(folder: Path, *engines: str, steps: str = "90,180", timing: bool = True) -> int:
+        asked = Request(
+            folder,
+            scenes=[SCENE],
+            engines=engines,
+            profiles=["tuned"],
+            steps_per_turn=steps,
+            jobs=1,
+            timing=timing,
+        )
+        return sweep(asked, nowhere, nowhere)
+
+    yield run
+    patch.undo()
+
+
+@pytest.fixture(scope="session")
+def whole(swept: Sweep, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of four cells in two parts: MuJoCo's first, then pymunk's. Not to be changed."""
+    folder = tmp_path_factory.mktemp("whole") / "store"
+    assert swept(folder, "mujoco") == swept(folder) == 0
+    return folder
+
+
+@pytest.fixture
+def store(whole: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be damaged."""
+    return shutil.copytree(whole, tmp_path / "store")

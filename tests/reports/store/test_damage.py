@@ -1,0 +1,304 @@
+"""A store damaged on purpose: what is said, what is read, and that the same sweep mends it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.commands import diff, report, verify
+from reports.store.damage import notice
+from reports.store.examine import examine
+from reports.store.manifest import MANIFEST
+from reports.store.reader import Stored, read_store
+from tests.reports.store.damages import CASES, LATER, cut, first, gone, without
+
+BY_CHANCE = ["wall_s", "logged_us_per_step"]
+TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
+Sweep = Callable[..., int]
+
+
+def ended(call: Callable[..., int], *arguments: object) -> tuple[int, str]:
+    """The exit code of a command, and the message of one that was refused."""
+    try:
+        return call(*arguments), ""
+    except CrankcheckError as error:
+        return 2, str(error)
+
+
+def paper() -> Console:
+    return Console(file=StringIO(), width=100)
+
+
+def same(found: Stored, wanted: Stored) -> None:
+    """The same cells with errors and traces, bit by bit but for what chance decides."""
+    left, right = (
+        one.cells.set_index("key").sort_index().drop(columns=[*BY_CHANCE, *TIMES, "made"])
+        for one in (found, wanted)
+    )
+    pd.testing.assert_frame_equal(left, right, check_exact=True, check_like=True)
+    order = ["key", "quantity", "body_kind", "body", "source", "kind"]
+    errors = (one.errors.sort_values(order).reset_index(drop=True) for one in (found, wanted))
+    pd.testing.assert_frame_equal(*errors, check_exact=True)
+    for key in left.index:
+        assert set(found.trace(key)) == set(wanted.trace(key)) != set()
+        for series, values in wanted.trace(key).items():
+            np.testing.assert_array_equal(found.trace(key)[series], values)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_can_be_read_is_reported_and_the_rest_is_named(
+    name: str, store: Path, whole: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = CASES[name]
+    case.change(store)
+    code, message = ended(report.run_report, store, None, "md", paper())
+    told = capsys.readouterr().err if case.cells else message
+    assert (code, case.words in told) == (0 if case.cells else 2, True), told
+    named = [line.partition(": ")[0] for line in told.splitlines()]
+    assert len(named) == len(set(named)), "each damaged thing is named once"
+    assert ("what mends it: crankcheck sweep" in told) == (case.cure == "sweep")
+    assert ("into this one is refused" in told) == (case.cure == "version")
+    if not case.cells:
+        return
+    assert f"{case.cells} cells can be read" in told
+    found, wanted = read_store(store).cells, read_store(whole).cells
+    assert len(found) == case.cells
+    columns = ["scene", "variant", "profile", "gated", "version", "settings", "place_pure"]
+    pd.testing.assert_frame_equal(
+        found.set_index("key").sort_index()[columns],
+        wanted.set_index("key").loc[sorted(found.key), columns],
+        check_exact=True,
+    )
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_gate_is_passed_on_cells_that_are_lost(name: str, store: Path, whole: Path) -> None:
+    case = CASES[name]
+    case.change(store)
+    for old, new in ((store, whole), (whole, store)):
+        code, message = ended(diff.run_diff, diff.Request(old, new), paper())
+        assert code == case.gate, message
+        if case.cells and case.gate:
+            assert "2 cells of" in message
+            assert "may be among what is missing there" in message
+            assert "mujoco tuned" in message
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "sweep"])
+def test_the_same_sweep_mends_it_and_throws_nothing_away(
+    name: str, store: Path, whole: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
+) -> None:
+    CASES[name].change(store)
+    aside = {store / path for each in examine(store).damage for path in each.aside}
+    kept = [path.read_bytes() for path in aside if path.is_file()]
+    assert swept(store) == 0
+    told = capsys.readouterr().err
+    assert ("moved to" in told) == (store / "damaged").exists()
+    found = read_store(store)
+    assert found.damage == ()
+    assert not found.cells.us_per_step.isna().any()
+    same(found, read_store(whole))
+    moved = [path.read_bytes() for path in (store / "damaged").glob("*") if path.is_file()]
+    assert all(each in moved for each in kept)
+    text = (store / MANIFEST).read_bytes()
+    assert swept(store) == 0
+    assert capsys.readouterr().err == ""
+    assert (store / MANIFEST).read_bytes() == text
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "nothing"])
+def test_what_is_not_damaged_is_left_alone(
+    name: str, store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
+) -> None:
+    CASES[name].change(store)
+    before = {path: path.read_bytes() for path in store.rglob("*") if path.is_file()}
+    assert swept(store) == 0
+    assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "version"])
+def test_another_format_is_not_written_to(name: str, store: Path, swept: Sweep) -> None:
+    CASES[name].change(store)
+    before = {path: path.read_bytes() for path in store.rglob("*") if path.is_file()}
+    code, message = ended(swept, store)
+    assert code == 2
+    assert "name a new folder, or use the crankcheck that wrote it" in message
+    assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
+
+
+def test_an_unreadable_file_is_damaged_too(
+    store: Path, whole: Path, swept: Sweep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    locked, read = first(store, "cells"), Path.read_bytes
+
+    def refused(path: Path) -> bytes:  # chmod does not keep root out
+        if path == locked:
+            raise PermissionError(13, "Permission denied", str(path))
+        return read(path)
+
+    monkeypatch.setattr(Path, "read_bytes", refused)
+    found = read_store(store)
+    assert len(found.cells) == 2
+    assert "can not be read: Permission denied; 2 cells missing" in "\n".join(found.notice)
+    assert swept(store) == 0
+    same(read_store(store), read_store(whole))
+
+
+def test_the_page_says_it_too(store: Path, tmp_path: Path) -> None:
+    cut("cells")(store)
+    path = tmp_path / "page.html"
+    assert report.run_report(store, path, "html", paper()) == 0
+    assert "cut short; 2 cells missing" in path.read_text(encoding="utf-8")
+
+
+def test_a_baseline_that_lost_cells_passes_those_it_has(
+    store: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cut("cells")(store)  # of MuJoCo
+    options = dict.fromkeys(("dt_s", "junit", "csv", "json", "folder"))
+
+    def run(*engines: str) -> tuple[int, str]:
+        asked = verify.Request(
+            ["fourbar-lecture-1"], engines, ["tuned"], steps_per_turn=180.0, turns=2.0,
+            tolerance=(), drive="prescribed", converge=False, jobs=1, baseline=store, **options
+        )  # fmt: skip
+        return ended(verify.verify, asked, paper(), paper())
+
+    assert run("pymunk") == (0, "")
+    assert "cut short; 2 cells missing" in capsys.readouterr().err
+    code, message = run("pymunk", "mujoco")
+    assert code == 2
+    assert "1 cell of what was asked for, such as fourbar-lecture-1, mujoco tuned" in message
+
+
+def test_both_runs_may_have_lost_the_same_cell(store: Path) -> None:
+    cut("cells")(store)
+    code, message = ended(diff.run_diff, diff.Request(store, store), paper())
+    assert (code, "has lost too" in message) == (2, True)
+
+
+def test_a_lost_manifest_is_made_again_with_a_note(store: Path, swept: Sweep, whole: Path) -> None:
+    (store / MANIFEST).unlink()
+    wanted = read_store(whole).manifest
+    for mended in (False, True):
+        if mended:
+            assert swept(store) == 0
+        found = read_store(store).manifest
+        assert found.scenes == wanted.scenes
+        facts = found.runs[0]["provenance"]
+        assert {facts[name] for name in ("mujoco", "pymunk")} == {
+            wanted.runs[-1]["provenance"][name] for name in ("mujoco", "pymunk")
+        }
+        assert "the manifest was lost" in facts["note"]
+        assert found.runs[0]["lines"] == wanted.runs[-1]["lines"]
+    assert len(found.runs) == 2
+
+
+def test_a_lost_manifest_does_not_let_another_scene_in(store: Path, swept: Sweep) -> None:
+    (store / MANIFEST).unlink()
+    for path in (store / "cells").iterdir():
+        frame = pd.read_parquet(path)
+        frame["scene_digest"] = "another"
+        frame.to_parquet(path)
+    code, message = ended(swept, store)
+    assert (code, "another scene called fourbar-lecture-1" in message) == (2, True)
+
+
+def test_cells_that_nobody_asks_for_again_stay_and_are_told(
+    store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
+) -> None:
+    gone("errors")(store)  # of MuJoCo
+    assert swept(store, "pymunk") == 0
+    told = capsys.readouterr().err
+    assert "4 cells can be read, none missing" in told
+    assert "2 cells without errors" in told
+    assert len(read_store(store).cells) == 4
+
+
+def test_what_was_moved_before_is_not_overwritten(store: Path, swept: Sweep) -> None:
+    for text in ("one", "two", "three"):
+        (store / MANIFEST).write_text(text)
+        assert swept(store) == 0
+    found = {path.name: path.read_text() for path in (store / "damaged").iterdir()}
+    assert found == {"manifest.json": "one", "manifest-2.json": "two", "manifest-3.json": "three"}
+
+
+def test_a_finished_sweep_adds_no_run_and_one_that_adds_something_does(
+    swept: Sweep, tmp_path: Path
+) -> None:
+    def runs() -> int:
+        return len(json.loads((tmp_path / "s" / MANIFEST).read_text())["runs"])
+
+    for asked, count in (
+        (("90", False), 1),
+        (("90", False), 1),  # nothing new
+        (("90", True), 2),  # times
+        (("90", True), 2),
+        (("90,180", True), 3),  # another step
+        (("90", True), 3),
+    ):
+        steps, timing = asked
+        assert swept(tmp_path / "s", "pymunk", steps=steps, timing=timing) == 0
+        assert runs() == count, asked
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        ["thesis.txt"],
+        ["manifest.json"],
+        ["cells/biology.txt"],
+        ["cells/part-00000-of-spark.parquet", "manifest.json"],
+        [".lock", "damaged/old.txt"],
+    ],
+)
+def test_a_folder_that_is_no_store_is_refused_untouched(
+    files: list[str], tmp_path: Path, swept: Sweep
+) -> None:
+    home = tmp_path / "home"
+    for name in files:
+        path = home / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text('{"name": "my app"}')
+    before = sorted(home.rglob("*"))
+    code, message = ended(swept, home)
+    assert (code, "so it is no store of a sweep" in message) == (2, True)
+    assert sorted(home.rglob("*")) == before
+    with pytest.raises(CrankcheckError, match="no store of a sweep there"):
+        read_store(home)
+
+
+def test_a_sweep_killed_at_its_very_start_goes_on(tmp_path: Path, swept: Sweep) -> None:
+    (tmp_path / "s" / "cells").mkdir(parents=True)
+    (tmp_path / "s" / ".lock").touch()
+    assert swept(tmp_path / "s", "pymunk", steps="90") == 0
+
+
+def test_a_lock_that_can_not_be_taken_is_said(store: Path, swept: Sweep) -> None:
+    (store / ".lock").unlink(missing_ok=True)
+    (store / ".lock").mkdir()
+    code, message = ended(swept, store)
+    assert (code, ".lock can not be locked" in message) == (2, True)
+
+
+def test_a_name_can_not_speak_to_the_terminal(store: Path) -> None:
+    (store / "\x1b[2Jgone\n.txt").write_text("x")
+    assert "  \\x1b[2Jgone\\n.txt: not of the store; left alone" in read_store(store).notice
+
+
+def test_a_notice_is_no_longer_than_one_reads(store: Path) -> None:
+    found = read_store(store)
+    without("errors")(store)
+    many = read_store(store).damage * 100
+    assert len(notice(store, many, 4, found.manifest)) <= 25
+    assert notice(store, (), 4, found.manifest) == []
+    assert LATER not in "".join(found.notice)
