@@ -193,3 +193,19 @@ def test_a_lever_that_does_not_fit_leaves_no_range_to_the_driver() -> None:
 def test_the_second_opinion_says_that_it_counts_too_many_equations() -> None:
     with pytest.raises(CrankcheckError, match="13 constraint equations for 12 coordinates"):
         newton.solve(parallelogram(2), np.array([0.0]), newton.Guess({}))
+
+
+@pytest.mark.parametrize("rockers", [2, 3])
+def test_rods_turn_with_the_crank_through_the_flat_positions_too(rockers: int) -> None:
+    """Two turns, with samples in and beside both change points."""
+    scene, flat = parallelogram(rockers), (np.pi - np.radians(15.0)) / 2.0
+    beside = flat + np.array([0.0, 1e-9, 1e-6, np.pi / 2.0, np.pi])
+    time_s = np.sort(np.concatenate([np.linspace(0.0, 2.0 * np.pi, 721), beside]))
+    motion = solve(scene, time_s)
+    assert motion.bound is not None
+    for name in (n for n in scene.links if n.startswith(("rocker", "lever"))):
+        rod, bound = motion.links[name], motion.bound.links[name]
+        assert (np.abs(rod.theta - motion.links["crank"].theta) <= bound.theta).all()
+        assert (np.abs(rod.omega - 2.0) <= bound.omega).all()
+        assert (np.abs(rod.alpha) <= bound.alpha).all()
+        assert bound.theta.max() < 1e-10
