@@ -109,7 +109,7 @@ class Chunk:
         passage = self.passages.get(key)
         if passage is not None:
             dyad = passage.mend(self, dyad)
-        self.sines[key], self.closures[key] = dyad.sine, dyad.closure
-        if dyad.closure.short_m is not None:
-            self.shortage[key] = dyad.closure.short_m
+        self.sines[key] = dyad.sine
+        if dyad.closure.short_m is not None:  # else nobody asks, and its memory is used again
+            self.closures[key], self.shortage[key] = dyad.closure, dyad.closure.short_m
         return dyad

@@ -47,10 +47,10 @@ SIDE = 1e-3
 """Where a touch must be closed on both sides, and its root be a V [rad]."""
 AT_START = 1e-7
 """A run that starts nearer to a change point than this [rad] is on the branch that it goes to."""
-HALVES = tuple(2.0**-k for k in range(7))
+HALVES = tuple(2.0 ** (-0.5 * k) for k in range(13))
 """Half-widths [rad] that are tried for the interpolation through a change point."""
 LEAST_CERTAIN = 1e-6
-"""The largest bound of a second derivative, by angles in rad, that is called a continuation."""
+"""The largest bound of a derivative, by angles in rad, that is called a continuation."""
 UNSURE = 64.0
 """How much more than by itself a dyad may be open in a change point of one before it."""
 
@@ -231,10 +231,13 @@ class _Look:
 
     def touches(self, theta: Array) -> Array:
         """The angles in which the root touches zero, of those near which it might."""
-        width = math.tau / SCAN
-        for each in WIDTHS:
-            theta, width = self._tip(theta, width), each
-        theta = self._tip(theta, width)
+        theta = self._tip(theta, math.tau / SCAN)
+        sides = self._closure(theta + np.array([[-1.0], [1.0]]) * WIDTHS[0])[1]
+        theta = theta[(sides < 0.0).all(axis=0)]  # limit positions are most of what is left here
+        if not theta.size:
+            return theta
+        for width in WIDTHS:
+            theta = self._tip(theta, width)
         keep = self._is_touched(theta) | self._is_touched(self._tip(theta, TIP))
         keep &= self._is_crossed(theta)
         return np.asarray(theta[keep])
@@ -313,7 +316,8 @@ def _valleys(root: Array) -> Mask:
     A V with its tip between two samples is at the nearer one at most a third of what it is at the
     farther neighbour.
     """
-    before, after = np.roll(root, 1), np.roll(root, -1)
+    around = np.concatenate([root[-1:], root, root[:1]])
+    before, after = around[:-2], around[2:]
     far = np.maximum(before, after)
     return np.asarray((root <= before) & (root <= after) & (root < 0.5 * far))
 

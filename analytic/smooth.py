@@ -64,12 +64,17 @@ class Series:
     third: float
 
     @staticmethod
-    def of(fine: tuple[Array, Array], coarse: tuple[Array, Array], half: float) -> Series:
-        """The series of one set of nodes, held to that of another."""
+    def of(
+        fine: tuple[Array, Array], coarse: tuple[Array, Array], half: float, *, turning: bool
+    ) -> Series:
+        """The series of one set of nodes, held to that of another; angles but for whole turns."""
         values, bounds = fine
         at = PROBES * WINDOW
         seen = values @ weights(COUNT, at).T
-        doubt = np.abs(seen - coarse[0] @ weights(FEWER, at).T).max(axis=1)
+        apart = seen - coarse[0] @ weights(FEWER, at).T
+        if turning:
+            apart[0] -= 2.0 * np.pi * np.round(apart[0] / (2.0 * np.pi))
+        doubt = np.abs(apart).max(axis=1)
         doubt = SAFETY * doubt + COUNT * EPS * np.abs(values).max(axis=1)
         third = np.abs(np.diff(seen[2])).max() / (half * WINDOW * float(PROBES[1] - PROBES[0]))
         return Series(values, bounds, doubt, SAFETY * float(third + doubt[2] / (half * WINDOW)))
@@ -110,7 +115,7 @@ class Rates:
 class Piece:
     """The two unknowns of a dyad around a change point.
 
-    ``half`` is half the range of the nodes, ``doubt`` the largest bound of a second derivative by
+    ``half`` is half the range of the nodes, ``doubt`` the largest bound of the two derivatives by
     the driver's angle, slides over the longest length of the scene.
     """
 
@@ -127,15 +132,14 @@ class Piece:
     @staticmethod
     def of(solved: Solved, centre: float, half: float, longest_m: float) -> Piece:
         """The piece around the driver angle ``centre``. Raises OpenError at nodes out of reach."""
-        sets = []
-        for count in (COUNT, FEWER):
-            theta = centre + half * nodes(count)
-            unknowns = solved(theta)
-            sets.append([_levels(unknown, theta) for unknown in unknowns])
-        first, second = (Series.of(fine, coarse, half) for fine, coarse in zip(*sets, strict=True))
-        scales = [1.0 if isinstance(each, Turning) else longest_m for each in unknowns]
-        doubt = max(s.worst()[2] / k for s, k in zip((first, second), scales, strict=True))
-        return Piece(half, first, second, float(doubt))
+        wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
+        series, doubt = [], 0.0
+        for fine, coarse in zip(solved(wide), solved(narrow), strict=True):
+            turning = isinstance(fine, Turning)
+            found = Series.of(_levels(fine, wide), _levels(coarse, narrow), half, turning=turning)
+            doubt = max(doubt, float(found.worst()[1:].max()) / (1.0 if turning else longest_m))
+            series.append(found)
+        return Piece(half, *series, doubt)
 
 
 def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
