@@ -9,6 +9,7 @@ from typing import Literal
 
 from models.motion import State
 from models.scene import Scene
+from models.windows import Chain
 from reports.stability.matrix import CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
 
@@ -27,7 +28,8 @@ class Trial:
     ``scene`` is the reference; ``start`` where the engine is put in its place (None: where the
     reference is), with joints open by up to ``open_m`` [m]; errors count from ``settled_turns`` on.
     ``every`` so many steps are logged.
-    ``limit_rad`` is the driver angle that cannot be passed, where that is what is to be seen.
+    ``limit_rad`` is the driver angle that cannot be passed, and ``chain`` what is left free, where
+    that is what is to be seen.
     """
 
     scene: Scene
@@ -40,6 +42,7 @@ class Trial:
     open_m: float = 0.0
     settled_turns: float = 0.0
     limit_rad: float = math.nan
+    chain: Chain | None = None
 
     @property
     def dt_s(self) -> float:

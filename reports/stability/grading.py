@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from reports.stability.case import Case, Trial, label
+from models.scene import Scene
+from reports.stability.case import Case, Judge, Trial, label
+from reports.stability.free import falling_scene, freely
 from reports.stability.limit import at_limit, held_scene
 from reports.stability.matrix import Graded, Outcome, Picture
 from reports.stability.outcomes import Ending, outcome
@@ -20,6 +23,21 @@ from sim.engine import Run
 from sim.run import run
 
 Found = tuple[Graded, Picture | None]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What runs are held to: how one is seen beside it, and a scene that moves as it does."""
+
+    look: Callable[[Trial, Run], Seen]
+    truth: Callable[[Trial], Scene]
+
+
+JUDGES: Mapping[Judge, Truth] = {
+    "follow": Truth(lambda t, run: seen(t.scene, run, t.settled_turns), lambda t: t.scene),
+    "limit": Truth(at_limit, held_scene),
+    "free": Truth(freely, falling_scene),
+}
 
 
 def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -> Found:
@@ -42,8 +60,7 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     found = replace(found, wall_s=time.perf_counter() - began)
     if not draw or done is None or found.outcome in case.good:
         return found, None
-    scene = held_scene(trial) if case.judge == "limit" else trial.scene
-    return found, picture(case, scene, found, done)
+    return found, picture(case, JUDGES[case.judge].truth(trial), found, done)
 
 
 def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:
@@ -68,11 +85,7 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
         return replace(blank, outcome=lost, reason=done.reason), None
-    found = (
-        at_limit(trial, done)
-        if case.judge == "limit"
-        else seen(trial.scene, done, trial.settled_turns)
-    )
+    found = JUDGES[case.judge].look(trial, done)
     return _told(blank, found, outcome(found, case.within)), done
 
 

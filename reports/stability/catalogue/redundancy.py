@@ -2,15 +2,36 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from analytic.windows import Turning
 from models.hard import double_parallelogram
+from models.windows import SOURCE, Chain
 from reports.stability.case import Case, Trial
 
 GROUP = "redundancy"
+DURATION_S = 2.5
+"""The chain turns over once and falls on, four times through flat positions."""
+DT_S = 1e-3
 
 
 def _three_rockers(value: float) -> Trial:
     scene = double_parallelogram("double-parallelogram", source="mobility 0 by count, really 1")
     return Trial(scene, steps_per_turn=value, turns=4.0)
+
+
+def _windows(value: float) -> Trial:
+    chain = Chain(round(value))
+    scene = chain.scene()
+    period = scene.driver.law.period_s
+    return Trial(
+        scene,
+        steps_per_turn=period / DT_S,
+        turns=DURATION_S / period,
+        drive="free",
+        start=Turning(chain).motion(np.zeros(1)).state(),
+        chain=chain,
+    )
 
 
 CASES = (
@@ -25,5 +46,19 @@ CASES = (
         unit="",
         values=(5760.0, 1440.0, 360.0, 90.0),
         trial=_three_rockers,
+    ),
+    Case(
+        name="n-fourbar",
+        group=GROUP,
+        title="A chain of windows, falling freely through its flat positions",
+        source=SOURCE,
+        truth="l theta'' [(N+1)/3 + N] = -g cos(theta) [(N+1)/2 + N], in elliptic functions",
+        expected="keeps its energy, and all rods parallel",
+        parameter="windows N",
+        unit="",
+        values=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0),
+        trial=_windows,
+        scale="whole",
+        judge="free",
     ),
 )
