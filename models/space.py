@@ -34,6 +34,11 @@ from models.rail import Rail
 from models.scene import GROUND, Point, Scene, Slider, span
 
 
+FAR = 1e3
+"""Ends of a groove over the sum of all lengths: where lines cross at a small angle a slider travels
+much further than any link is long. Chipmunk rounds at 1e-13 of the lengths then."""
+
+
 @dataclass(frozen=True)
 class SpaceModel:
     """A space, its moving bodies by name in the order they were added, and the crank.
@@ -203,7 +208,7 @@ def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Poi
     where = frames(scene, state)
     place = where[rider].at(local_point(scene, rider, slider.point))
     now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
-    reach = 2.0 * sum(_reach(scene, name) for name in (GROUND, *scene.links))
+    reach = FAR * sum(_reach(scene, name) for name in (GROUND, *scene.links))
     u = turned((1.0, 0.0), slider.direction_rad)
     a, b = now - reach, now + reach
     x, y = slider.through_m

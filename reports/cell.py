@@ -21,6 +21,7 @@ from reports.errors import Departure, Errors
 from reports.halving import followed
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
+from reports.settling import mass_ratio
 from reports.tolerance import Limit, limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
@@ -136,7 +137,7 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
         convergence=seen,
         gated=cell.gated,
         profile=cell.profile,
-        mass_ratio=_mass_ratio(cell.scene),
+        mass_ratio=mass_ratio(cell.scene),
     )
     checked = Checked(
         cell=cell,
@@ -152,14 +153,6 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
         warnings=done.warnings,
     )
     return checked, done
-
-
-def _mass_ratio(scene: Scene) -> float:
-    """The mass of the heaviest body over that of the lightest that has one."""
-    masses = [link.mass_kg for link in scene.links.values()]
-    masses += [slider.mass_kg for slider in scene.sliders.values()]
-    given = [mass for mass in masses if mass > 0.0]
-    return max(given, default=1.0) / min(given, default=1.0)
 
 
 def _left(departure: Departure) -> str:

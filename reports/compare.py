@@ -23,6 +23,7 @@ from models.scene import Scene
 from reports.branch import departure
 from reports.errors import Error, Errors, Kind, Quantity, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
+from reports.settling import jolt, mass_ratio
 from reports.stamps import incomplete
 from reports.summing import summed
 from reports.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
@@ -77,7 +78,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         ),
         not_reported=not_reported,
         notes=notes,
-        curvature=_curvature(scene, reference),
+        curvature=curvature(scene, reference),
         conditioning=min((float(np.min(s)) for s in reference.conditioning.values()), default=1.0),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=(*lacking(motion, reference), *_without_gap(scene, run)),
@@ -85,6 +86,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         uncertain=_uncertain(scene, motion, reference),
         departure=departure(scene, run, placed, at.driver_rad),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
+        jolt=jolt(scene, reference),
+        mass_ratio=mass_ratio(scene),
     )
 
 
@@ -244,7 +247,7 @@ def _uncertain(
     }
 
 
-def _curvature(scene: Scene, reference: Motion) -> float:
+def curvature(scene: Scene, reference: Motion) -> float:
     """The largest pure acceleration of the reference, at least 1, where it is a number."""
     square = scene.driver.law.peak_speed_rad_s**2
     turning = [link.alpha / square for link in reference.links.values()]

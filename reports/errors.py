@@ -79,7 +79,9 @@ class Errors:
     may be wrong by, per quantity and body over the whole run, as a pure number: the same for every
     engine, whatever it reports. ``departure`` is None where the run stayed on its branch.
     ``summed_rad`` is the most that rounding makes of the driver's angle in an engine that adds it
-    up step by step: it is what grows with the number of steps (`reports.summing`).
+    up step by step: it is what grows with the number of steps (`reports.summing`). ``jolt`` is how
+    much an engine may make up for at its start, over a step, as a pure number, and ``mass_ratio``
+    the mass of the heaviest body over that of the lightest (`reports.settling`).
     """
 
     rows: tuple[Error, ...]
@@ -93,6 +95,8 @@ class Errors:
     uncertain: Mapping[tuple[Quantity, str], float] = field(default_factory=dict)
     departure: Departure | None = None
     summed_rad: float = 0.0
+    jolt: float = 0.0
+    mass_ratio: float = 1.0
 
     def worst(
         self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"

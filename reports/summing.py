@@ -8,9 +8,9 @@ root of the number of steps that chance would give is exceeded (measured, 10^3 t
 0.18 of the worst case, whatever the step and the engine).
 
 Any other law comes to MuJoCo as accelerations, worked out beforehand, and is added up twice. Some
-roundings of the speed remain at every step, and a law that repeats itself repeats them: the angle is
-off by their sum, which grows with the square of the number of steps as well (measured: 2.3 times
-the above for 10^4 and 10^5 steps).
+roundings of the speed remain at every step, and a law that repeats itself repeats them: the angle
+is off by their sum, which grows with the square of the number of steps as well (measured: 2.3
+times the above for 10^4 and 10^5 steps).
 """
 
 from __future__ import annotations

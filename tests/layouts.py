@@ -23,10 +23,18 @@ class Layout:
     points: dict[str, dict[str, Point]] = field(default_factory=lambda: {GROUND: {}})
     sliders: dict[str, Slider] = field(default_factory=dict)
     blocks: dict[str, tuple[complex, float]] = field(default_factory=dict)
+    reach: dict[str, float] = field(default_factory=dict)
+    """How far from a body's frame its pins lie, over what is usual; 1 where it is silent."""
+    barred: frozenset[str] = frozenset()
+    """Bodies that no further dyad may hang on."""
     names: itertools.count[int] = field(default_factory=itertools.count)
 
     def arm(self, low: float, high: float) -> complex:
         return cmath.rect(self.number(low, high), self.number(-math.pi, math.pi))
+
+    def near(self, body: str) -> complex:
+        """A place for a pin on a body."""
+        return self.frames[body][0] + self.arm(0.2, 0.8) * self.reach.get(body, 1.0)
 
     def lean(self, most: float) -> float:
         """An angle up to ``most`` to either side, or half a turn from there."""
@@ -83,15 +91,18 @@ class Layout:
 
     def known_pair(self) -> tuple[str, str]:
         """Two different bodies that are placed, one of them a link: a dyad may hang on them."""
-        moving = self.choose([b for b in self.frames if b != GROUND])
-        other = self.choose([b for b in self.frames if b != moving])
-        return moving, other
+        moving = self.choose(self.free(GROUND))
+        return moving, self.choose(self.free(moving))
+
+    def free(self, *but: str) -> list[str]:
+        """The bodies that a dyad may hang on, without some."""
+        return [b for b in self.frames if b not in self.barred and b not in but]
 
 
 def _rrr(at: Layout) -> None:
     """Two links between pins of two bodies; C stands well off the line of the pins."""
     known1, known2 = at.known_pair()
-    p1 = at.frames[known1][0] + at.arm(0.2, 0.8)
+    p1 = at.near(known1)
     span = at.arm(0.6, 1.5)
     c = p1 + span * complex(at.number(0.3, 0.7), at.number(0.4, 1.0) * _sign(at))
     first, second = at.link(p1), at.link(c)
@@ -129,7 +140,7 @@ def _rrp(form: str) -> Callable[[Layout], None]:
     def lay_out(at: Layout) -> None:
         moving, other = at.known_pair()
         pinned, line = (other, moving) if form == "guide" else _either(at, moving, other)
-        p1 = at.frames[pinned][0] + at.arm(0.2, 0.8)
+        p1 = at.near(pinned)
         rod = at.arm(0.5, 1.5)
         link = at.link(p1)
         at.pin(p1, pinned, link)
@@ -146,7 +157,7 @@ def _either(at: Layout, a: str, b: str) -> tuple[str, str]:
 def _rpr(form: str) -> Callable[[Layout], None]:
     def lay_out(at: Layout) -> None:
         known1, known2 = _either(at, *at.known_pair())
-        p1 = at.frames[known1][0] + at.arm(0.2, 0.8)
+        p1 = at.near(known1)
         span = at.arm(0.6, 1.5)
         angle = cmath.phase(-span) + at.lean(0.9)
         if form == "block":
@@ -170,10 +181,8 @@ def _prp(form1: str, form2: str) -> Callable[[Layout], None]:
     def lay_out(at: Layout) -> None:
         known1, known2 = at.known_pair()
         if form1 == form2 == "guide":  # both known bodies slide: neither can be the ground
-            known1, known2 = (
-                "link0",
-                at.choose([b for b in at.frames if b not in (GROUND, "link0")]),
-            )
+            known1 = at.free(GROUND)[0]
+            known2 = at.choose(at.free(GROUND, known1))
         elif form2 == "guide":
             known1, known2 = known2, known1
         place = at.frames[known1][0] + at.arm(0.3, 1.0)
@@ -189,7 +198,7 @@ def _rpp(inner: str, outer: str) -> Callable[[Layout], None]:
     def lay_out(at: Layout) -> None:
         moving, other = at.known_pair()
         pinned, known = (other, moving) if outer == "guide" else _either(at, moving, other)
-        p1 = at.frames[pinned][0] + at.arm(0.2, 0.8)
+        p1 = at.near(pinned)
         middle = at.link(p1)
         at.pin(p1 + at.arm(0.2, 0.6), middle)
         angle = at.number(-math.pi, math.pi)

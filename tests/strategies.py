@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from analytic.kinematics import solve
 from analytic.structure import analyse
 from models.errors import ReachError
-from models.laws import Oscillating
+from models.laws import ConstantSpeed, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Driver, Link, Scene
 from tests.layouts import LAYOUTS, Layout
@@ -60,29 +60,32 @@ def mechanisms(draw: st.DrawFn, forms: Sequence[str] | None = None) -> Designed:
     crank = at.link(pivot)
     at.pin(pivot, GROUND, crank)
     at.pin(pivot + at.arm(0.3, 0.8), crank)
+    law = Oscillating(at.frames[crank][1], SWINGS[0], number(0.5, 20.0))
+    return _with_margin(with_dyads(at, forms, crank, law))
+
+
+def with_dyads(at: Layout, forms: Sequence[str], crank: str, law: Law) -> Designed:
+    """The dyads of the given forms hung on a crank and on each other, on the branch laid out."""
     laid_out = []
+    turning = frozenset([crank]) if isinstance(law, ConstantSpeed) else frozenset()
     for form in forms:
-        if form == "PRP guide, guide" and set(at.frames) == {GROUND, crank}:
+        at.barred = turning if form.startswith("PRP") else frozenset()
+        if form == "PRP guide, guide" and len(at.free(GROUND)) < 2:
             LAYOUTS["RRR"](at)  # both of its guides ride on moving links
             laid_out.append("RRR")
         LAYOUTS[form](at)
         laid_out.append(form)
-    return _designed(at, tuple(laid_out), crank, number(0.5, 20.0))
-
-
-def _designed(at: Layout, forms: tuple[str, ...], crank: str, frequency: float) -> Designed:
     links = {
         name: Link(name, points, 1.0, (0.0, 0.0), 1.0)
         for name, points in at.points.items()
         if name != GROUND
     }
-    law = Oscillating(at.frames[crank][1], SWINGS[0], frequency)
     scene = Scene(
         "random", "tests/strategies.py", at.points[GROUND], links, at.sliders, Driver(crank, law)
     )
     frames = {b: (p.real, p.imag, a) for b, (p, a) in {**at.frames, **at.blocks}.items()}
     del frames[GROUND]
-    return _with_margin(_on_its_branch(Designed(scene, frames, forms)))
+    return _on_its_branch(Designed(scene, frames, tuple(laid_out)))
 
 
 def _on_its_branch(designed: Designed) -> Designed:
@@ -121,13 +124,22 @@ def _places(link: Link, frame: tuple[float, float, float]) -> dict[str, complex]
 def _with_margin(designed: Designed) -> Designed:
     """With the largest swing of the driver that keeps every dyad off its singular positions."""
     scene = designed.scene
+    law = scene.driver.law
+    assert isinstance(law, Oscillating)
     for swing in SWINGS:
-        law = scene.driver.law
-        assert isinstance(law, Oscillating)
         tried = replace(scene, driver=replace(scene.driver, law=replace(law, amplitude_rad=swing)))
         if _worst(tried) >= MARGIN:
             return replace(designed, scene=tried)
     raise AssertionError("laid out too near to a singular position")
+
+
+def swinging(designed: Designed, frequency_rad_s: float) -> Designed:
+    """The same mechanism under a driver that swings as far as the margin lets it."""
+    driver = designed.scene.driver
+    theta = designed.frames[driver.link][2]
+    law = Oscillating(theta, SWINGS[0], frequency_rad_s)
+    scene = replace(designed.scene, driver=replace(driver, law=law))
+    return _with_margin(replace(designed, scene=scene))
 
 
 def _worst(scene: Scene) -> float:

@@ -61,7 +61,7 @@ HEALTHY = Evidence(
     status="ok",
     reason="",
     stopped_at_s=1.0,
-    errors=Errors((*ROWS, *START), (), (), 1.0, 0.8, 0.01),
+    errors=Errors((*ROWS, *START), (), (), 1.0, 0.8, 0.01, jolt=0.5),
     limits=LIMITS,
     convergence=convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad"),
 )
@@ -224,8 +224,8 @@ def test_the_start_may_be_off_by_half_a_steps_acceleration() -> None:
 
 def test_no_singular_position_excuses_a_start_without_end() -> None:
     assert HEALTHY.errors is not None
-    late = [replace(START[0], maximum=0.06)]
-    errors = replace(HEALTHY.errors, rows=(*ROWS, *late), conditioning=1e-9)
+    late = [replace(START[0], maximum=0.2)]
+    errors = replace(HEALTHY.errors, rows=(*ROWS, *late), conditioning=1e-9, jolt=1e9)
     found = {f.rule: f.level for f in judge(replace(HEALTHY, errors=errors))}
     assert found["CC116"] == "fail"
 
