@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.page.numbers import count, error_text
+from reports.page.numbers import error_text
 from reports.stability.matrix import OUTCOMES, CaseFacts, Critical, Graded, Matrix, Outcome
 from reports.stability.table import LETTERS
 
@@ -138,7 +138,7 @@ def _held(strips: Sequence[Strip]) -> str:
     """In how many of its cases a column holds throughout."""
     run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
     held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
-    return f"holds {held} of {count(len(run), 'case')} throughout"
+    return f"holds {held} of {len(run)} throughout"
 
 
 def _strip(

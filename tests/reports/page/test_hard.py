@@ -98,8 +98,8 @@ def test_the_map_is_a_table_of_cases_by_engine_and_profile(text: str, hard_matri
     assert scopes.count("col") == 1 + 4
     found = heat(hard_matrix)
     assert [column.name for column in found.columns][:2] == ["mujoco as-shipped", "mujoco tuned"]
-    assert found.columns[1].words == "holds 3 of 3 cases throughout"
-    assert found.columns[0].words == "holds 0 of 3 cases throughout"
+    assert found.columns[1].words == "holds 3 of 3 throughout"
+    assert found.columns[0].words == "holds 0 of 3 throughout"
     for one in hard_matrix.critical:
         assert one.words in text
 

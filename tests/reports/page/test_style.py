@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from reports.page.build import HERE
+from reports.page.heat import SHADES
 from reports.page.looks import FAMILIES, FAMILY
 from reports.series import Array
+from reports.stability.matrix import OUTCOMES
 
 CSS = (HERE / "assets" / "page.css").read_text(encoding="utf-8")
+MAP = (HERE / "assets" / "map.css").read_text(encoding="utf-8")
 NORMAL = np.eye(3)
 DEUTERANOPIA = np.array(
     [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]]
@@ -86,3 +89,51 @@ def test_colours_of_one_family_are_told_apart(theme: dict[str, str], seen: Array
         for a, b in itertools.combinations(family, 2):
             away = np.linalg.norm(lab(theme[a], seen) - lab(theme[b], seen))
             assert away > 18.0, f"{a} and {b}"
+
+
+def mixed(hue: str, part: float, paper: str) -> str:
+    """What `color-mix` makes of a hue on paper."""
+    pairs = [(int(hue[i : i + 2], 16), int(paper[i : i + 2], 16)) for i in (1, 3, 5)]
+    return "#" + "".join(f"{round(part * a + (1.0 - part) * b):02x}" for a, b in pairs)
+
+
+def shades() -> dict[str, float]:
+    """How much of its hue a cell of the map has, by the shade of its error."""
+    return {name: int(part) / 100 for name, part in re.findall(r"\.(\w+) \{ --s: (\d+)%; \}", MAP)}
+
+
+def hues() -> dict[str, str]:
+    """The hue of each outcome in the map where it is a failure, and that of what holds."""
+    rules = re.findall(r"^([.][^{}]+) \{ --o: (#\w{6}); \}", MAP, re.MULTILINE)
+    return {name.strip(): hue for names, hue in rules for name in names.split(",")}
+
+
+def test_every_outcome_has_a_hue_and_every_shade_is_stronger_than_the_one_before() -> None:
+    assert {f".o-{name}" for name in (*OUTCOMES, "strange")} | {".cell.held"} == set(hues())
+    found = shades()
+    assert set(found) == {*(f"s{i}" for i in range(len(SHADES) + 1)), "blank"}
+    parts = [found[f"s{i}"] for i in range(len(SHADES) + 1)]
+    assert all(b - a >= 0.08 for a, b in itertools.pairwise(parts))
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+def test_the_signs_of_the_map_can_be_read_on_every_hue_and_shade(theme: dict[str, str]) -> None:
+    for (name, hue), part in itertools.product(hues().items(), shades().values()):
+        ground = mixed(hue, part, theme["paper"])
+        assert contrast(theme["ink"], ground) >= 4.5, f"{name} at {part}"
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK], ids=["light", "dark"])
+@pytest.mark.parametrize(
+    "seen", [NORMAL, DEUTERANOPIA, PROTANOPIA], ids=["all", "deutan", "protan"]
+)
+def test_what_holds_is_told_from_what_fails_by_colour(theme: dict[str, str], seen: Array) -> None:
+    held = hues()[".cell.held"]
+    for name, hue in hues().items():
+        if name == ".cell.held":
+            continue
+        bar = lab(mixed(hue, 0.7, theme["ink"]), seen)
+        ground = lab(mixed(hue, max(shades().values()), theme["paper"]), seen)
+        assert np.linalg.norm(bar - ground) > 18.0, f"the bar under {name}"
+        strong = [lab(mixed(each, 0.43, theme["paper"]), seen) for each in (held, hue)]
+        assert np.linalg.norm(strong[0] - strong[1]) > 13.0, name

@@ -1,0 +1,370 @@
+"""The page of hard cases in a real browser, from a file, with the network off."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Locator, Page
+
+from reports.page.build import page, stability_page
+from reports.page.embed import packed
+from reports.stability.matrix import Matrix
+from reports.store.reader import Stored
+from tests.reports.page.conftest import Opened
+from tests.reports.page.test_browser import CONTROLS, NAMELESS, OUT, SHIFTED, VISIT
+from tests.reports.page.test_hard import evil, one_case
+
+SHORT_MS = 5000
+Open = Callable[..., Opened]
+CONTRASTS = """() => {
+  const parts = (text) => {
+    const numbers = text.match(/[\\d.]+/g).map(Number);
+    return text.startsWith('rgb') ? numbers.slice(0, 3).map((n) => n / 255) : numbers.slice(0, 3);
+  };
+  const bright = (colour) => {
+    const linear = (c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = parts(colour).map(linear);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+  };
+  return [...document.querySelectorAll('button.cell :is(b, .at)')].map((each) => {
+    const cell = bright(getComputedStyle(each.closest('.cell')).backgroundColor);
+    const ink = bright(getComputedStyle(each).color);
+    return Math.max(cell, ink) / Math.min(cell, ink);
+  });
+}"""
+
+
+def cell(page: Page, number: int) -> Locator:
+    """The cell of a run."""
+    return page.locator(f"#hard-map button[data-run='{number}']")
+
+
+def shapes(page: Page, layer: str) -> str:
+    """How the links of the truth (reference) or of the run (overlays) are drawn at the moment."""
+    paths = page.locator(f"#hard-picture .{layer} .link").all()
+    return " ".join(path.get_attribute("d") or "" for path in paths)
+
+
+def wide(found: Opened) -> Opened:
+    """The page as it was when it was opened."""
+    found.page.emulate_media(reduced_motion="reduce", color_scheme="light")
+    found.page.evaluate("() => scrollTo(0, 0)")
+    found.page.select_option("#hard-failures", index=1)
+    found.page.select_option("#hard-factor", "1")
+    found.said.clear()
+    return found
+
+
+@pytest.fixture(scope="module")
+def desktop(open_page: Open, hard_page: Path) -> Opened:
+    found = open_page(hard_page)
+    found.page.set_default_timeout(SHORT_MS)
+    return found
+
+
+@pytest.fixture(scope="module")
+def phone(open_page: Open, hard_page: Path) -> Opened:
+    found = open_page(hard_page, phone=True)
+    found.page.set_default_timeout(SHORT_MS)
+    return found
+
+
+@pytest.fixture
+def opened(desktop: Opened) -> Opened:
+    return wide(desktop)
+
+
+def first(matrix: Matrix, outcome: str) -> int:
+    """The first run of the grid with an outcome."""
+    return next(n for n, run in enumerate(matrix.runs) if run.grid and run.outcome == outcome)
+
+
+@pytest.mark.parametrize("name", ["desktop", "phone"])
+def test_no_error_and_no_request_in_a_whole_visit(
+    name: str, request: pytest.FixtureRequest
+) -> None:
+    found: Opened = request.getfixturevalue(name)
+    assert found.page.evaluate(SHIFTED) < 0.05, "what is read should stay where it is"
+    found.page.evaluate(VISIT)
+    found.page.evaluate(
+        "() => document.querySelectorAll('#hard-map button').forEach(b => b.click())"
+    )
+    assert found.said == []
+    assert [url for url in found.asked if not url.startswith(("file:", "data:"))] == []
+
+
+def test_the_map_is_one_stop_of_tab_and_arrows_go_from_cell_to_cell(opened: Opened) -> None:
+    stops = (
+        "() => [...document.querySelectorAll('#hard-map [data-run]')].filter(b => b.tabIndex === 0)"
+    )
+    here = "() => document.activeElement.dataset.run"
+    cell(opened.page, 0).focus()
+    visited = []
+    for key in ("ArrowRight", "ArrowRight", "ArrowDown", "End", "ArrowUp", "Home"):
+        opened.page.keyboard.press(key)
+        visited.append(int(opened.page.evaluate(here)))
+    # Five runs a line, of which the last is no cell; twenty a case.
+    assert visited == [1, 2, 22, 38, 18, 0]
+    opened.page.keyboard.press("ArrowLeft")
+    assert opened.page.evaluate(here) == "0"
+    assert opened.page.evaluate(f"() => ({stops})().length") == 1
+
+
+def test_a_cell_shows_its_run_by_keyboard_and_gives_the_focus_back(
+    opened: Opened, hard_matrix: Matrix
+) -> None:
+    number = first(hard_matrix, "diverged")
+    run = hard_matrix.runs[number]
+    opened.page.locator("#hard-close").click()
+    assert not opened.page.locator("#hard-panel").is_visible()
+    cell(opened.page, number).focus()
+    opened.page.keyboard.press("Enter")
+    told = opened.page.locator("#hard-panel").inner_text()
+    assert cell(opened.page, number).get_attribute("aria-expanded") == "true"
+    for words in (
+        "Shaper: a heavy ram on a slotted lever: diverged",
+        "pymunk as-shipped, steps in a turn = 12",
+        run.reason,
+        f"{run.error:.1e}".replace("e+00", "e0"),
+        f"{run.gap:.1e}".replace("e-01", "e-1"),
+        "0.4 s, crank at 229.2°",
+        " 24 steps",
+        "crankcheck stability shaper-steps",
+        "--engine pymunk",
+        "--at 12",
+    ):
+        assert words in told, words
+    row = opened.page.locator("#hard-row")
+    above = row.evaluate("each => each.previousElementSibling.cells[0].textContent")
+    assert above.startswith("Shaper")
+    opened.page.locator("#hard-play").focus()
+    opened.page.keyboard.press("Escape")
+    assert not row.is_visible()
+    assert opened.page.evaluate("() => document.activeElement.dataset.run") == str(number)
+    assert opened.page.locator("[aria-expanded=true]").count() == 0
+
+
+def test_a_cell_that_is_chosen_again_is_closed(opened: Opened) -> None:
+    cell(opened.page, 0).click()
+    assert opened.page.locator("#hard-row").is_visible()
+    cell(opened.page, 0).click()
+    assert not opened.page.locator("#hard-row").is_visible()
+
+
+def test_a_run_that_holds_has_numbers_and_no_picture(opened: Opened) -> None:
+    cell(opened.page, 0).click()
+    assert opened.page.locator("#hard-numbers").is_visible()
+    assert not opened.page.locator("#hard-figure").is_visible()
+    assert "of failures only" in opened.page.locator("#hard-note").inner_text()
+
+
+def test_a_cell_stays_under_the_finger_that_chose_it(opened: Opened, hard_matrix: Matrix) -> None:
+    target = cell(opened.page, first(hard_matrix, "diverged"))
+    target.scroll_into_view_if_needed()
+    before = target.bounding_box()
+    target.click()
+    after = target.bounding_box()
+    assert before
+    assert after
+    bottom = opened.page.locator("#hard-row").bounding_box()
+    assert bottom
+    moved_for = max(0.0, bottom["y"] + bottom["height"] + 8 - 900)
+    assert moved_for == pytest.approx(0.0, abs=12)  # what was opened is in the window
+    assert 0 <= after["y"] <= before["y"] + 1
+
+
+def test_the_failures_are_gone_through_one_by_one(opened: Opened, hard_matrix: Matrix) -> None:
+    failed = [str(n) for n, run in enumerate(hard_matrix.runs) if run.outcome != "ok"]
+    value = "() => document.getElementById('hard-failures').value"
+    before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
+    seen = [opened.page.evaluate(value)]
+    assert before.is_disabled()
+    while not after.is_disabled():
+        after.click()
+        seen.append(opened.page.evaluate(value))
+    assert seen == failed
+    top = opened.page.locator("#hard-row").bounding_box()
+    before.click()
+    assert opened.page.evaluate(value) == failed[-2]
+    assert opened.page.locator("#hard-row").bounding_box() == top
+
+
+def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
+    opened: Opened, hard_matrix: Matrix
+) -> None:
+    number = next(n for n, run in enumerate(hard_matrix.runs) if not run.grid)
+    chip = opened.page.locator(f"#hard-between [data-near='{number}']")
+    chip.click()
+    assert "steps in a turn = 60" in opened.page.locator("#hard-told").inner_text()
+    assert (
+        opened.page.locator(f"#hard-between [data-near='{number}']").get_attribute("aria-pressed")
+        == "true"
+    )
+    assert opened.page.evaluate("() => document.activeElement.dataset.near") == str(number)
+
+
+def test_the_picture_moves_beside_the_truth_and_stops(opened: Opened, hard_matrix: Matrix) -> None:
+    opened.page.select_option("#hard-failures", str(first(hard_matrix, "diverged")))
+    still = shapes(opened.page, "overlays")
+    assert still
+    assert shapes(opened.page, "reference") != still
+    opened.page.wait_for_timeout(150)
+    assert shapes(opened.page, "overlays") == still  # reduced motion is wanted: it waits
+    play = opened.page.locator("#hard-play")
+    play.click()
+    assert play.inner_text() == "Pause"
+    opened.page.wait_for_timeout(250)
+    truth = shapes(opened.page, "reference")
+    assert shapes(opened.page, "overlays") != still
+    opened.page.wait_for_timeout(150)
+    assert shapes(opened.page, "reference") != truth
+    play.click()
+    stopped = shapes(opened.page, "overlays")
+    opened.page.wait_for_timeout(150)
+    assert shapes(opened.page, "overlays") == stopped
+    assert opened.page.locator("#hard-picture .trail").count() > 0
+
+
+def test_the_picture_moves_by_itself_where_motion_is_welcome(
+    opened: Opened, hard_matrix: Matrix
+) -> None:
+    opened.page.emulate_media(reduced_motion="no-preference")
+    cell(opened.page, first(hard_matrix, "diverged")).click()
+    assert opened.page.locator("#hard-play").inner_text() == "Pause"
+    before = shapes(opened.page, "overlays")
+    opened.page.wait_for_timeout(200)
+    assert shapes(opened.page, "overlays") != before
+    cell(opened.page, 0).click()
+    assert opened.page.locator("#hard-play").text_content() == "Play"
+
+
+def test_an_error_can_be_magnified(opened: Opened, hard_matrix: Matrix) -> None:
+    opened.page.select_option("#hard-failures", str(first(hard_matrix, "degraded")))
+    assert opened.page.input_value("#hard-factor") == "1"
+    true = shapes(opened.page, "overlays")
+    opened.page.select_option("#hard-factor", "10")
+    assert shapes(opened.page, "overlays") != true
+    assert "m." in opened.page.locator("#hard-readout").inner_text()
+
+
+def test_the_command_is_copied(opened: Opened) -> None:
+    opened.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    opened.page.locator(".repeat .copy").click()
+    opened.page.locator(".repeat .copy", has_text="Copied").wait_for()
+    copied = opened.page.evaluate("() => navigator.clipboard.readText()")
+    assert copied == (
+        "crankcheck stability fourbar-lecture-1-steps --engine mujoco --profile as-shipped --at 30"
+    )
+
+
+@pytest.mark.parametrize("opened_up", [False, True])
+def test_nothing_runs_out_of_a_phone(phone: Opened, opened_up: bool) -> None:
+    wide(phone)
+    phone.page.evaluate(
+        "open => document.querySelectorAll('details').forEach(each => { each.open = open; })",
+        opened_up,
+    )
+    assert phone.page.evaluate(OUT) == []
+    assert phone.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    frame = "each => [each.scrollWidth, each.clientWidth]"
+    inner, outer = phone.page.locator("#hard .map").evaluate(frame)
+    assert inner > outer  # the map scrolls in its own box
+    panel = phone.page.locator("#hard-panel")
+    assert panel.evaluate("each => each.getBoundingClientRect().right") <= 390
+    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 200; }")
+    assert panel.evaluate("each => each.getBoundingClientRect().left") >= 0
+    phone.page.locator("#hard .map").evaluate("each => { each.scrollLeft = 0; }")
+
+
+def test_a_wide_page_needs_no_sideways_scrolling(opened: Opened) -> None:
+    assert opened.page.evaluate("() => document.documentElement.scrollWidth") <= 1280
+    inner, outer = opened.page.locator("#hard .map").evaluate(
+        "each => [each.scrollWidth, each.clientWidth]"
+    )
+    assert inner <= outer
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_signs_and_values_can_be_read_in_both_themes(opened: Opened, scheme: str) -> None:
+    opened.page.emulate_media(color_scheme=scheme)
+    ratios = opened.page.evaluate(CONTRASTS)
+    assert len(ratios) > 90
+    assert min(ratios) >= 4.5
+
+
+def test_every_control_has_a_name(opened: Opened) -> None:
+    assert opened.page.evaluate(NAMELESS, CONTROLS) == []
+
+
+def test_hostile_text_does_nothing(open_page: Open, hard_matrix: Matrix, tmp_path: Path) -> None:
+    path = tmp_path / "evil.html"
+    path.write_text(stability_page(evil(hard_matrix)), encoding="utf-8")
+    found = open_page(path)
+    found.page.evaluate(
+        "() => document.querySelectorAll('#hard-map button').forEach(b => b.click())"
+    )
+    found.page.select_option("#hard-failures", index=1)
+    assert found.page.evaluate("() => window.hacked") is None
+    assert found.page.locator("main img").count() == 0
+    assert "{{ 7 * 7 }}" in found.page.locator("#hard-told").inner_text()
+    assert found.said == []
+
+
+def test_a_page_without_pictures_and_with_what_is_not_known_works(
+    open_page: Open, hard_matrix: Matrix, tmp_path: Path
+) -> None:
+    lost = dict.fromkeys(("error", "gap", "drive", "sine", "dt_s", "wall_s"), float("nan"))
+    path = tmp_path / "one.html"
+    path.write_text(
+        stability_page(one_case(hard_matrix, outcome="exploded", reason="bang " * 400, **lost)),
+        encoding="utf-8",
+    )
+    found = open_page(path, phone=True)
+    cell(found.page, 0).click()
+    assert "exploded" in found.page.locator("#hard-told").inner_text()
+    assert "no moving picture" in found.page.locator("#hard-note").inner_text()
+    assert found.page.evaluate(OUT) == []
+    assert found.said == []
+
+
+def test_a_run_and_a_truth_with_missing_samples_are_drawn_as_far_as_they_go(
+    open_page: Open, hard_matrix: Matrix, tmp_path: Path
+) -> None:
+    picture = copy.deepcopy(hard_matrix.pictures[0])
+    samples = len(np.asarray(picture.drawing["crank_deg"]))
+    rows = np.full((4, samples), 1e-3)
+    rows[:, samples // 2 :] = np.nan
+    exact = np.ones((4, samples)) * np.linspace(0.0, 0.1, samples)
+    exact[:, samples - 5 :] = np.nan
+    drawing = {**picture.drawing, "places": packed(exact)}
+    broken = replace(picture, drawing=drawing, rows=packed(rows))
+    path = tmp_path / "broken.html"
+    path.write_text(stability_page(replace(hard_matrix, pictures=(broken,))), encoding="utf-8")
+    found = open_page(path)
+    slider = found.page.locator("#hard-slider")
+    slider.focus()
+    for key, truth, run in (("Home", 3, 3), ("End", 0, 0)):
+        found.page.keyboard.press(key)
+        assert found.page.locator("#hard-picture .reference .link").count() == truth
+        assert found.page.locator("#hard-picture .overlays .link").count() == run
+    assert found.said == []
+
+
+def test_hard_cases_work_in_the_report_beside_its_other_sections(
+    open_page: Open, small: Stored, hard_matrix: Matrix, tmp_path: Path
+) -> None:
+    path = tmp_path / "report.html"
+    path.write_text(page(small, hard_matrix), encoding="utf-8")
+    found = open_page(path)
+    found.show("motion")
+    cell(found.page, first(hard_matrix, "diverged")).click()
+    found.page.locator("#hard-play").click()
+    found.page.wait_for_timeout(100)
+    assert found.page.locator("#motion-play").inner_text() == "Play"
+    assert "diverged" in found.page.locator("#hard-told").inner_text()
+    assert found.said == []
