@@ -9,6 +9,7 @@ from models.errors import SceneError
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
+    LARGEST,
     DriverTable,
     FromRestDriver,
     LinkTable,
@@ -74,10 +75,11 @@ def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Poin
     for name, places in [(GROUND, table.ground.points), *points.items()]:
         names = list(places)
         faults += [
-            f"{'' if name == GROUND else 'links.'}{name}: length {a}{b} is 0; set the points apart"
+            f"{'' if name == GROUND else 'links.'}{name}: length {a}{b} is "
+            f"{math.dist(places[a], places[b]):g}; set the points apart"
             for i, a in enumerate(names)
             for b in names[i + 1 :]
-            if math.dist(places[a], places[b]) == 0.0
+            if math.dist(places[a], places[b]) < 1 / LARGEST
         ]
     for name, link in table.links.items():
         if link.bar is not None and set(link.bar) & set(link.points):

@@ -8,9 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+SHOWN = 20
+"""Faults of one scene that a message lists; the others are counted."""
+
+
+def harmless(text: str) -> str:
+    """The text with what is not seen, but acts on a terminal or on other letters, as escapes.
+
+    ``\\x1b`` moves a cursor, ``\\u202e`` turns text round; new lines and tabs stay.
+    """
+    return "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in text)
+
 
 class CrankcheckError(Exception):
-    """A fault in what the user asked for; its text is the whole message."""
+    """A fault in what the user asked for; its text is the whole message.
+
+    The text may hold what stood in a file: nothing in it acts on the terminal that it is shown on.
+    """
+
+    def __str__(self) -> str:
+        return harmless(super().__str__())
 
 
 class SceneError(CrankcheckError):
@@ -27,7 +44,11 @@ class SceneError(CrankcheckError):
     def __init__(self, place: str, faults: Sequence[str]) -> None:
         self.place = place
         self.faults = tuple(faults)
-        super().__init__(f"{place}: " + "\n  ".join(("",) * (len(faults) > 1) + self.faults))
+        lines = [*self.faults[:SHOWN]]
+        if left := len(faults) - len(lines):
+            lines.append(f"and {left} more")
+        where = place.replace("\n", "\\n")  # a line of the message is one of ours
+        super().__init__(f"{where}: " + "\n  ".join([""] * (len(lines) > 1) + lines))
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, tuple[str, ...]]]:
         """Rebuilt from its parts, in another process too."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -18,7 +19,14 @@ from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
 
 SCENE_FOLDER = Path(__file__).parent / "scenes"
-MOST_BYTES = 1_000_000
+MOST_BYTES = 200_000
+"""A thousand links take about half of it."""
+DEEPEST = 50
+"""Parts of a key: the time and memory of `tomllib` grow with their square, gigabytes at 50,000."""
+_DEEP_KEY = re.compile(
+    r"""(?<![\w"'\\-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    rf"{{{DEEPEST}}}"
+)
 M = TypeVar("M", bound=BaseModel)
 
 
@@ -85,10 +93,7 @@ def scene_texts(names: Iterable[str]) -> dict[str, str]:
 
 def parse_scene(text: str, place: str) -> Scene:
     """A scene from TOML text; ``place`` names it in messages. Raises SceneError."""
-    try:
-        raw = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise SceneError(place, [f"not valid TOML: {str(error)[:300]}"]) from None
+    raw = _parsed(text, place)
     faults: list[str] = []
     table = _validated(SceneTable, raw, "", faults)
     driver = _driver(raw.get("driver"), faults)
@@ -96,6 +101,23 @@ def parse_scene(text: str, place: str) -> Scene:
     if faults or table is None or driver is None:
         raise SceneError(place, faults)
     return scene_from_table(table, driver, place)
+
+
+def _parsed(text: str, place: str) -> dict[str, object]:
+    """The tables of TOML text. Raises SceneError."""
+    if deep := _DEEP_KEY.search(text):
+        line = text.count("\n", 0, deep.start()) + 1
+        fault = f"line {line}: a key of more than {DEEPEST} parts; the deepest of a scene has 4"
+        raise SceneError(place, [fault])
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        why = "lists or tables nested too deep; the deepest of a scene has 4 levels"
+    except tomllib.TOMLDecodeError as error:
+        why = str(error)[:300]
+    except ValueError:  # of `int`, which reads only so many digits
+        why = "a number of more digits than can be read; write it as a float, such as 1e15"
+    raise SceneError(place, [f"not valid TOML: {why}"])
 
 
 def read_text(path: Path) -> str:
@@ -175,7 +197,7 @@ def _line(
     if kind == "string_pattern_mismatch":
         text = parts[-1] in ("source", "note")
         message = (
-            "text without control characters"
+            "text without control characters (of a terminal, of lines, of direction)"
             if text
             else "a name is a letter, then up to 39 letters, digits, - or _"
         )

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    model_validator,
+)
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
-Text = Annotated[str, StringConstraints(max_length=2000, pattern=r"^[^\x00-\x08\x0b-\x1f\x7f]*$")]
-"""Text that is shown and written into other files: no control characters."""
+ACTING = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206f\ufffe\uffff"
+"""Characters that act instead of being seen: a terminal obeys them, or they break lines or turn the
+order of letters round; the last two XML can not hold."""
+Text = Annotated[str, StringConstraints(max_length=2000, pattern=rf"^[^{ACTING}]*$")]
+"""Text that is shown and written into other files."""
 LARGEST = 1e15
 """No number of a scene is larger, and no length or mass smaller than its inverse: squares of
 them, and products with rates, stay numbers."""
@@ -17,6 +27,21 @@ Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
 Place = tuple[Number, Number]
+MOST_BODIES, MOST_POINTS = 1000, 100
+"""Links of a scene (sliders, and points of the ground, too), and points of a link: the distances
+between all points of a link are looked at many times."""
+
+
+def _not_tiny(value: float) -> float:
+    """Refuse a number so near to 0 that its inverse, a period, is no number to work with."""
+    if 0.0 < abs(value) < 1 / LARGEST:
+        raise ValueError(
+            f"found {value:g}; use {1 / LARGEST:g} or more, or {-1 / LARGEST:g} or less"
+        )
+    return value
+
+
+Rate = Annotated[Number, AfterValidator(_not_tiny)]
 
 
 class Table(BaseModel):
@@ -26,7 +51,7 @@ class Table(BaseModel):
 
 
 class GroundTable(Table):
-    points: dict[Name, Place] = Field(min_length=1)
+    points: dict[Name, Place] = Field(min_length=1, max_length=MOST_BODIES)
 
 
 class LinkTable(Table):
@@ -34,7 +59,7 @@ class LinkTable(Table):
 
     bar: tuple[Name, Name] | None = None
     length_m: Positive | None = None
-    points: dict[Name, Place] = Field(default_factory=dict)
+    points: dict[Name, Place] = Field(default_factory=dict, max_length=MOST_POINTS)
     mass_kg: NonNegative | None = None
     centre_m: Place | None = None
     inertia_kg_m2: NonNegative | None = None
@@ -74,7 +99,7 @@ class SliderTable(Table):
 class ConstantDriver(Table):
     link: Name
     law: Literal["constant"] = "constant"
-    speed_rad_s: Number
+    speed_rad_s: Rate
     start_deg: Degrees = 0.0
 
 
@@ -82,15 +107,15 @@ class OscillatingDriver(Table):
     link: Name
     law: Literal["oscillating"]
     centre_deg: Degrees
-    amplitude_deg: Degrees
-    frequency_rad_s: Number
+    amplitude_deg: Annotated[Degrees, AfterValidator(_not_tiny)]
+    frequency_rad_s: Rate
     phase_deg: Degrees = 0.0
 
 
 class FromRestDriver(Table):
     link: Name
     law: Literal["from-rest"]
-    speed_rad_s: Number
+    speed_rad_s: Rate
     rise_s: Positive
     start_deg: Degrees = 0.0
 
@@ -102,8 +127,8 @@ class SceneTable(Table):
     source: Annotated[Text, StringConstraints(min_length=1)]
     note: Text = ""
     ground: GroundTable
-    links: dict[Name, LinkTable] = Field(min_length=1)
-    sliders: dict[Name, SliderTable] = Field(default_factory=dict)
+    links: dict[Name, LinkTable] = Field(min_length=1, max_length=MOST_BODIES)
+    sliders: dict[Name, SliderTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     driver: dict[str, object]
     branch: dict[Name, Literal[-1, 1]] = Field(default_factory=dict)
     gravity_m_s2: Place = (0.0, 0.0)

@@ -40,6 +40,7 @@ class _Moving:
         )
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of a run that came apart
 def body_poses(
     limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array, lag_s: float = 0.0
 ) -> Mapping[str, BodyPose]:

@@ -6,6 +6,7 @@ import math
 import os
 import pickle
 import re
+import time
 from pathlib import Path
 
 import pytest
@@ -169,6 +170,13 @@ FAULTS = {
     "angle without digits": ("start_deg = 90.0", "start_deg = 1e17", "driver.start_deg: found 1e+17"),
     "control character": ('source = "a test"', 'source = "a \\u001b[31m test"', "text without control characters"),
     "link named as what does not move": ("crank =", "world =", "links.world: that name stands for what does not move"),
+    "direction turned round": ('source = "a test"', 'source = "a \\u202e test"', "text without control characters"),
+    "control character of eight bits": ('source = "a test"', 'source = "a \\u009b31m"', "text without control characters"),
+    "letter that XML lacks": ('source = "a test"', 'source = "a \\uffff"', "text without control characters"),
+    "speed whose inverse is no number": ("speed_rad_s = 10.0", "speed_rad_s = -1e-300", "driver.speed_rad_s: found -1e-300; use 1e-15 or more, or -1e-15 or less"),
+    "points next to each other": ("D = [0.3, 0.0]", "D = [1e-300, 0.0]", "ground: length AD is 1e-300; set the points apart"),
+    "number of too many digits": ("length_m = 0.25", "length_m = " + "9" * 5000, "not valid TOML: a number of more digits than can be read"),
+    "lists too deep": ("length_m = 0.25", "length_m = " + "[" * 5000, "not valid TOML: lists or tables nested too deep"),
     "no source": ('source = "a test"', "", "source: missing"),
     "broken TOML": ("[ground]", "[ground", "not valid TOML"),
 }  # fmt: skip
@@ -210,6 +218,48 @@ def test_names_of_any_shape_are_faults_with_short_messages(table: str) -> None:
     with pytest.raises(SceneError) as error:
         parse_scene(f"{GOOD}\n{table}\n", "file.toml")
     assert max(len(fault) for fault in error.value.faults) < 400
+
+
+@pytest.mark.parametrize("part", ["a.", '"a".', "'a' . ", r'"a\".b".', "a\t.", "-."])
+@pytest.mark.parametrize("head", ["", " ", "[", "[[ ", "x = { "])
+def test_key_of_very_many_parts_is_a_fault_before_it_fills_memory(head: str, part: str) -> None:
+    with pytest.raises(SceneError, match="line 2: a key of more than 50 parts"):
+        parse_scene("# deep\n" + head + 1000 * part, "file.toml")
+
+
+@pytest.mark.parametrize("text", ['"\\' * 90_000, "x." * 49 + "\n", "a" + " " * 190_000], ids=len)
+def test_a_file_without_a_deep_key_is_looked_through_at_once(text: str) -> None:
+    began = time.process_time()
+    with pytest.raises(SceneError, match="not valid TOML"):
+        parse_scene(text, "file.toml")
+    assert time.process_time() - began < 1.0
+
+
+def test_very_many_faults_are_counted() -> None:
+    text = GOOD + "".join(f"x{i} = 1\n" for i in range(1000))
+    with pytest.raises(SceneError) as error:
+        parse_scene(text, "file.toml")
+    assert len(error.value.faults) == 1000
+    assert str(error.value).endswith("driver.x19: unknown key; known: link, law, speed_rad_s, "
+                                     "start_deg\n  and 980 more")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("head", "most"), [("[links.many.points]", 100), ("[ground.points]", 1000)]
+)
+def test_more_points_than_can_be_compared_are_a_fault(head: str, most: int) -> None:
+    text = GOOD.replace("[ground]\npoints =", "#") if "ground" in head else GOOD
+    points = "".join(f"P{i} = [{i}.0, 0.0]\n" for i in range(8000))
+    began = time.process_time()
+    with pytest.raises(SceneError, match=rf"points: found .* at most {most} items"):
+        parse_scene(f"{text}\n{head}\n{points}", "file.toml")
+    assert time.process_time() - began < 2.0
+
+
+@pytest.mark.parametrize("acting", ["\u202e", "\x1b[2J", "\ufeff", "\x9b", "\u2028", "\ud800"])
+def test_what_acts_on_a_terminal_is_shown_as_an_escape(acting: str) -> None:
+    assert str(CrankcheckError(f"a{acting}b")) == f"a{ascii(acting)[1:-1]}b"
+    assert str(SceneError(f"a{acting}\nb", ["c"])) == f"a{ascii(acting)[1:-1]}\\nb: c"
 
 
 @pytest.mark.parametrize("key", ["links", "ground", "driver", "branch", "sliders"])

@@ -53,3 +53,12 @@ def test_accelerations_are_the_rates_of_the_velocities(name: str) -> None:
         by_hand = (pose.velocity[2] - pose.velocity[0]) / 2e-4
         np.testing.assert_allclose(pose.origin_acceleration[1], by_hand, rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(pose.alpha[1], (pose.omega[2] - pose.omega[0]) / 2e-4, rtol=1e-8)
+
+
+def test_coordinates_beyond_numbers_are_a_run_that_came_apart_and_no_warning() -> None:
+    scene = load_scene("slider-crank-offset")
+    start = solve(scene, np.array([0.0])).state(0)
+    limbs = plan(scene, start).limbs
+    q = np.full((2, sum(len(limb.freedoms) for limb in limbs)), 1e300)
+    found = body_poses(limbs, q, q, q)
+    assert not all(np.isfinite(pose.origin_acceleration).all() for pose in found.values())
