@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.chunk import Chunk
-from analytic.dyads.parts import Dyad, OpenError
+from analytic.dyads.parts import CLOSED, Dyad, OpenError
 from analytic.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Array, Real
 from analytic.smooth import WINDOW, Index, Piece, Rates, Unknown, put
 from analytic.steps import Step, stretched
@@ -47,10 +47,10 @@ SIDE = 1e-3
 """Where a touch must be closed on both sides, and its root be a V [rad]."""
 AT_START = 1e-7
 """A run that starts nearer to a change point than this [rad] is on the branch that it goes to."""
-HALVES = tuple(2.0 ** (-0.5 * k) for k in range(13))
+HALVES = tuple(2.0 ** (-0.5 * k) for k in range(21))
 """Half-widths [rad] that are tried for the interpolation through a change point."""
-LEAST_CERTAIN = 1e-6
-"""The largest bound of a derivative, by angles in rad, that is called a continuation."""
+LEAST_CERTAIN = 1e-3
+"""The largest bound of a derivative, over its size, with which motion counts as continued."""
 UNSURE = 64.0
 """How much more than by itself a dyad may be open in a change point of one before it."""
 
@@ -87,8 +87,8 @@ class Passage:
             piece = self.piece(i)
             index = np.flatnonzero(np.abs(x) < piece.window)
             speed = _rates(chunk, index)
-            first = put(first, index, *piece.first.at(x[index], speed))
-            second = put(second, index, *piece.second.at(x[index], speed))
+            first = put(first, index, *piece.first.at(x[index] / piece.half, speed))
+            second = put(second, index, *piece.second.at(x[index] / piece.half, speed))
             short[index] = np.minimum(short[index], 0.0)
         if not chunk.stretch and np.any(open_ := short > 0.5 * closure.rounding_m):
             raise OpenError(np.where(open_, short, -np.abs(short)))
@@ -130,7 +130,7 @@ class Passage:
                 continue
             if piece.doubt < least:
                 best, least = piece, piece.doubt
-            elif piece.doubt > 4.0 * least:
+            elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
                 break
         if best is None or least > LEAST_CERTAIN:
             raise CrankcheckError(
@@ -272,6 +272,8 @@ class _Look:
         """
         _, short, rounding = self._closure(theta)
         short = np.abs(short + 0.5 * rounding)
+        # Where two pins meet, their places may be smaller than what they are the difference of.
+        rounding = np.maximum(rounding, CLOSED * self.scene.longest_m)
         near = np.zeros(theta.shape, dtype=bool)
         for passage in self.found.values():
             near |= passage.is_near(theta)

@@ -85,7 +85,7 @@ class Series:
         return np.asarray((self.bounds @ share.T).max(axis=1) + self.doubt)
 
     def at(self, x: Array, speed: Rates) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-        """The unknown, its rate and acceleration, and their bounds, for the driver's rates."""
+        """The unknown, its rate and acceleration, and their bounds, at places in (-1, 1)."""
         share = weights(COUNT, x)
         q, q1, q2 = self.values @ share.T
         b, b1, b2 = self.bounds @ np.abs(share).T + self.doubt[:, None]
@@ -115,8 +115,8 @@ class Rates:
 class Piece:
     """The two unknowns of a dyad around a change point.
 
-    ``half`` is half the range of the nodes, ``doubt`` the largest bound of the two derivatives by
-    the driver's angle, slides over the longest length of the scene.
+    ``half`` is half the range of the nodes; ``doubt`` is the largest bound of a derivative by the
+    driver's angle over that derivative, or over 1 and the longest length of the scene.
     """
 
     half: float
@@ -133,13 +133,15 @@ class Piece:
     def of(solved: Solved, centre: float, half: float, longest_m: float) -> Piece:
         """The piece around the driver angle ``centre``. Raises OpenError at nodes out of reach."""
         wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
-        series, doubt = [], 0.0
+        series: list[Series] = []
+        doubt = 0.0
         for fine, coarse in zip(solved(wide), solved(narrow), strict=True):
             turning = isinstance(fine, Turning)
             found = Series.of(_levels(fine, wide), _levels(coarse, narrow), half, turning=turning)
-            doubt = max(doubt, float(found.worst()[1:].max()) / (1.0 if turning else longest_m))
+            sizes = np.abs(found.values).max(axis=1) + (1.0 if turning else longest_m)
+            doubt = max(doubt, float((found.worst() / sizes)[1:].max()))
             series.append(found)
-        return Piece(half, *series, doubt)
+        return Piece(half, series[0], series[1], doubt)
 
 
 def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
