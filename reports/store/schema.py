@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
@@ -47,6 +48,7 @@ TEXT = {
     "processor",
     "made",
 }
+TEXTS = ("string", "large_string")
 FLAGS = {"gated"}
 NEEDED: Mapping[str, tuple[str, ...]] = {
     "cells": (
@@ -81,13 +83,7 @@ def typed(found: pa.Table, name: str) -> pa.Table:
     ValueError
         Not the table ``name``: a needed column is not there, or holds something else.
     """
-    lacking = [column for column in NEEDED[name] if column not in found.column_names]
-    if lacking:
-        raise ValueError(f"no column {lacking[0]}")
-    wanted = pa.schema(
-        # What another version of crankcheck adds may be text, and hurts nobody.
-        [(one.name, _type_of(one, name)) for one in found.schema]
-    )
+    wanted = _wanted(tuple((one.name, str(one.type)) for one in found.schema), name)
     if not found.schema.equals(wanted):
         found = found.cast(wanted)
     if found.column("key").null_count:
@@ -95,10 +91,15 @@ def typed(found: pa.Table, name: str) -> pa.Table:
     return found
 
 
-def _type_of(field: pa.Field, table: str) -> pa.DataType:
-    """The type that a column of a table that was read should have."""
-    text = pa.types.is_string(field.type) or pa.types.is_large_string(field.type)
-    return pa.string() if text and field.name not in NEEDED[table] else _type(field.name)
+@cache
+def _wanted(found: tuple[tuple[str, str], ...], table: str) -> pa.Schema:
+    """The types that the columns of a table that was read should have, by name and found type."""
+    lacking = [column for column in NEEDED[table] if column not in dict(found)]
+    if lacking:
+        raise ValueError(f"no column {lacking[0]}")
+    # What another version of crankcheck adds may be text, and hurts nobody.
+    more = {name for name, kind in found if kind in TEXTS and name not in NEEDED[table]}
+    return pa.schema([(name, pa.string() if name in more else _type(name)) for name, _ in found])
 
 
 def _type(name: str) -> pa.DataType:

@@ -135,6 +135,13 @@ def test_another_format_is_not_written_to(name: str, store: Path, swept: Sweep) 
     assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
 
 
+def test_of_a_cell_that_is_there_twice_the_one_beside_its_errors_counts(store: Path) -> None:
+    CASES["cells twice"].change(store)
+    found = read_store(store)
+    assert "without errors" not in "".join(found.notice)
+    assert set(found.errors.key) == set(found.cells.key)
+
+
 def test_an_unreadable_file_is_damaged_too(
     store: Path, whole: Path, swept: Sweep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
