@@ -335,6 +335,6 @@ def _rates(chunk: Chunk, index: Index) -> Rates:
 
 
 def _turned(angle: float) -> float:
-    """A driver angle in [0, 2 pi), free of rounding below 0."""
+    """A driver angle in [0, 2 pi), 0 where it is that but for rounding."""
     turned = angle % math.tau
-    return 0.0 if math.tau - turned < AT_START else turned
+    return 0.0 if min(turned, math.tau - turned) < AT_START else turned

@@ -141,6 +141,13 @@ def _samples(values: Array) -> Array:
     return values
 
 
+def repeats_after(scene: Scene) -> float:
+    """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
+    mechanism goes through an odd number of change points in one."""
+    passages = _Way.of(scene).passages.values()
+    return max((passage.period for passage in passages), default=math.tau)
+
+
 @dataclass
 class _Way:
     """A scene made ready to be solved, and the driver angles that it was solved for."""

@@ -1,8 +1,9 @@
 """How far an output travels: swing of a link, stroke of a slider, time ratio, limit positions.
 
 For any mechanism whose driver turns fully: the output's rate per driver rate is looked at over a
-turn, and its changes of sign, the limit positions, are refined by bisection. Where a closed form
-exists (`analytic.fourbar`, slider-crank, slotted lever) the tests hold this to it.
+turn (over two, where change points let positions repeat after two only), and its changes of sign,
+the limit positions, are refined by bisection. Where a closed form exists (`analytic.fourbar`,
+slider-crank, slotted lever) the tests hold this to it.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.kinematics import solve_driven
+from analytic.kinematics import repeats_after, solve_driven
 from analytic.plane import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -22,17 +23,18 @@ SCAN = 720
 
 @dataclass(frozen=True)
 class Travel:
-    """The travel of an output over a turn of the driver.
+    """The travel of an output over ``period_rad`` of the driver, after which it repeats.
 
     ``low`` and ``high`` are its extremes ([rad] for a link, [m] for a slider), ``low_at_rad`` and
-    ``high_at_rad`` the driver angles (0 to 2 pi) where it has them; ``time_ratio`` is the driver
-    angle of the longer stroke over that of the shorter.
+    ``high_at_rad`` the driver angles (0 to ``period_rad``) where it has them; ``time_ratio`` is the
+    driver angle of the longer stroke over that of the shorter.
     """
 
     low: float
     high: float
     low_at_rad: float
     high_at_rad: float
+    period_rad: float = math.tau
 
     @property
     def stroke(self) -> float:
@@ -41,12 +43,13 @@ class Travel:
 
     @property
     def time_ratio(self) -> float:
-        forth = (self.high_at_rad - self.low_at_rad) % math.tau
-        return max(forth, math.tau - forth) / min(forth, math.tau - forth)
+        forth = (self.high_at_rad - self.low_at_rad) % self.period_rad
+        back = self.period_rad - forth
+        return max(forth, back) / min(forth, back)
 
 
 def travel(scene: Scene, output: str) -> Travel:
-    """The travel of link or slider ``output`` over a turn of the driver.
+    """The travel of link or slider ``output`` until the mechanism repeats.
 
     Raises
     ------
@@ -54,12 +57,14 @@ def travel(scene: Scene, output: str) -> Travel:
         The driver does not turn fully.
     CrankcheckError
         No such output; an output that turns fully; one with more than two limit positions; or a
-        turn that passes a singular position.
+        turn that passes a singular position, change points apart.
     """
     if output not in scene.links and output not in scene.sliders:
         have = ", ".join([*scene.links, *scene.sliders])
         raise CrankcheckError(f"{scene.name}: no link or slider {output!r}; it has {have}")
-    grid: Array = (np.arange(SCAN, dtype=np.float64) + 0.5) * (math.tau / SCAN)
+    period = repeats_after(scene)
+    count = SCAN * round(period / math.tau)
+    grid: Array = (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
     rate = _rate(scene, output, grid)
     _refuse_singular(scene, grid)
     turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
@@ -82,9 +87,13 @@ def travel(scene: Scene, output: str) -> Travel:
     order = np.argsort(np.concatenate([grid, low]))
     places = _place(scene, output, np.concatenate([grid, low])[order])[np.argsort(order)[-2:]]
     first = 0 if places[0] < places[1] else 1
-    at = low % math.tau
+    at = low % period
     return Travel(
-        float(places[first]), float(places[1 - first]), float(at[first]), float(at[1 - first])
+        float(places[first]),
+        float(places[1 - first]),
+        float(at[first]),
+        float(at[1 - first]),
+        period,
     )
 
 
@@ -92,7 +101,10 @@ def _refuse_singular(scene: Scene, grid: Array) -> None:
     """Refuse a turn in which a dyad all but loses its position: its output may run to infinity."""
     one, zero = np.ones_like(grid), np.zeros_like(grid)
     motion = solve_driven(scene, grid, one, zero, links=(), points=(), sliders=(), bound=False)
+    passed = {crossing.dyad for crossing in motion.crossings}
     for key, sine in motion.conditioning.items():
+        if key in passed:
+            continue
         worst = int(np.argmin(sine))
         if sine[worst] < math.tau / SCAN:
             raise CrankcheckError(

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from analytic.kinematics import solve, solve_driven
 from analytic.structure import Structure, analyse
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, harmless
 from models.files import load_scene
 from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
@@ -23,13 +23,15 @@ from reports.mechanism import facts
 from reports.motion_frame import cleaned, motion_frame
 from reports.motion_tables import certainty, motion_tables, position_tables
 from reports.provenance import crankcheck_version
-from reports.singular import singular_note
+from reports.singular import continued_note, singular_note
 from reports.writing import check_file, clean, write
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
+MOST_DEG = 1e6
+"""As in a scene file: an angle that is larger has lost the digits that are within a turn."""
 ENDLESS = 10**15
 """Steps beyond which a float does not count them."""
 SHEET_ROWS = 1_048_575
@@ -60,7 +62,8 @@ def run_solve(request: Request, console: Console) -> None:
     motion = _over(scene, request) if request.at_deg is None else _at(scene, request.at_deg)
     if request.output is not None:
         _write(request.output, scene, motion)
-        console.print(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
+        told = harmless(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
+        console.print(told, highlight=False, markup=False)
         return
     console.print(heading(scene, structure), highlight=False, markup=False)
     if request.at_deg is not None:
@@ -73,7 +76,7 @@ def run_solve(request: Request, console: Console) -> None:
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )
-    if note := singular_note(scene, motion):
+    for note in filter(None, (continued_note(motion), singular_note(scene, motion))):
         console.print(note, style="yellow", highlight=False, markup=False)
 
 
@@ -104,8 +107,10 @@ def describe_law(scene: Scene) -> str:
 
 def _at(scene: Scene, at_deg: float) -> Motion:
     """The mechanism with its driver at an angle, moving as its law moves it there."""
-    if not math.isfinite(at_deg):
-        raise CrankcheckError(f"--at-deg {at_deg:g}: give an angle in degrees, such as 90")
+    if not abs(at_deg) <= MOST_DEG:
+        raise CrankcheckError(
+            f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
+        )
     theta = math.radians(at_deg)
     omega, alpha = _rates(scene, theta, at_deg)
     return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
@@ -187,3 +192,6 @@ def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str])
         shown.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
         origin = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})
         origin.to_excel(book, sheet_name="source", index=False)
+        for row in book.sheets["source"].iter_rows():
+            for cell in row:
+                cell.data_type = "s"  # a text that begins with "=" is no formula

@@ -27,7 +27,7 @@ from reports.junit import junit
 from reports.pool import check_all
 from reports.provenance import provenance
 from reports.rows import cell_row
-from reports.singular import refuse_singular
+from reports.singular import passage_note, refuse_singular
 from reports.tolerance import parse
 from reports.verdict_table import show
 from reports.writing import check_different, check_file, check_folder, write
@@ -83,6 +83,8 @@ def verify(request: Request, console: Console, progress: Console) -> int:
     cells = plan(request)
     _check_outputs(request)
     digests = scene_digests(request.scenes)
+    for note in passages(cells):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     base = _baseline(request, cells, digests)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("verifying", total=len(cells))
@@ -145,6 +147,13 @@ def plan(request: Request) -> list[Cell]:
         for profile, gated in profiles
         for name in engines
     ]
+
+
+def passages(cells: Sequence[Cell]) -> list[str]:
+    """What is to be said of change points, once for every scene and duration of the cells."""
+    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in cells}
+    notes = (passage_note(scene, duration_s) for (_, duration_s), scene in runs.items())
+    return [note for note in dict.fromkeys(notes) if note]
 
 
 def _check_outputs(request: Request) -> None:

@@ -216,10 +216,11 @@ def test_bad_requests_are_refused_before_anything_runs(
 
 def test_a_run_through_a_singular_position_is_refused(tmp_path: Path) -> None:
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-    rhombus = tmp_path / "rhombus.toml"
-    rhombus.write_text(re.sub(r"length_m = 0\.\d+", "length_m = 0.3", text), encoding="utf-8")
-    with pytest.raises(CrankcheckError, match="driver 180 deg"):
-        told(replace(SMALL, scenes=(str(rhombus),)))
+    text = re.sub(r"length_m = 0\.\d+", "length_m = 0.3", text)
+    nearly = tmp_path / "nearly.toml"  # a rhombus, but for 1e-13 m
+    nearly.write_text(text.replace("0.3 }", "0.2999999999999 }", 1), encoding="utf-8")
+    with pytest.raises(CrankcheckError, match="driver 360 deg"):
+        told(replace(SMALL, scenes=(str(nearly),)))
 
 
 SCRIPT = """
