@@ -57,6 +57,14 @@ class Structure:
         return self.count + sum(bridge.excess for bridge in self.redundant)
 
     @property
+    def words(self) -> str:
+        """The mobility for people, and what the count makes of it where that is something else."""
+        if not self.redundant:
+            return f"mobility {self.mobility}"
+        spare = ", ".join(bridge.link for bridge in self.redundant)
+        return f"mobility {self.mobility} ({self.count} by count; redundant: {spare})"
+
+    @property
     def pairs(self) -> int:
         """p5: the number of pairs of one freedom."""
         return _count_pairs(self.pins, self.prismatics)

@@ -85,7 +85,7 @@ def heading(scene: Scene, structure: Structure) -> str:
     groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
     lines = [
         f"{scene.name}: {scene.source}",
-        f"mobility {structure.mobility}; driver {scene.driver.link}, {describe_law(scene)}; "
+        f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
         f"groups in solving order: {groups}",
         *facts(scene, structure),
     ]

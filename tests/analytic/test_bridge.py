@@ -69,12 +69,14 @@ def test_rockers_beyond_the_second_are_redundant(rockers: int) -> None:
     spare = [f"rocker{i}" for i in range(2, rockers)] + ["lever"]
     assert [bridge.link for bridge in found.redundant] == spare
     assert found.redundant[-1].pins == (f"A{rockers}", f"B{rockers}")
+    assert found.words == f"mobility 1 ({2 - rockers} by count; redundant: {', '.join(spare)})"
 
 
 def test_shipped_scenes_have_no_redundant_links() -> None:
     for name in ("fourbar-lecture-1", "shaper", "sixbar-watt"):
         found = analyse(load_scene(name))
         assert (found.count, found.mobility, found.redundant) == (1, 1, ())
+        assert found.words == "mobility 1"
 
 
 @pytest.mark.parametrize("rockers", [2, 3])

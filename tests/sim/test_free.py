@@ -165,6 +165,21 @@ def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleT
         refuse_other_model(*told, session.facts(), DT_S, "free")
 
 
+def test_velocities_other_than_the_state_s_are_refused_whatever_the_law(
+    fake_engine: ModuleType,
+) -> None:
+    chain = Chain(1)
+    fast = replace(chain.scene(), driver=Driver("rocker0", ConstantSpeed(0.0, 1e3)))
+    fake = fake_engine.FakeEngine(lambda _, t: Turning(chain).motion(t))
+    facts = opened(fake, chain).facts()
+    refuse_other_model(fast, start_of(chain), facts, DT_S, "free")
+    rod = facts.start.links["rocker1"]
+    links = {**facts.start.links, "rocker1": replace(rod, omega=1.01 * rod.omega)}
+    wrong = replace(facts, start=replace(facts.start, links=links))
+    with pytest.raises(EngineError, match=r"rocker1 turns at -1\.01 rad/s, not -1"):
+        refuse_other_model(fast, start_of(chain), wrong, DT_S, "free")
+
+
 def test_the_mjcf_of_a_free_crank_has_neither_flywheel_nor_motor() -> None:
     chain = Chain(2)
     swinging = replace(chain.scene(), driver=Driver("rocker0", Oscillating(1.0, 0.5, 2.0)))
