@@ -26,7 +26,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from hypothesis import reject
 from hypothesis import strategies as st
 
 from analytic.kinematics import solve
@@ -74,19 +73,17 @@ class Driven:
 
 
 @st.composite
-def driven(draw: st.DrawFn, least: float = 0.0, most: float = LEFT) -> Driven:
-    """A mechanism of one or two forms, of whose joints tuned leaves ``least`` to ``most``."""
+def recipes(draw: st.DrawFn) -> tuple[tuple[str, ...], int]:
+    """Forms of one or two dyads, and a seed for the rest: what `made` makes a mechanism of."""
     forms = draw(st.lists(st.sampled_from(FORMS), min_size=1, max_size=2))
     if forms[0] in CROSSED:
         forms = [draw(st.sampled_from(BASES)), forms[0]]
-    try:
-        return made(forms, draw(st.integers(0, 2**64 - 1)), least, most)
-    except LookupError:
-        reject()
+    return tuple(forms), draw(st.integers(0, 2**64 - 1))
 
 
 def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT) -> Driven:
-    """The mechanism of a seed: laid out and weighed anew until it is within the range.
+    """The mechanism of a seed: laid out and weighed anew until it is within the range, which is one
+    that the iterations of profile tuned leave ``least`` to ``most`` of.
 
     Raises LookupError where that does not come about.
     """
