@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from models.errors import harmless
 from reports.store.manifest import Manifest
 
 Cure = Literal["sweep", "version", "nothing"]
@@ -36,16 +37,16 @@ class Damage:
     @property
     def line(self) -> str:
         """In a line: what is wrong with what, and how many cells that costs."""
-        said = printable(f"{self.path}: {self.what}")
+        said = in_line(f"{self.path}: {self.what}")
         if not self.hides or self.lost == 0:
             return said
         many = "an unknown number of cells" if self.lost is None else counted(self.lost)
         return f"{said}; {many} missing"
 
 
-def printable(text: str) -> str:
-    """A text without characters that a terminal would obey, or could not show."""
-    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
+def in_line(text: str) -> str:
+    """A text without characters that a terminal would obey, in one line."""
+    return harmless(text).replace("\n", "\\n").replace("\t", "\\t")
 
 
 def counted(number: int) -> str:
@@ -87,7 +88,7 @@ def cures(folder: object, damage: Sequence[Damage], manifest: Manifest) -> list[
         if isinstance(words, list) and words[1:2] == ["sweep"]
     )
     usual = f"crankcheck sweep -o {shlex.quote(str(folder))}, with the options it was made with"
-    again = printable("; ".join(list(found)[:COMMANDS])) or usual
+    again = in_line("; ".join(list(found)[:COMMANDS])) or usual
     return [
         f"what mends it: {again}",
         f"(moves what is damaged to {folder}/damaged, and runs what is missing)",
