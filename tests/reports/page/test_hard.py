@@ -184,14 +184,12 @@ def test_what_a_good_engine_does_is_held_whatever_it_is_called(hard_matrix: Matr
     assert "right: locked" in stability_page(right)
 
 
-def test_a_value_that_was_not_run_says_so(hard_matrix: Matrix) -> None:
-    text = stability_page(replace(hard_matrix, runs=hard_matrix.runs[1:]))
-    assert 'title="360: not run"' in text
-    assert (
-        heat(replace(hard_matrix, runs=hard_matrix.runs[1:]))
-        .columns[0]
-        .words.startswith("holds 0 of 3")
-    )
+def test_a_value_that_was_not_run_or_only_by_a_bisection_says_so(hard_matrix: Matrix) -> None:
+    first, *others = hard_matrix.runs
+    for runs in (others, [replace(first, grid=False), *others]):
+        found = replace(hard_matrix, runs=tuple(runs))
+        assert 'title="360: not run"' in stability_page(found)
+        assert heat(found).columns[0].words == "holds 0 of 3 throughout"
 
 
 def test_a_matrix_of_one_run_and_no_picture_has_a_page(hard_matrix: Matrix) -> None:

@@ -163,19 +163,26 @@ def test_a_run_that_holds_has_numbers_and_no_picture(opened: Opened) -> None:
     assert "of failures only" in opened.page.locator("#hard-note").inner_text()
 
 
-def test_a_cell_stays_under_the_finger_that_chose_it(opened: Opened, hard_matrix: Matrix) -> None:
-    target = cell(opened.page, first(hard_matrix, "diverged"))
-    target.scroll_into_view_if_needed()
+def test_a_cell_stays_under_the_finger_that_chose_it(opened: Opened) -> None:
+    # Not all browsers hold a page in place by themselves where something above it goes away.
+    opened.page.add_style_tag(content="html { overflow-anchor: none; padding-bottom: 60rem; }")
+    target = cell(opened.page, 22)  # below the row that is opened
+    target.evaluate("each => scrollBy(0, each.getBoundingClientRect().top - 100)")
     before = target.bounding_box()
-    target.click()
-    after = target.bounding_box()
     assert before
-    assert after
-    bottom = opened.page.locator("#hard-row").bounding_box()
-    assert bottom
-    moved_for = max(0.0, bottom["y"] + bottom["height"] + 8 - 900)
-    assert moved_for == pytest.approx(0.0, abs=12)  # what was opened is in the window
-    assert 0 <= after["y"] <= before["y"] + 1
+    target.click()
+    assert target.bounding_box() == pytest.approx(before, abs=1.5)
+
+
+def test_what_was_opened_is_brought_into_the_window(opened: Opened, hard_matrix: Matrix) -> None:
+    target = cell(opened.page, first(hard_matrix, "diverged"))
+    target.evaluate("each => scrollBy(0, each.getBoundingClientRect().bottom - innerHeight + 20)")
+    target.click()
+    shown, row = target.bounding_box(), opened.page.locator("#hard-row").bounding_box()
+    assert shown
+    assert row
+    assert shown["y"] >= 0
+    assert row["y"] + row["height"] <= 900
 
 
 def test_the_failures_are_gone_through_one_by_one(opened: Opened, hard_matrix: Matrix) -> None:
@@ -184,14 +191,17 @@ def test_the_failures_are_gone_through_one_by_one(opened: Opened, hard_matrix: M
     before, after = opened.page.locator("#hard-before"), opened.page.locator("#hard-after")
     seen = [opened.page.evaluate(value)]
     assert before.is_disabled()
+    row = opened.page.locator("#hard-row")
+    after.scroll_into_view_if_needed()
+    tops = {round((row.bounding_box() or {"y": -1.0})["y"])}
     while not after.is_disabled():
         after.click()
         seen.append(opened.page.evaluate(value))
+        tops.add(round((row.bounding_box() or {"y": -1.0})["y"]))
     assert seen == failed
-    top = opened.page.locator("#hard-row").bounding_box()
+    assert max(tops) - min(tops) <= 2  # the map moves, and what is looked at stays
     before.click()
     assert opened.page.evaluate(value) == failed[-2]
-    assert opened.page.locator("#hard-row").bounding_box() == top
 
 
 def test_what_the_bisection_looked_at_is_chosen_in_the_panel(
