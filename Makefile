@@ -43,6 +43,7 @@ slow: $(VENV)/test
 benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/reference.py
 	$(BIN)/python benchmarks/logging.py
+	$(BIN)/python benchmarks/windows.py
 
 models: $(VENV)/crankcheck
 	for scene in fourbar-lecture-1 slider-crank-central; do \

@@ -65,17 +65,12 @@ def _short(value: float) -> float:
 
 def critical(case: Case, runs: list[Graded]) -> Critical:
     """How far the runs of one line hold; they are in the order in which `line` gave them."""
-    first = runs[0]
-    grid = [run for run in runs if run.grid]
-    harder = -1.0 if len(case.values) > 1 and case.values[-1] < case.values[0] else 1.0
+    first, sign = runs[0], harder(case)
     bad = [run for run in runs if run.outcome not in case.good]
-    fails = min(bad, key=lambda run: harder * run.value, default=None)
-    good = [
-        run
-        for run in runs
-        if run.outcome in case.good and (fails is None or harder * (fails.value - run.value) > 0.0)
-    ]
-    holds = max(good, key=lambda run: harder * run.value, default=None)
+    good = [run for run in runs if run.outcome in case.good]
+    fails = min(bad, key=lambda run: sign * run.value, default=None)
+    held = [run for run in good if fails is None or sign * (fails.value - run.value) > 0.0]
+    holds = max(held, key=lambda run: sign * run.value, default=None)
     shown = fails or holds or first
     return Critical(
         case=case.name,
@@ -84,7 +79,7 @@ def critical(case: Case, runs: list[Graded]) -> Critical:
         holds=math.nan if holds is None else holds.value,
         fails=math.nan if fails is None else fails.value,
         outcome=shown.outcome,
-        words=_words(case, holds, fails, len(grid) > 1, harder),
+        words=_words(case, holds, fails, good),
         command=command(shown),
     )
 
@@ -97,17 +92,23 @@ def command(run: Graded) -> str:
     )
 
 
-def _words(
-    case: Case, holds: Graded | None, fails: Graded | None, several: bool, harder: float
-) -> str:
-    """The critical value in a line."""
+def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Graded]) -> str:
+    """The critical value in a line; ``good`` are all runs that held."""
     if fails is None:
         assert holds is not None
         if holds.outcome not in ("ok", "locked"):
             return holds.outcome
-        return f"holds all, error up to {holds.error:.0e}" if several else "holds"
+        worst = max(run.error for run in good)
+        return f"holds all, error up to {worst:.0e}" if len(good) > 1 else "holds"
     if holds is None:
-        return f"{fails.outcome} at once" if several else fails.outcome
-    way = "down to" if harder < 0.0 else "up to"
+        if good:
+            return f"{fails.outcome} at {label(fails.value)}, holds others"
+        return f"{fails.outcome} at once" if len(case.values) > 1 else fails.outcome
+    way = "down to" if harder(case) < 0.0 else "up to"
     value = f"{label(holds.value)} {case.unit}".strip()
     return f"holds {way} {value}, then {fails.outcome}"
+
+
+def harder(case: Case) -> float:
+    """The sign by which the values of a case grow harder."""
+    return -1.0 if case.values[-1] < case.values[0] else 1.0

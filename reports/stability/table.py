@@ -26,8 +26,6 @@ LETTERS: Mapping[Outcome, str] = {
 BARE = ("X", "!", "-")
 """Letters that stand alone: their error says nothing."""
 STYLES: Mapping[Outcome, str] = {
-    "ok": "green",
-    "locked": "green",
     "degraded": "yellow",
     "drifts": "yellow",
     "unsupported": "dim",
@@ -63,19 +61,25 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
             if (run.case, run.engine, run.profile) == (case.name, critical.engine, critical.profile)
             and run.grid
         }
-        cells = [_cell(runs.get(value)) for value in case.values]
+        cells = [_cell(case, runs.get(value)) for value in case.values]
         name = f"  {critical.engine} {critical.profile}"
-        table.add_row(name, *cells, Text(f" {critical.words}", STYLES.get(critical.outcome, "red")))
+        style = _style(case, critical.outcome)
+        table.add_row(name, *cells, Text(f" {critical.words}", style))
     console.print(table, "")
 
 
-def _cell(run: Graded | None) -> Text:
+def _cell(case: CaseFacts, run: Graded | None) -> Text:
     """The error of a run, short, after the letter of its outcome."""
     if run is None:
         return Text("")
     letter = LETTERS[run.outcome]
     bare = letter in BARE or math.isnan(run.error)
-    return Text(letter + ("" if bare else _short(run.error)), STYLES.get(run.outcome, "red"))
+    return Text(letter + ("" if bare else _short(run.error)), _style(case, run.outcome))
+
+
+def _style(case: CaseFacts, outcome: Outcome) -> str:
+    """The colour of an outcome, in the eyes of its case."""
+    return "green" if outcome in case.good else STYLES.get(outcome, "red")
 
 
 def _short(number: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -97,6 +98,19 @@ def test_only_the_values_before_the_first_failure_count_as_held() -> None:
     found, _ = held(case((8.0, 4.0, 2.0, 1.0)), lambda v: v not in (4.0,) and v != 5.66)
     assert found.fails >= 4.0
     assert found.holds > found.fails
+
+
+def test_a_line_that_fails_at_the_easiest_value_alone_says_that_others_hold() -> None:
+    found, _ = held(case((8.0, 4.0, 2.0)), lambda v: v != 8.0)
+    assert math.isnan(found.holds)
+    assert found.words == "branch-changed at 8, holds others"
+
+
+def test_a_line_that_holds_tells_its_worst_error_wherever_it_is() -> None:
+    given = case((1.0, 0.1, 0.01))
+    _, runs = held(given, lambda _: True)
+    uneven = [replace(run, error=e) for run, e in zip(runs, (1e-4, 7e-3, 1e-5), strict=True)]
+    assert "error up to 7e-03" in critical(given, uneven).words
 
 
 def test_a_value_of_0_ends_the_search_where_the_grid_does() -> None:
