@@ -24,7 +24,7 @@ from models.scene import GROUND, Scene
 
 
 class Passage(Protocol):
-    """The change points that a dyad goes through (`analytic.crossing`)."""
+    """The change points that a dyad goes through (`analytic.passage`)."""
 
     def sign(self, theta: Array) -> Array:
         """What the branch of the scene is multiplied by at driver angles [rad], (T,)."""

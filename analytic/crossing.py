@@ -2,10 +2,11 @@
 
 ::
 
-    root | +1 \\         / +1      The root of a dyad, whose sign is the branch, touches zero:
-         |     \\       /          the smooth motion goes on to the other sign of it. To keep
-       0 |-------x-------         the sign would be to turn back, with a jump of all rates.
-         |  change point
+    root |  \\       /        The root of a dyad, whose sign is the branch, touches zero: the smooth
+         |   \\     /         motion goes on to the other sign of it. To keep the sign would be to
+         |    \\   /          turn back, with a jump of all rates.
+       0 |------x------
+           change point
 
 The sign at a driver angle is therefore that of the branch, which is stated at the driver's angle at
 time 0, times -1 for every change point between the two: a function of the driver's angle that may
@@ -20,22 +21,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analytic.chunk import Chunk
-from analytic.dyads.parts import CLOSED, Dyad, OpenError
-from analytic.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Array, Real
-from analytic.smooth import WINDOW, Index, Piece, Rates, Unknown, put
+from analytic.dyads.parts import CLOSED
+from analytic.passage import AT_START, SIDE, Mask, Passage, whole_turns_off
+from analytic.plane import Array, Real
 from analytic.steps import Step, stretched
 from models.errors import CrankcheckError
 from models.laws import Law
 from models.motion import Crossing
 from models.scene import Scene
-
-Mask = NDArray[np.bool_]
 
 SCAN = 360
 """Angles of the first look at a turn: a touch is seen as a valley between its neighbours."""
@@ -43,134 +40,9 @@ WIDTHS = (4e-3, 4e-4, 4e-5, 1e-6)
 """Half-widths [rad] over which a valley, taken as a V, is followed to its tip; the last tells the
 place to about 1e-10 rad where rounding is taken a root of."""
 TIP = 1e-8
-SIDE = 1e-3
-"""Where a touch must be closed on both sides, and its root be a V [rad]."""
-AT_START = 1e-7
-"""A run that starts nearer to a change point than this [rad] is on the branch that it goes to."""
-HALVES = tuple(2.0 ** (-0.5 * k) for k in range(21))
-"""Half-widths [rad] that are tried for the interpolation through a change point."""
-LEAST_CERTAIN = 1e-3
-"""The largest bound of a derivative, over its size, with which motion counts as continued."""
+"""Half-width of one more look [rad]: the tip that two pins make that meet is found to rounding."""
 UNSURE = 64.0
 """How much more than by itself a dyad may be open in a change point of one before it."""
-
-
-@dataclass
-class Passage:
-    """The change points of one dyad, and the way through them.
-
-    ``angles`` are those of a ``period`` from ``start`` on, an even number: after a period all
-    signs are as before. ``steps`` end with the dyad's own; ``before`` are the passages of others.
-    """
-
-    scene: Scene
-    steps: Sequence[Step]
-    before: Mapping[str, Passage]
-    start: float
-    period: float
-    angles: Array
-    pieces: dict[int, Piece] = field(default_factory=dict)
-
-    def sign(self, theta: Array) -> Array:
-        phase = np.remainder(theta - self.start, self.period)
-        return np.asarray(1.0 - 2.0 * (np.searchsorted(self.angles - self.start, phase) % 2))
-
-    def mend(self, chunk: Chunk, dyad: Dyad) -> Dyad:
-        theta, closure = chunk.theta, dyad.closure
-        assert closure.short_m is not None
-        short = np.array(np.broadcast_to(closure.short_m, theta.shape))
-        first, second = dyad.first, dyad.second
-        for i, centre in enumerate(self.angles):
-            x = self._from(float(centre), theta)
-            if not (np.abs(x) < HALVES[0] * WINDOW).any():
-                continue
-            piece = self.piece(i)
-            index = np.flatnonzero(np.abs(x) < piece.window)
-            speed = _rates(chunk, index)
-            first = put(first, index, *piece.first.at(x[index] / piece.half, speed))
-            second = put(second, index, *piece.second.at(x[index] / piece.half, speed))
-            short[index] = np.minimum(short[index], 0.0)
-        if not chunk.stretch and np.any(open_ := short > 0.5 * closure.rounding_m):
-            raise OpenError(np.where(open_, short, -np.abs(short)))
-        sine = np.where(np.isnan(dyad.sine), 0.0, dyad.sine)  # 0/0 where two pins meet
-        return Dyad(first, second, sine, replace(closure, short_m=short))
-
-    def is_near(self, theta: Array) -> Mask:
-        """Whether driver angles are close to a change point."""
-        near = np.zeros(theta.shape, dtype=bool)
-        for centre in self.angles:
-            near |= np.abs(self._from(float(centre), theta)) < HALVES[0] * WINDOW
-        return near
-
-    def _from(self, centre: float, theta: Array) -> Array:
-        """Driver angles from one of the change points, within half a period."""
-        half = 0.5 * self.period
-        return np.asarray(np.remainder(theta - centre + half, self.period) - half)
-
-    def piece(self, i: int) -> Piece:
-        """The motion through change point ``i``, worked out once.
-
-        Raises
-        ------
-        CrankcheckError
-            It is not smooth on both sides.
-        """
-        if i not in self.pieces:
-            self.pieces[i] = self._piece(float(self.angles[i]))
-        return self.pieces[i]
-
-    @np.errstate(all="ignore")
-    def _piece(self, centre: float) -> Piece:
-        """The widest piece that is about as certain as any; narrower ones lose digits."""
-        best, least = None, math.inf
-        for half in HALVES:
-            try:
-                piece = Piece.of(self._solved, centre, half, self.scene.longest_m)
-            except OpenError:
-                continue
-            if piece.doubt < least:
-                best, least = piece, piece.doubt
-            elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
-                break
-        if best is None or least > LEAST_CERTAIN:
-            raise CrankcheckError(
-                f"{self.scene.name}: at {self.scene.driver.link} "
-                f"{math.degrees(_turned(centre)):.6g} deg the dyad of {self.key} is in a change "
-                "point with no smooth motion through it that can be told from others to within "
-                "rounding; another dyad or a limit position is too near: change a length, or keep "
-                "the driver's range away from there"
-            )
-        return best
-
-    @property
-    def key(self) -> str:
-        return self.steps[-1].key
-
-    def _solved(self, theta: Array) -> tuple[Unknown, Unknown]:
-        """The dyad's unknowns as it stands, for a driver of unit speed."""
-        own = _Own(self)
-        chunk = Chunk.begin(
-            self.scene, theta, 1.0, STEADY, EXACT_ANGLE, passages={**self.before, self.key: own}
-        )
-        for step in self.steps:
-            step.advance(chunk)
-        return own.unknowns
-
-
-class _Own:
-    """In place of a passage while its own pieces are made: the dyad as its formulas have it."""
-
-    def __init__(self, passage: Passage) -> None:
-        self.sign = passage.sign
-        self.unknowns: tuple[Unknown, Unknown]
-
-    def mend(self, _: Chunk, dyad: Dyad) -> Dyad:
-        short = dyad.closure.short_m
-        assert short is not None
-        if np.any(short > 0.5 * dyad.closure.rounding_m):
-            raise OpenError(short)
-        self.unknowns = dyad.first, dyad.second
-        return dyad
 
 
 def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
@@ -195,6 +67,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
             continue
         look = _Look(scene, steps[: k + 1], found)
         angles = np.sort(start + np.remainder(look.touches(valleys) - start, period))
+        angles = angles[np.diff(angles, prepend=-np.inf) > AT_START]  # two valleys, one tip
         if not angles.size:
             continue
         if angles.size % 2:  # as many again, with the other sign
@@ -212,7 +85,7 @@ def passed(found: Mapping[str, Passage], low: float, high: float) -> tuple[Cross
     for key, passage in found.items():
         first = np.ceil((low - AT_START - passage.angles) / passage.period)
         met = passage.angles[passage.angles + first * passage.period <= high + AT_START]
-        places = sorted(_turned(float(angle)) for angle in met)
+        places = sorted(whole_turns_off(float(angle)) for angle in met)
         crossings += [
             Crossing(key, place)
             for before, place in zip([-1.0, *places], places, strict=False)
@@ -282,7 +155,7 @@ class _Look:
         if unsure.any():
             raise CrankcheckError(
                 f"{self.scene.name}: at {self.scene.driver.link} "
-                f"{math.degrees(_turned(float(theta[unsure][0]))):.6g} deg the dyad of "
+                f"{math.degrees(whole_turns_off(float(theta[unsure][0]))):.6g} deg the dyad of "
                 f"{self.steps[-1].key} is singular to within the rounding of the change point of "
                 "a dyad before it, so that its motion is not determined there; change a length, "
                 "or keep the driver's range away from there"
@@ -322,19 +195,3 @@ def _valleys(root: Array) -> Mask:
     before, after = around[:-2], around[2:]
     far = np.maximum(before, after)
     return np.asarray((root <= before) & (root <= after) & (root < 0.5 * far))
-
-
-def _rates(chunk: Chunk, index: Index) -> Rates:
-    """The driver's rates at the samples ``index``; those of a chunk without bounds are exact."""
-    theta, error = chunk.theta, chunk.driver.error or EXACT_ANGLE
-    each = (chunk.driver.omega, chunk.driver.alpha, error.theta, error.omega, error.alpha)
-    omega, alpha, *bounds = (np.broadcast_to(one, theta.shape)[index] for one in each)
-    # The distance from the change point is rounded as the angles are.
-    bounds[0] = bounds[0] + 4 * EPS * (np.abs(theta[index]) + math.tau)
-    return Rates(omega, alpha, AngleError(*bounds))
-
-
-def _turned(angle: float) -> float:
-    """A driver angle in [0, 2 pi), 0 where it is that but for rounding."""
-    turned = angle % math.tau
-    return 0.0 if min(turned, math.tau - turned) < AT_START else turned

@@ -14,8 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.chunk import Chunk
-from analytic.crossing import Passage, passages, passed
+from analytic.crossing import passages, passed
 from analytic.dyads.parts import OpenError
+from analytic.passage import Passage
 from analytic.plane import EPS, STEADY, AngleError, Array, Real
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
-from analytic import crossing
+from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
+from analytic.travel import travel
 from models.errors import CrankcheckError, ReachError
 from models.files import parse_scene
 from models.laws import FromRest, Law, Oscillating
@@ -438,7 +439,34 @@ def test_only_what_is_passed_is_told() -> None:
     assert degrees == {(), (180,), (0,), (0, 180)}
 
 
-def test_what_cannot_be_continued_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(crossing, "LEAST_CERTAIN", 1e-15)
-    with pytest.raises(CrankcheckError, match=r"four-bar: at crank 180 deg the dyad of C is in a"):
-        driven(fourbar(0.1, 0.3, 0.1, 0.3), np.array([math.pi]))
+def test_what_cannot_be_continued_is_named_and_only_there() -> None:
+    """All but a rhombus, contrary: its rocker overtakes the crank a thousand times as fast."""
+    scene = fourbar(1.0, 1.0 + 2**-10, 1.0, 1.0 + 2**-10, -1)
+    with pytest.raises(CrankcheckError, match=r"four-bar: at crank 0 deg the dyad of C is in a"):
+        driven(scene, np.array([1.0, 0.0]))
+    assert finite_below(driven(scene, np.array([1.0, math.pi])), 1e-6)
+
+
+def test_motion_through_change_points_does_not_depend_on_chunks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene = parse_scene(LEVER.format(pivot=0.1), "test")
+    time_s = np.linspace(0.0, 5 * scene.driver.law.period_s, 1001)
+    whole = solve(scene, time_s)
+    monkeypatch.setattr(kinematics, "CHUNK", 97)
+    parts = solve(scene, time_s)
+    assert whole.crossings == parts.crossings
+    for name, link in whole.links.items():
+        assert np.allclose(link.theta, parts.links[name].theta, rtol=0, atol=1e-11)
+        assert np.abs(np.diff(link.theta)).max() < 0.1
+
+
+def test_travel_over_the_turns_after_which_a_mechanism_repeats() -> None:
+    """The stroke of 4 R; and a ram that a lever, once around in two turns, takes along."""
+    isosceles = travel(parse_scene(SLIDER_CRANK.format(rod=0.1), "test"), "C")
+    assert isosceles.stroke == pytest.approx(0.4, abs=1e-13)
+    assert isosceles.time_ratio == pytest.approx(1.0, abs=1e-9)
+    ram = travel(parse_scene(LEVER.format(pivot=0.1), "test"), "F")
+    assert ram.period_rad == pytest.approx(2 * math.tau)
+    ends = math.sqrt(0.95**2 - 0.15**2), math.sqrt(0.25**2 - 0.15**2)
+    assert ram.stroke == pytest.approx(ends[0] - ends[1], abs=1e-12)
