@@ -149,7 +149,7 @@ crankcheck.mechanism = (() => {
       fit();
       const every = [...Array(samples).keys()];
       paths.replaceChildren(...scene.points.map((name) => way(every.map((at) => place(name, at)), { class: "path" })));
-      const foot = 11 * pixel;
+      const foot = (names.length > CROWD ? 5 : 11) * pixel;
       ground.replaceChildren(...Object.values(scene.ground).map(([x, y]) =>
         path([[x, y], [x - foot, y - 1.6 * foot], [x + foot, y - 1.6 * foot]], { class: "foot" }, true)));
     }
