@@ -13,7 +13,9 @@ from pydantic import (
     model_validator,
 )
 
-Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
+NAME = r"[A-Za-z][A-Za-z0-9_-]{0,39}"
+"""What a name is: nothing in it leaves a path, a tag or a cell."""
+Name = Annotated[str, StringConstraints(pattern=rf"^{NAME}$")]
 ACTING = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u206f\ufffe\uffff"
 """Characters that act instead of being seen: a terminal obeys them, or they break lines or turn the
 order of letters round; the last two XML can not hold."""

@@ -12,7 +12,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, harmless
 from reports.stopping import Stopped, broken_pipe_ends, install, seen
 from reports.terminal import UNWRITABLE, give_up_output, readable_everywhere
 
@@ -80,7 +80,7 @@ def _end(code: int, text: str) -> NoReturn:
     if stopped := seen():
         code, text = stopped.code, stopped.word
     with contextlib.suppress(OSError):
-        typer.echo(f"crankcheck: {text}", err=True)
+        typer.echo(f"crankcheck: {harmless(text)}", err=True)
     raise SystemExit(code) from None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ from rich.console import Console
 from rich.progress import track
 
 from models.errors import CrankcheckError
+from models.schema import NAME
 from reports.commands.notice import tell
 from reports.figures.registry import FIGURES
 from reports.figures.saving import FORMATS, saved
@@ -68,6 +70,11 @@ def run_figures(
 def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dict[str, Drawn]:
     """What is drawn into which file, by the file's name without its ending."""
     chosen = _chosen(scenes, report.scenes, "--scene", "scene")
+    if strange := next((scene for scene in chosen if not re.fullmatch(NAME, scene)), None):
+        raise CrankcheckError(
+            f"scene {strange!r} of the store: not the name of a scene, and so not of a file "
+            "either; the store was changed by hand: run `crankcheck sweep` again"
+        )
     found: dict[str, Drawn] = {}
     for name in names:
         of, over_all = FIGURES[name].of, FIGURES[name].over_all

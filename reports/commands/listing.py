@@ -12,6 +12,7 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from analytic.structure import analyse
+from models.errors import harmless
 from models.files import load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
@@ -64,4 +65,4 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
         console.file.write(text)
         return
     write(output, text)
-    console.print(f"{output}: MJCF of {scene.name}", highlight=False)
+    console.print(harmless(f"{output}: MJCF of {scene.name}"), highlight=False, markup=False)

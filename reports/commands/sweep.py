@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, harmless
 from reports.choice.lines import lines
 from reports.choice.recommend import recommendations
 from reports.choice.table import noise_line, recommendation_table
@@ -178,7 +178,8 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
         console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
         for reason, _ in reasons.most_common(2):
             console.print(f"    {reason}", markup=False, highlight=False)
-    console.print(f"stored in {folder}; next: crankcheck report {folder} -o report.html")
+    told = harmless(f"stored in {folder}; next: crankcheck report {folder} -o report.html")
+    console.print(told, markup=False)
 
 
 def _recommend(console: Console, stored: Stored) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from rich.console import Console
 
 from analytic.kinematics import solve
+from models.errors import harmless
 from models.files import load_scene
 from models.mjcf import build
 from models.scene import Scene
@@ -34,7 +35,8 @@ def run_view(name: str, output: Path | None, console: Console) -> None:
 
     content = picture.strip(scene) if output.suffix.lower() == ".png" else picture.animation(scene)
     write(output, content)
-    console.print(f"{output}: {scene.name} over one turn", highlight=False)
+    told = harmless(f"{output}: {scene.name} over one turn")
+    console.print(told, highlight=False, markup=False)
 
 
 def has_screen() -> bool:

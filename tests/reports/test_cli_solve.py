@@ -166,6 +166,7 @@ MISTAKES = {
         ["--at-deg 41", "swings from -40 to 40 deg"],
     ),
     "angle of nan": (["solve", "tangent", "--at-deg", "nan"], ["--at-deg nan"]),
+    "angle of no digits": (["solve", "tangent", "--at-deg", "1e300"], ["1e+300", "up to 1e+06"]),
     "angle and turns": (
         ["solve", "tangent", "--at-deg", "0", "--turns", "1"],
         ["--at-deg with --turns", "one of them"],

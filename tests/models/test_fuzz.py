@@ -1,0 +1,158 @@
+"""Every scene file either runs or ends with exit code 2 and a message, in time and in memory.
+
+Files that were made from nothing (`tests.scene_files`) and shipped files with something done to
+them (`tests.mutation`). Each is read in a process apart. A failure prints what brings it back::
+
+    python -c "from tests.fuzzing import *; from tests.mutation import mutant
+    print(attempt(mutant(SEED), *'COMMAND'.split()))"
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+
+from models.files import shipped
+from reports.sweep.isolation import Isolated, Limits, Lost
+from tests import fuzzing
+from tests.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
+from tests.mutation import mutant
+from tests.scene_files import scene_files
+
+LIMITS = Limits(time_s=10.0, memory_gb=1.0)
+"""Memory is that beyond a child with all engines in it, which has 0.2 GB in use."""
+MOST_BYTES = 1_000_000_000
+SEED = 20260
+EACH, PARTS = 250, 20
+"""Files of either kind: in the fast test, in each part of the slow ones, and the parts of those."""
+KINDS = ("made", "changed")
+HOME = Path(tempfile.gettempdir()) / f"crankcheck-misdeed-{os.getpid()}"
+
+
+class Bench:
+    """A process that files are tried in, and what came of them."""
+
+    def __init__(self) -> None:
+        self.apart: Isolated[Ended] = Isolated(LIMITS)
+        self.ends: Counter[str] = Counter()
+        self.peak = 0
+        self.slowest_s = 0.0
+
+    def try_out(self, raw: bytes, command: str) -> list[str]:
+        """The faults that a file brings about."""
+        ended = self.apart.call(attempt, raw, *command.split())
+        if isinstance(ended, Lost) and ended.status == "timeout":
+            ended = self.apart.call(attempt, raw, *command.split())  # was it the machine?
+        if isinstance(ended, Lost):
+            return [f"{ended.status}: {ended.reason}"]
+        self.ends[f"exit {ended.code}"] += 1
+        self.ends.update(ended.outcomes)
+        self.peak = max(self.peak, ended.peak)
+        self.slowest_s = max(self.slowest_s, ended.took_s)
+        over = [f"{ended.peak / 1e6:.0f} MB of memory"] if ended.peak > MOST_BYTES else []
+        return ended.faults + over
+
+    def report(self) -> str:
+        """What came of all files."""
+        ends = ", ".join(f"{name} {count}" for name, count in sorted(self.ends.items()))
+        return f"{ends}; peak {self.peak / 1e6:.0f} MB, slowest {self.slowest_s:.2f} s"
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    made.apart.close()
+    print(made.report())
+
+
+def try_changed(bench: Bench, first: int, commands: tuple[str, ...]) -> None:
+    """Shipped files with something done to them."""
+    for number in range(first, first + EACH):
+        command, raw = commands[number % len(commands)], mutant(number)
+        faults = bench.try_out(raw, command)
+        assert not faults, f"{faults}: {command} of mutant({number}):\n{raw[:3000]!r}"
+
+
+def try_made(bench: Bench, number: int, commands: tuple[str, ...]) -> None:
+    """Files of every shape; the smallest that fails is shown."""
+
+    @seed(number)
+    @settings(
+        max_examples=EACH,
+        database=None,
+        deadline=None,
+        phases=[Phase.generate, Phase.shrink],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(scene_files(), st.sampled_from(commands))
+    def holds(text: str, command: str) -> None:
+        faults = bench.try_out(text.encode(), command)
+        assert not faults, f"{faults}: {command} of seed {number}:\n{text[:3000]}"
+
+    holds()
+
+
+TRY = {"made": try_made, "changed": try_changed}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_file_runs_or_is_refused_with_a_message(kind: str, bench: Bench) -> None:
+    TRY[kind](bench, SEED, QUICK)
+    assert sum(bench.ends[f"exit {code}"] for code in (0, 1, 2)) >= EACH
+    assert bench.ends["exit 0"] > 0.2 * EACH, bench.report()
+    assert bench.ends["exit 2"] > 0.2 * EACH, bench.report()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("kind", KINDS)
+def test_ten_thousand_files_run_or_are_refused(kind: str, part: int, bench: Bench) -> None:
+    TRY[kind](bench, 1_000_000 + part * EACH, COMMANDS)
+    assert bench.ends["exit 0"] > 0.1 * EACH, bench.report()
+
+
+MISDEEDS: dict[str, tuple[Callable[[], object], str]] = {
+    "raises": (lambda: 1 / 0, "escaped: ZeroDivisionError"),
+    "warns": (lambda: np.zeros(1) / 0.0, "warning: .* invalid value"),
+    "native message": (lambda: os.write(2, b"WARNING: Nan in QACC"), "messages of a run"),
+    "clears the screen": (lambda: typer.echo("\x1b[2J"), r"acts: '\\x1b'"),
+    "turns text round": (lambda: typer.echo("\u202e"), r"acts: '\\u202e'"),
+    "writes beside": (lambda: Path("beside").write_text("x"), "wrote work/beside"),
+    "writes above": (lambda: Path("../evil").write_text("x"), "wrote evil"),
+    "writes at home": (lambda: HOME.write_text("x"), f"wrote {HOME}"),
+    "says nothing": (lambda: sys.exit(2), "exit code 2 without a message"),
+    "internal": (lambda: sys.exit(70), "exit code 70"),
+}
+
+
+@pytest.mark.parametrize("name", MISDEEDS)
+def test_a_misdeed_is_seen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    misdeed, fault = MISDEEDS[name]
+    monkeypatch.setattr(fuzzing, "_command", lambda: lambda _: misdeed())
+    try:
+        faults = attempt(b"").faults
+    finally:
+        HOME.unlink(missing_ok=True)
+    assert any(re.search(fault, one) for one in faults), faults
+
+
+@pytest.mark.parametrize(("limits", "fault"), [
+    (Limits(1e-3, 1.0), "timeout: no end within 0.001 s"),
+    (Limits(10.0, 1e-3), "MemoryError|out of memory"),
+])  # fmt: skip
+def test_a_file_that_takes_too_much_is_seen(limits: Limits, fault: str, bench: Bench) -> None:
+    bench.apart.limits = limits
+    raw = shipped()["shaper"].read_bytes()
+    assert re.search(fault, bench.try_out(raw, VERIFY)[0])

@@ -1,0 +1,189 @@
+"""Shipped scene files with something done to them; the same seed does the same."""
+
+from __future__ import annotations
+
+import math
+import random
+import re
+from collections.abc import Callable
+
+from models.files import shipped
+
+Rng = random.Random
+NUMBER = re.compile(r"(?<![\w.-])-?\d+\.\d*(?:e[+-]?\d+)?(?![\w.])")
+WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+GENTLE = (0.9, 0.95, 0.99, 0.999, 1.0 + 1e-12, 1.01, 1.05, 1.1)
+FACTORS = (-1.0, 0.0, 0.5, 2.0, 10.0, 1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-14, 1e14, 1e30)
+NUMBERS = ("0", "-0.0", "1e15", "-1e15", "1e-15", "1e16", "1e300", "1e-300", "1e400", "nan", "-inf",
+           "inf", "9" * 30, "9" * 5000, "0x1F", "1_000", "true", '"1"', "[]", "{}", "1979-05-27",
+           "07:32:00", "1" + "0" * 4400 + ".0", "[1.0, 2.0]")  # fmt: skip
+WORDS = ("ground", "world", "crank", "A", "B", "Z", "../x", "links", "sliders", "point", "link",
+         "on", "<b>", "a&amp;b", "\u202eabc", "\u2067", "caf\u00e9", "\u0000", "\u001b[31m",
+         "x" * 10_000, "'", '"', "=", "#", "[[", "]]>", "-->", "__proto__", "{")  # fmt: skip
+LINES = ("[links]", "[ground]", "[driver]", "[[driver]]", "[branch]", "[sliders.C]", '"" = 1',
+         "points = { A = [0, 0] }", 'on = "ground"', "mass_kg = 0", "mass_kg = 1e15", "x = 1",
+         "gravity_m_s2 = [0.0, -9.81]", "gravity_m_s2 = [1e15, -1e15]", "[tolerance]\nangle = 1",
+         'law = "oscillating"', 'law = "from-rest"\nrise_s = 1e-15', "rise_s = 1e15", "C = -1",
+         "inertia_kg_m2 = 1e-15", "a." * 300 + "b = 1", "[" + "a." * 3000 + "b]",
+         'note = """' + "n" * 3000 + '"""', "# " + "c" * 10_000, "\t \t", "\r", "\ufeff",
+         "direction_deg = 90.0", "angle_deg = 45")  # fmt: skip
+
+
+def mutant(seed: int) -> bytes:
+    """A shipped file after one to four mutations."""
+    rng = random.Random(seed)
+    text = _shipped(rng)
+    for _ in range(rng.choice((1, 1, 1, 1, 2, 2, 4))):
+        text = rng.choices(list(MUTATIONS), list(MUTATIONS.values()))[0](rng, text)
+    raw = text.encode("utf-8", "surrogatepass")
+    if rng.random() < 0.08:
+        raw = rng.choice(BYTES)(rng, raw)
+    return raw
+
+
+def _shipped(rng: Rng) -> str:
+    return rng.choice(list(shipped().values())).read_text(encoding="utf-8")
+
+
+def _number(rng: Rng, text: str) -> str:
+    """A number times a factor, or another in its place."""
+    found = list(NUMBER.finditer(text))
+    if not found:
+        return text
+    one = rng.choice(found)
+    new = rng.choice(NUMBERS)
+    if rng.random() < 0.85:
+        value = float(one[0]) * rng.choice(rng.choice((GENTLE, FACTORS)))
+        new = repr(value) if math.isfinite(value) else "inf"
+    return text[: one.start()] + new + text[one.end() :]
+
+
+def _scaled(rng: Rng, text: str) -> str:
+    """Every number times one factor."""
+    factor = rng.choice(FACTORS)
+    return NUMBER.sub(lambda one: repr(float(one[0]) * factor), text)
+
+
+def _word(rng: Rng, text: str) -> str:
+    """A word in another's place: once, or wherever it stands."""
+    found = list(WORD.finditer(text))
+    if not found:
+        return text
+    one = rng.choice(found)
+    new = rng.choice([*WORDS, rng.choice(found)[0]])
+    if rng.random() < 0.3:
+        return text.replace(one[0], new)
+    return text[: one.start()] + new + text[one.end() :]
+
+
+def _drop(rng: Rng, text: str) -> str:
+    lines = text.splitlines(keepends=True)
+    first = rng.randrange(len(lines) + 1)
+    del lines[first : first + rng.choice((1, 1, 1, 2, 5))]
+    return "".join(lines)
+
+
+def _again(rng: Rng, text: str) -> str:
+    lines = text.splitlines(keepends=True) or [""]
+    lines.insert(rng.randrange(len(lines) + 1), rng.choice(lines))
+    return "".join(lines)
+
+
+def _swap(rng: Rng, text: str) -> str:
+    lines = text.splitlines() or [""]
+    a, b = rng.randrange(len(lines)), rng.randrange(len(lines))
+    lines[a], lines[b] = lines[b], lines[a]
+    return "\n".join(lines)
+
+
+def _insert(rng: Rng, text: str) -> str:
+    lines = text.splitlines()
+    lines.insert(rng.randrange(len(lines) + 1), rng.choice(LINES))
+    return "\n".join(lines)
+
+
+def _into_table(rng: Rng, text: str) -> str:
+    """One more key in an inline table, such as that of a link."""
+    places = [one.start() for one in re.finditer(r" ?\}", text)]
+    keys = ("mass_kg", "inertia_kg_m2", "centre_m", "length_m", "points", "Q", "A", "bar")
+    values = ("0.0", "1e15", "1e-15", "1.0", "[0.0, 0.0]", "[1e15, 0]", "{ X = [0, 0] }", "nan")
+    if not places:
+        return text
+    at = rng.choice(places)
+    return f"{text[:at]}, {rng.choice(keys)} = {rng.choice(values)}{text[at:]}"
+
+
+def _splice(rng: Rng, text: str) -> str:
+    """The head of one file and the tail of another."""
+    other = _shipped(rng)
+    return text[: rng.randrange(len(text) + 1)] + other[rng.randrange(len(other)) :]
+
+
+def _cut(rng: Rng, text: str) -> str:
+    return text[: rng.randrange(len(text) + 1)]
+
+
+def _huge(rng: Rng, text: str) -> str:
+    """As much of something as a file may hold, where tables stand, or alone."""
+    size = rng.choice((1_000, 30_000, 198_000))
+    link = ", ".join(f"Q{i} = [{i}.0, 0.5]" for i in range(size // 20))
+    many = (
+        "x = " + "[" * size, "x = " + "[" * (size // 2) + "]" * (size // 2), "[" * size,
+        "x = " + "{a=" * (size // 3), "a." * (size // 2) + "b = 1", "[" + "a." * (size // 2) + "b]",
+        'source = "' + "x" * size + '"', "#" + "x" * size, "x" * size, "x = " + "9" * size,
+        "x = 1." + "9" * size, "\n" * size, "[[a]]\n" * (size // 6),
+        "\n".join(f"[links.k{i}]\nbar = ['A', 'B']\nlength_m = 0.1" for i in range(size // 50)),
+        f"[links.big]\npoints = {{ A = [0.0, 0.0], {link} }}",
+        f"[ground.points]\n{link.replace(', Q', chr(10) + 'Q')}",
+        "[branch]\n" + "\n".join(f"Z{i} = 1" for i in range(size // 10)),
+        "\n".join(f"[sliders.S{i}]\non = 'ground'" for i in range(size // 30)),
+        "x" * 1_050_000,
+        "[tolerance]\n" + "\n".join(f"q{i} = 1.0" for i in range(size // 12)),
+    )  # fmt: skip
+    one = rng.choice(many)
+    return rng.choice((one, text + "\n" + one, one + "\n" + text))[:1_100_000]
+
+
+MUTATIONS: dict[Callable[[Rng, str], str], float] = {
+    _number: 15.0,
+    _scaled: 2.0,
+    _word: 4.0,
+    _drop: 2.0,
+    _again: 1.0,
+    _swap: 1.0,
+    _insert: 2.0,
+    _into_table: 2.0,
+    _splice: 1.0,
+    _cut: 1.0,
+    _huge: 0.5,
+}
+"""What is done to a text, and how often."""
+
+
+def _flip(rng: Rng, raw: bytes) -> bytes:
+    """Some bits turned over."""
+    changed = bytearray(raw)
+    for _ in range(rng.choice((1, 3, 30)) if changed else 0):
+        changed[rng.randrange(len(changed))] ^= 1 << rng.randrange(8)
+    return bytes(changed)
+
+
+def _inserted(rng: Rng, raw: bytes) -> bytes:
+    """Bytes that are no text, or that no line has."""
+    at = rng.randrange(len(raw) + 1)
+    new = rng.choice(
+        (b"\x00", b"\xff\xfe", b"\xc3\x28", b"\xed\xa0\x80", b"\x1b[2J", b"\xf8", b"\r")
+    )
+    return raw[:at] + new + raw[at:]
+
+
+BYTES: tuple[Callable[[Rng, bytes], bytes], ...] = (
+    _flip,
+    _flip,
+    _inserted,
+    lambda rng, raw: b"\xef\xbb\xbf" + raw,
+    lambda rng, raw: raw.replace(b"\n", b"\r\n"),
+    lambda rng, raw: raw.replace(b"\n", b"\r"),
+    lambda rng, raw: raw.decode("utf-8", "replace").encode("utf-16"),
+    lambda rng, raw: b"",
+)

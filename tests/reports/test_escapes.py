@@ -1,0 +1,243 @@
+"""What stands in a scene file, or is its name, stays text wherever it is shown or written."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import openpyxl
+import pandas as pd
+import pytest
+from playwright.sync_api import expect
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+from models.errors import CrankcheckError, harmless
+from models.files import parse_scene, shipped
+from reports.cli import app
+from reports.commands.figures import run_figures
+from reports.page.report import Report
+from reports.store.reader import read_store
+from tests.fuzzing import COMMANDS, attempt
+from tests.reports.page.conftest import Opened, browser, open_page
+from tests.scene_files import toml
+
+__all__ = ["browser", "open_page"]  # fixtures, of the tests of the page
+
+NASTY = (
+    "=1+cmd|' /C calc'!A0 </script><script>window.hacked = 1</script><!-- --> -- ]]> <b>&amp; \" ' "
+    "[bold red]x[/b] [/] | `code` \\ $\\frac{1}{$ $x^{2}_{ {{ 7 * 7 }} {% if %} %s {0} $HOME @team "
+    "javascript:alert(1) \u0645\u0631\u062d\u0628\u0627 \u96e8 \U0001f980 \ue000 a\u0300 --"
+)
+FILES = (
+    "<script>alert(1)<!--", "a&b", "..", "-o", "--help", "a b'\"`", "[bold]", "$HOME", "{{7*7}}%s",
+    "\u202egnp", "a\nb", "a\x1b[2Jb", "\x9b31m", os.fsdecode(b"\xff\xfe"), "x" * 240, " ", "|ls",
+    "\u0645\u0631\u062d\u0628\u0627", "=1+1", "CON", "\\..\\x",
+)  # fmt: skip
+"""Names of files, without the ending: what a file system takes, but for the slash."""
+
+
+def nasty_text(name: str = "fourbar-lecture-1") -> str:
+    """A shipped scene with a nasty source and note."""
+    lines = shipped()[name].read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if not line.startswith(("source", "note"))]
+    return toml({"source": NASTY, "note": f"{NASTY}\n\t{NASTY}"}) + "\n".join(kept)
+
+
+@pytest.fixture
+def crank() -> Callable[..., Result]:
+    runner = CliRunner()
+    return lambda *args: runner.invoke(app, [str(arg) for arg in args], catch_exceptions=False)
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a nasty scene, with a nasty name."""
+    path = tmp_path_factory.mktemp("nasty") / "[bold]<script>&.toml"
+    path.write_text(nasty_text(), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def store(scene: Path) -> Path:
+    """A sweep of the nasty scene, into a folder with a nasty name."""
+    folder = scene.parent / "[" / "x] <b>"  # reads as the end of a style: [/x]
+    args = ["sweep", str(scene), "-o", str(folder), "--steps-per-turn", "90,180", "--turns", "1"]
+    result = CliRunner().invoke(app, [*args, "--jobs", "1", "--no-timing"], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    assert f"stored in {folder}" in result.output.replace("\n", "")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(store: Path) -> Path:
+    path = store.parent / "report.html"
+    assert CliRunner().invoke(app, ["report", str(store), "-o", str(path)]).exit_code == 0
+    return path
+
+
+def test_the_model_is_xml_that_compiles_and_tells_the_source(scene: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    text = CliRunner().invoke(app, ["export", str(scene)]).output
+    builder = Xml.TreeBuilder(insert_comments=True)
+    root = Xml.fromstring(text, Xml.XMLParser(target=builder))
+    source = next(child.text for child in root if child.tag is Xml.Comment)
+    assert source is not None
+    assert source.strip().replace("- -", "--") == NASTY
+    names = {element.tag for element in root.iter() if isinstance(element.tag, str)}
+    assert not names & {"script", "b"}
+    mujoco.MjModel.from_xml_string(text)
+
+
+@pytest.mark.parametrize("name", ["angle", "tolerance"])
+def test_a_verification_says_and_writes_text(scene: Path, tmp_path: Path, name: str) -> None:
+    limit = ["--tol", "angle=1e-12"] if name == "tolerance" else []
+    args = ["verify", str(scene), "--turns", "0.2", "-o", str(tmp_path), *limit]
+    assert CliRunner().invoke(app, args).exit_code == (1 if limit else 0)
+    Xml.parse(tmp_path / "verify.junit.xml")
+    cells = pd.read_csv(tmp_path / "verify.csv", dtype=str, keep_default_na=False)
+    numbers = pd.to_numeric(cells.stack(), errors="coerce")
+    for cell in cells.stack()[numbers.isna()]:
+        assert not cell.startswith(("=", "+", "-", "@", "\t", "\r"))
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
+def test_a_table_of_the_motion_holds_no_formula(scene: Path, tmp_path: Path, ending: str) -> None:
+    (tmp_path / "[").mkdir()
+    path = tmp_path / "[" / f"b]{ending}"
+    result = CliRunner().invoke(app, ["solve", str(scene), "-o", str(path)], catch_exceptions=False)
+    assert f"{path}: 361 samples" in result.output.replace("\n", "")
+    if ending == ".csv":
+        assert all(name[0].isalpha() for name in pd.read_csv(path).columns)
+        return
+    book = openpyxl.load_workbook(path)
+    cells = [cell for sheet in book for row in sheet.iter_rows() for cell in row]
+    assert {cell.data_type for cell in cells} == {"s", "n"}
+    assert NASTY in [cell.value for cell in book["source"]["B"]]
+
+
+@pytest.mark.parametrize("command", ["export {} -o [/b].xml", "view {} -o [/b].png"])
+def test_a_place_in_brackets_is_no_style(
+    scene: Path, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("[").mkdir()
+    args = [arg.format(scene) for arg in command.split()]
+    result = CliRunner().invoke(app, args, catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    assert result.output.startswith("[/b].")
+
+
+def test_the_terminal_shows_the_source_as_it_is(crank: Callable[..., Result], scene: Path) -> None:
+    output = "".join(crank("solve", scene).output.split())
+    assert "".join(NASTY.split()) in output
+
+
+class Tags(HTMLParser):
+    """The tags of a page, and its text outside of scripts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.text = ""
+        self._within = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self._within = tag
+        assert not any(name.startswith("on") for name, _ in attrs)
+
+    def handle_endtag(self, tag: str) -> None:
+        self._within = ""
+
+    def handle_data(self, data: str) -> None:
+        self.text += data if self._within != "script" else ""
+
+
+def test_the_page_shows_the_source_as_text(page: Path) -> None:
+    found = Tags(page.read_text(encoding="utf-8"))
+    assert " ".join(NASTY.split()) in " ".join(found.text.split())
+    assert "49" not in found.text.partition("{{ 7")[2][:20]
+    parts = Report(read_store(next(page.parent.glob("*b>")))).stored
+    plain = replace(parts, manifest=replace(parts.manifest, scenes={
+        "fourbar-lecture-1": shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    }))  # fmt: skip
+    from reports.page.build import page as built
+
+    assert found.tags == Tags(built(plain)).tags
+
+
+def test_a_browser_runs_nothing_of_it(open_page: Callable[..., Opened], page: Path) -> None:
+    opened = open_page(page)
+    assert opened.page.evaluate("typeof window.hacked") == "undefined"
+    expect(opened.page.locator(".note", has_text="window.hacked").first).to_be_attached()
+    assert opened.said == []
+
+
+def test_the_summary_in_markdown_starts_no_tag(store: Path) -> None:
+    text = CliRunner().invoke(app, ["report", str(store), "--format", "md"]).output
+    assert "<script" not in text
+    assert "hacked" not in text  # only names and reasons are told
+
+
+def test_figures_are_drawn_with_the_source_as_text(store: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "figs"
+    run_figures(store, folder, Console(file=io.StringIO()), only=["mechanism"])
+    root = Xml.parse(folder / "mechanism-fourbar-lecture-1.svg").getroot()
+    assert not [each for each in root.iter() if str(each.tag).endswith("script")]
+    shown = " ".join("".join(text.itertext()) for text in root.iter() if text.text)
+    assert "</script><script>window.hacked" in shown.replace("\n", "")
+    assert (folder / "mechanism-fourbar-lecture-1.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stored = read_store(store)
+    cells = stored.cells.assign(scene="../../escaped")
+    monkeypatch.setattr(
+        "reports.commands.figures.read_store", lambda _: replace(stored, cells=cells)
+    )
+    with pytest.raises(CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not the name"):
+        run_figures(store, tmp_path / "a" / "figs", Console(file=io.StringIO()))
+    assert list(tmp_path.rglob("*escaped*")) == []
+
+
+@pytest.mark.parametrize("name", FILES, ids=ascii)
+def test_the_name_of_a_file_is_text(name: str) -> None:
+    good, bad = nasty_text().encode(), b"[links\n"
+    for command in dict.fromkeys(COMMANDS):
+        if command.startswith(("export", "solve FILE --at-deg 90")):
+            ended = attempt(good, *command.split(), name=f"{name}.toml")
+            assert ended.code == 0, ended.errors
+            assert ended.faults == []
+    ended = attempt(bad, "verify", "FILE", name=f"{name}.toml")
+    assert ended.code == 2
+    assert ended.faults == []
+    first = f"crankcheck: ../{harmless(name)}.toml: not valid TOML".replace("\n", "\\n")
+    assert ended.errors.startswith(first)
+
+
+@pytest.mark.parametrize("name", FILES, ids=ascii)
+def test_the_name_of_a_file_that_is_not_there_is_text(
+    crank: Callable[..., Result], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = crank("solve", f"./no/{name}.toml")
+    assert result.exit_code == 2
+    assert result.stderr.isascii() or result.stderr.replace("\n", "").isprintable()
+    assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("acting", ["\u202e", "\u2066", "\x1b", "\x9b", "\x07", "\u2028", "\uffff"])
+@pytest.mark.parametrize("key", ["source", "note"])
+def test_text_that_acts_is_refused(key: str, acting: str) -> None:
+    text = nasty_text().replace(f'{key} = "=1', f'{key} = "\\u{ord(acting):04x}=1', 1)
+    with pytest.raises(CrankcheckError, match=f"{key}: found .*; text without control characters"):
+        parse_scene(text, "file.toml")

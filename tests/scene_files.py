@@ -1,0 +1,233 @@
+"""Scene files of every shape: mechanisms as a user may write them, with all that may be wrong.
+
+Half of what is drawn is a mechanism whose numbers may be extreme; the rest has one to three things
+spoiled: a number that is a date, a table in place of a name, a point that no link has.
+"""
+
+from __future__ import annotations
+
+import datetime
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+from hypothesis import strategies as st
+
+Tree = dict[str, object]
+Path = tuple[str | int, ...]
+
+PLAIN = ("A", "B", "C", "D", "E", "F", "G", "H", "crank", "rod", "lever", "P-1", "x_2", "L" * 40)
+NASTY = (
+    "", " ", "ground", "world", "block A", "../../etc/passwd", "/tmp/x", "a.b", "con", "-o", "1A",
+    "L" * 41, "x" * 10_000, "<script>alert(1)</script>", "a&b", "]]>", "--", '"', "'", "\\", "=1+1",
+    "\u202egnp", "\u2066x", "\u0645\u0631\u062d\u0628\u0627", "\u96e8", "\U0001f980", "\u0000",
+    "\u001b[2J", "a\nb", "\ufeff", "\u00c5", "\u0391", "[bold]", "{0}", "%s", "$HOME",
+)  # fmt: skip
+EXTREME = st.sampled_from(
+    [
+        0.0, -0.0, 1e-15, -1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9, 1e12, 1e15, -1e15, 5e-324,
+        2.2e-308, 1e-300, -0.1, 0, 1, -1, 2, 10**15, 999999999999999.9, 0.1 + 1e-16, math.pi, 360.0,
+    ]
+)  # fmt: skip
+ABSURD: st.SearchStrategy[object] = st.sampled_from(
+    [
+        1e300, -1e300, 1e308, math.nan, math.inf, -math.inf, 10**16, 10**400, -(10**400), 2**63,
+        True, False, "", "0.1", "long", [], {}, [0.1], [0.1, 0.2], [0.1, 0.2, 0.3], [[0.1, 0.2]],
+        {"x": 1}, {"A": [0.0, 0.0]}, [{}], ["A", "B"], datetime.date(2024, 2, 29),
+        datetime.time(23, 59, 59), datetime.datetime(1, 1, 1),
+        datetime.datetime(9999, 12, 31, tzinfo=datetime.UTC),
+    ]
+)  # fmt: skip
+
+
+@st.composite
+def scene_files(draw: st.DrawFn) -> str:
+    """The text of a scene file."""
+    tree = draw(mechanisms())
+    for _ in range(draw(st.sampled_from([0, 1, 1, 1, 2, 2, 4]))):
+        if draw(st.integers(0, 2)):
+            numbers = [p for p in _paths(tree) if isinstance(_at(tree, p), float)]
+            if numbers:
+                path = draw(st.sampled_from(numbers))
+                _put(_at(tree, path[:-1]), path[-1], draw(EXTREME))
+        else:
+            _spoil(draw, tree)
+    return toml(tree)
+
+
+@st.composite
+def mechanisms(draw: st.DrawFn) -> Tree:
+    """The tables of a crank and what hangs on it; many can be assembled, and turn."""
+    ground: Tree = {"A": [0.0, 0.0]}
+    links: Tree = {"crank": {"bar": ["A", "B"], "length_m": draw(between(0.02, 0.1))}}
+    sliders: Tree = {}
+    carried = ["B"]
+    most = draw(st.sampled_from([0, 1, 1, 1, 2, 2, 3, 50]))
+    for k in range(draw(st.integers(min(most, 1), most))):
+        carried.append(_dyad(draw, k, carried, ground, links, sliders))
+    tree: Tree = {"name": "fuzzed", "source": "a test", "ground": {"points": ground}}
+    tree |= {"links": links, "sliders": sliders, "driver": draw(drivers())}
+    if draw(st.integers(0, 2)) == 0:
+        choices = st.sampled_from(carried[1:] + ["B", "Z"][: draw(st.integers(0, 2))] or ["B"])
+        tree["branch"] = draw(st.dictionaries(choices, st.sampled_from([1, -1]), max_size=3))
+    if draw(st.integers(0, 4)) == 0:
+        tree["gravity_m_s2"] = [0.0, draw(between(-9.81, 9.81))]
+    if draw(st.integers(0, 4)) == 0:
+        names = st.sampled_from(["angle", "position", "gap", "velocity", "angel", "drive"])
+        tree["tolerance"] = draw(st.dictionaries(names, between(1e-6, 1.0), max_size=2))
+    return tree
+
+
+def between(low: float, high: float) -> st.SearchStrategy[float]:
+    """A number as a person would write it."""
+    return st.floats(low, high).map(lambda number: round(number, 4))
+
+
+def _place(draw: st.DrawFn, x: float = 0.3, y: float = 0.1) -> list[float]:
+    return [draw(between(x - 0.1, x + 0.1)), draw(between(y - 0.1, y + 0.1))]
+
+
+def _dyad(
+    draw: st.DrawFn, k: int, carried: Sequence[str], ground: Tree, links: Tree, sliders: Tree
+) -> str:
+    """Hang two bodies on what is there already; the name of the new point."""
+    start, new, far = draw(st.sampled_from(carried)), f"C{k}", f"D{k}"
+    kinds = ["RRR", "RRR", "RRR", "RRP", "RRP", "RPR", "RPR", "yoke", "plate", "loose"]
+    kind = draw(st.sampled_from(kinds))
+    rod: Tree = {"bar": [start, new], "length_m": draw(between(0.25, 0.6))}
+    if draw(st.integers(0, 3)) == 0:
+        rod |= _masses(draw)
+    line: Tree = {"on": "ground"}
+    if draw(st.booleans()):
+        line["mass_kg"] = draw(between(0.1, 2.0))
+    if kind == "RPR":
+        ground[far] = _place(draw)
+        links[f"lever{k}"] = {"bar": [far, new], "length_m": draw(between(0.3, 0.6))}
+        sliders[start] = line | {"on": f"lever{k}"}
+        return new
+    if kind == "yoke":
+        links[f"yoke{k}"] = {"points": {new: _place(draw), far: _place(draw, 0.0, 0.4)}}
+        sliders[start] = line | {"on": f"yoke{k}", "direction_deg": draw(between(60.0, 120.0))}
+        own: Tree = {"link": f"yoke{k}", "on": "ground", "point": new}
+        sliders[f"S{k}"] = own | {"direction_deg": draw(between(-20.0, 20.0))}
+        return new
+    links[f"rod{k}"] = rod
+    if kind in ("RRR", "plate"):
+        ground[far] = _place(draw)
+        links[f"rocker{k}"] = {"bar": [far, new], "length_m": draw(between(0.25, 0.5))}
+        if kind == "plate":  # points of its own, the last of which others may hang on
+            more: Tree = {f"E{k}": _place(draw), f"F{k}": _place(draw, -0.2, 0.3)}
+            links[f"rocker{k}"] = {"points": {far: [0.0, 0.0], new: _place(draw), **more}}
+            return draw(st.sampled_from([new, *more]))
+    elif kind == "RRP":
+        on = draw(st.sampled_from(["ground"] * 4 + ["crank", *links]))
+        direction = {"through_m": _place(draw, 0.0, 0.0), "direction_deg": draw(between(-30, 30))}
+        sliders[new] = line | {"on": on} | (direction if draw(st.booleans()) else {})
+    return new
+
+
+def _masses(draw: st.DrawFn) -> Tree:
+    """Some of the mass data of a link."""
+    given: Tree = {"mass_kg": draw(between(0.1, 2.0)), "inertia_kg_m2": draw(between(0.001, 0.1))}
+    given["centre_m"] = _place(draw)
+    keys = draw(st.lists(st.sampled_from(list(given)), unique=True))
+    return {key: given[key] for key in keys}
+
+
+@st.composite
+def drivers(draw: st.DrawFn) -> Tree:
+    """A driver under one of the laws."""
+    law = draw(st.sampled_from(["", "", "", "constant", "oscillating", "from-rest"]))
+    start = draw(between(-180.0, 180.0))
+    if law == "oscillating":
+        found: Tree = {"centre_deg": start, "amplitude_deg": draw(between(1.0, 90.0))}
+        found |= {"frequency_rad_s": draw(between(0.5, 20.0)), "phase_deg": start}
+    else:
+        speed = draw(st.sampled_from([1.0, -1.0])) * draw(between(0.5, 20.0))
+        found = {"speed_rad_s": speed, "start_deg": start}
+    if law == "from-rest":
+        found["rise_s"] = draw(between(0.1, 2.0))
+    return {"link": "crank"} | ({"law": law} if law else {}) | found
+
+
+def _spoil(draw: st.DrawFn, tree: Tree) -> None:
+    """One thing wrong, anywhere."""
+    paths = list(_paths(tree))
+    if not paths:
+        return
+    path = draw(st.sampled_from(paths))
+    holder, key = _at(tree, path[:-1]), path[-1]
+    how = draw(st.sampled_from(["absurd", "name", "name", "drop", "rename", "add", "copy"]))
+    if how == "copy":
+        _put(holder, key, _at(tree, draw(st.sampled_from(paths))))
+    elif how == "drop":
+        del holder[key]  # type: ignore[attr-defined]  # a list or a dict
+    elif how in ("rename", "add") and isinstance(holder, dict):
+        new = draw(st.sampled_from([*NASTY, *PLAIN, "speed", "points", "bar", "link", "on"]))
+        holder[new] = holder.pop(key) if how == "rename" else draw(ABSURD)
+    elif how == "name":
+        _put(holder, key, draw(st.sampled_from([*NASTY, *PLAIN, "crank", "ground", "jerky"])))
+    else:
+        _put(holder, key, draw(ABSURD))
+
+
+def _paths(tree: object, here: Path = ()) -> Iterator[Path]:
+    """Where there is something in the tree."""
+    if isinstance(tree, Mapping):
+        parts: list[tuple[str | int, object]] = list(tree.items())
+    else:
+        parts = list(enumerate(tree)) if isinstance(tree, list) else []
+    for key, value in parts:
+        yield (*here, key)
+        yield from _paths(value, (*here, key))
+
+
+def _at(tree: object, path: Path) -> object:
+    for key in path:
+        tree = tree[key]  # type: ignore[index]  # a list or a dict
+    return tree
+
+
+def _put(holder: object, key: str | int, value: object) -> None:
+    text = repr(value)
+    if len(text) < 100_000:  # a copy of a copy of a whole tree grows without end
+        holder[key] = json_copy(value)  # type: ignore[index]  # a list or a dict
+
+
+def json_copy(value: object) -> object:
+    """The value with lists and tables of its own."""
+    if isinstance(value, dict):
+        return {key: json_copy(each) for key, each in value.items()}
+    return [json_copy(each) for each in value] if isinstance(value, list) else value
+
+
+def toml(tree: Mapping[str, object]) -> str:
+    """The tree as TOML, its tables of the first level under their heads."""
+    plain = [f"{_key(k)} = {_value(v)}" for k, v in tree.items() if not isinstance(v, dict)]
+    for key, table in tree.items():
+        if isinstance(table, dict):
+            plain += [f"\n[{_key(key)}]", *(f"{_key(k)} = {_value(v)}" for k, v in table.items())]
+    return "\n".join(plain) + "\n"
+
+
+def _key(key: str) -> str:
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _string(key)
+
+
+def _string(text: str) -> str:
+    return json.dumps(text, ensure_ascii="\x7f" in text).replace("\x7f", "\\u007f")
+
+
+def _value(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, datetime.date | datetime.time):
+        return value.isoformat()
+    return repr(value)
