@@ -17,7 +17,7 @@ from reports.page.numbers import NONE, count, duration, error_text
 from reports.page.report import Report
 from reports.page.sections import SECTIONS
 from reports.page.sections.base import Section
-from reports.page.sections.hard import ROOM, hard
+from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.thinning import BUDGET
 from reports.stability.matrix import Matrix
@@ -62,17 +62,18 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
         found["motion"] = motion(report, BUDGET - over)
         text = _rendered(report, found)
     over = len(text.encode()) - MOST_BYTES
-    if over > 0 and matrix is not None:
-        found["hard"] = hard(matrix, ROOM - over)
+    if over > 0 and matrix is not None and found["hard"] is not None:
+        found["hard"] = lighter(matrix, found["hard"], over)
         text = _rendered(report, found)
     return text
 
 
 def stability_page(matrix: Matrix) -> str:
     """The hard cases alone as one HTML file."""
-    text = assembled(_stability_head(matrix), [hard(matrix, ALONE)])
+    head, section = _stability_head(matrix), hard(matrix, ALONE)
+    text = assembled(head, [section])
     over = len(text.encode()) - MOST_BYTES
-    return text if over <= 0 else assembled(_stability_head(matrix), [hard(matrix, ALONE - over)])
+    return text if over <= 0 else assembled(head, [lighter(matrix, section, over)])
 
 
 def _stability_head(matrix: Matrix) -> Head:

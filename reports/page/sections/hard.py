@@ -63,6 +63,13 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
     )
 
 
+def lighter(matrix: Matrix, section: Section, over: int) -> Section:
+    """The section of a matrix again, by ``over`` characters of pictures lighter than it is."""
+    assert section.embedded is not None
+    held = len(embedded([section.embedded["drawings"], section.embedded["pictures"]]))
+    return hard(matrix, held - over)
+
+
 def _meaning(outcome: str) -> str:
     """What an outcome means, in words."""
     known = (meaning for name, meaning in MEANINGS.items() if name == outcome)
