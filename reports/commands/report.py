@@ -9,7 +9,10 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.commands.notice import tell
+from reports.stability.matrix import FILE as MATRIX
+from reports.stability.matrix import Matrix, read_matrix
 from reports.store.reader import read_store
+from reports.store.schema import TABLES
 from reports.writing import check_file, write
 
 Format = Literal["html", "md"]
@@ -28,7 +31,8 @@ def format_of(text: str) -> Format:
 
 
 def run_report(folder: Path, output: Path | None, format: Format, console: Console) -> int:
-    """Write the report of the store in ``folder``; returns the exit code, 0.
+    """Write the report of the store in ``folder``, or of the hard cases alone; returns the exit
+    code, 0.
 
     Without ``output`` a page goes to ``report.html`` in the working folder, and text to the
     terminal. What is damaged in the store is told, and the rest is reported.
@@ -42,22 +46,43 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
         output = Path("report.html")
     if output is not None:
         check_file(output, "-o", ENDINGS[format])
-    stored = read_store(folder)
-    tell(stored.notice)
-    if format == "md":
-        from reports.figures.summary import summary
+    if format == "html" and (folder / MATRIX).is_file() and not _swept(folder):
+        from reports.page.build import stability_page
 
-        text = summary(stored)
+        matrix = read_matrix(folder)
+        text, held = stability_page(matrix), f"{len(matrix.runs)} runs of hard cases"
     else:
-        from reports.page.build import page
+        stored = read_store(folder)
+        tell(stored.notice)
+        held = f"{len(stored.cells)} cells"
+        if format == "md":
+            from reports.figures.summary import summary
 
-        text = page(stored)
+            text = summary(stored)
+        else:
+            from reports.page.build import page
+
+            text = page(stored, _beside(folder))
     if output is None:
         console.file.write(text)
         return 0
     write(output, text)
     size = len(text.encode()) / 1e6
-    console.print(
-        f"{output}: {len(stored.cells)} cells, {size:.1f} MB", markup=False, highlight=False
-    )
+    console.print(f"{output}: {held}, {size:.1f} MB", markup=False, highlight=False)
     return 0
+
+
+def _swept(folder: Path) -> bool:
+    """Whether there is anything of a sweep in the folder."""
+    return any((folder / table).exists() for table in TABLES)
+
+
+def _beside(folder: Path) -> Matrix | None:
+    """The hard cases that were run into the folder of a sweep; told, where they are damaged."""
+    if not (folder / MATRIX).is_file():
+        return None
+    try:
+        return read_matrix(folder)
+    except CrankcheckError as error:
+        tell([str(error)])
+        return None

@@ -46,13 +46,14 @@ def moving_points(scene: Scene) -> list[str]:
     ]
 
 
-def drawing(scene: Scene, time_s: Array) -> dict[str, object]:
+def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[str, object]:
     """The shape of a scene and the motion of the reference at some times [s], to be embedded.
 
     Series by point (x, then y), by guide-bearing link (angle) and by slider (displacement).
+    ``truth`` takes the place of the driven reference, where something else is true.
     """
-    motion = solve(scene, time_s, bound=False)
-    driver = scene.driver.law.at(time_s)[0]
+    motion = solve(scene, time_s, bound=False) if truth is None else truth
+    driver = motion.links[scene.driver.link].theta
     points = {name: motion.points[name].position for name in moving_points(scene)}
     links = drawn_links(scene)
     places = np.concatenate([point.position for point in motion.points.values()])
@@ -73,8 +74,11 @@ def drawing(scene: Scene, time_s: Array) -> dict[str, object]:
     }
 
 
-def displacements(scene: Scene, trace: Trace, time_s: Array) -> dict[str, object] | None:
-    """How far a traced run is off the reference at the instants of a drawing.
+def displacements(
+    scene: Scene, trace: Trace, time_s: Array, truth: Motion | None = None
+) -> dict[str, object] | None:
+    """How far a traced run is off the reference, or off ``truth`` at the times of the trace, at the
+    instants of a drawing.
 
     The rows are those of the drawing's places and angles: x and y by point [m], then angles of the
     guide-bearing links [rad]. None for a trace without times, or of another motion.
@@ -82,7 +86,7 @@ def displacements(scene: Scene, trace: Trace, time_s: Array) -> dict[str, object
     own = trace.get("time_s")
     if own is None or any(f"x.{name}" not in trace for name in moving_points(scene)):
         return None
-    motion = solve(scene, own, bound=False)
+    motion = solve(scene, own, bound=False) if truth is None else truth
     off = [
         np.column_stack([trace[f"x.{name}"], trace[f"y.{name}"]]) - motion.points[name].position
         for name in moving_points(scene)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
 from analytic.windows import Turning
-from models.scene import Scene
-from models.windows import Chain
+from models.motion import Motion
 from reports.series import Array
 from reports.stability.case import Trial
 from reports.stability.seen import Seen
@@ -47,49 +44,7 @@ def _error(held: Held) -> Array:
     return np.asarray(np.maximum(held.place_m / chain.length_m, energy))
 
 
-@dataclass(frozen=True)
-class Falling:
-    """The law by which a free chain turns, as if it were driven so: the truth to draw."""
-
-    chain: Chain
-    added_rad: float = 0.0
-
-    @property
-    def offset_rad(self) -> float:
-        return 0.0
-
-    @property
-    def phase_rad(self) -> float:
-        return 0.0
-
-    @property
-    def fastest_rad_s(self) -> float:
-        return Turning(self.chain).fastest_rad_s
-
-    @property
-    def period_s(self) -> float:
-        return Turning(self.chain).period_s
-
-    @property
-    def peak_speed_rad_s(self) -> float:
-        return Turning(self.chain).fastest_rad_s
-
-    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        theta, omega, alpha = Turning(self.chain).at(time_s)
-        return theta + self.added_rad, omega, alpha
-
-    def turned(self, angle_rad: float) -> Falling:
-        return replace(self, added_rad=self.added_rad + angle_rad)
-
-    def mirrored(self) -> Falling:
-        raise NotImplementedError("a chain that falls is drawn as it falls")
-
-    def sped_up(self, factor: float) -> Falling:
-        raise NotImplementedError("a chain that falls is drawn as it falls")
-
-
-def falling_scene(trial: Trial) -> Scene:
-    """The scene of the chain with the closed form as its driver's law."""
+def falling(trial: Trial, time_s: Array) -> Motion:
+    """The truth to be drawn."""
     assert trial.chain is not None
-    driver = replace(trial.scene.driver, law=Falling(trial.chain))
-    return replace(trial.scene, driver=driver)
+    return Turning(trial.chain).motion(time_s)

@@ -11,10 +11,11 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.scene import Scene
+from models.motion import Motion
+from reports.series import Array
 from reports.stability.case import Case, Judge, Trial, label
-from reports.stability.free import falling_scene, freely
-from reports.stability.limit import at_limit, held_scene
+from reports.stability.free import falling, freely
+from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture
 from reports.stability.outcomes import Ending, outcome
 from reports.stability.picture import picture
@@ -27,16 +28,19 @@ Found = tuple[Graded, Picture | None]
 
 @dataclass(frozen=True)
 class Truth:
-    """What runs are held to: how one is seen beside it, and a scene that moves as it does."""
+    """What runs are held to: how one is seen beside it, and how it moves, to be drawn."""
 
     look: Callable[[Trial, Run], Seen]
-    truth: Callable[[Trial], Scene]
+    motion: Callable[[Trial, Array], Motion]
 
 
 JUDGES: Mapping[Judge, Truth] = {
-    "follow": Truth(lambda t, run: seen(t.scene, run, t.settled_turns), lambda t: t.scene),
-    "limit": Truth(at_limit, held_scene),
-    "free": Truth(freely, falling_scene),
+    "follow": Truth(
+        lambda trial, run: seen(trial.scene, run, trial.settled_turns),
+        lambda trial, time_s: solve(trial.scene, time_s, bound=False),
+    ),
+    "limit": Truth(at_limit, held),
+    "free": Truth(freely, falling),
 }
 
 
@@ -60,7 +64,7 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     found = replace(found, wall_s=time.perf_counter() - began)
     if not draw or done is None or found.outcome in case.good:
         return found, None
-    return found, picture(case, JUDGES[case.judge].truth(trial), found, done)
+    return found, picture(case, trial, found, done, JUDGES[case.judge].motion)
 
 
 def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
-from models.laws import Law
-from models.scene import Scene
+from analytic.kinematics import solve_driven
+from models.motion import Motion
 from reports.series import Array
 from reports.stability.case import Trial
 from reports.stability.seen import Seen
@@ -20,57 +18,14 @@ SHORT_RAD = 1e-9
 """The reference stops that much before the limit, where it still has an angle."""
 
 
-@dataclass(frozen=True)
-class HeldAt:
-    """A law that follows another as far as a limit [rad], and stands there: the truth to draw."""
-
-    law: Law
-    low_rad: float
-    high_rad: float
-
-    @property
-    def offset_rad(self) -> float:
-        return self.law.offset_rad
-
-    @property
-    def phase_rad(self) -> float:
-        return self.law.phase_rad
-
-    @property
-    def fastest_rad_s(self) -> float:
-        return self.law.fastest_rad_s
-
-    @property
-    def period_s(self) -> float:
-        return self.law.period_s
-
-    @property
-    def peak_speed_rad_s(self) -> float:
-        return self.law.peak_speed_rad_s
-
-    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        theta, omega, alpha = self.law.at(time_s)
-        free = (theta > self.low_rad) & (theta < self.high_rad)
-        held = np.clip(theta, self.low_rad, self.high_rad)
-        return held, np.where(free, omega, 0.0), np.where(free, alpha, 0.0)
-
-    def turned(self, angle_rad: float) -> HeldAt:
-        low, high = self.low_rad + angle_rad, self.high_rad + angle_rad
-        return HeldAt(self.law.turned(angle_rad), low, high)
-
-    def mirrored(self) -> HeldAt:
-        return HeldAt(self.law.mirrored(), -self.high_rad, -self.low_rad)
-
-    def sped_up(self, factor: float) -> HeldAt:
-        return replace(self, law=self.law.sped_up(factor))
-
-
-def held_scene(trial: Trial) -> Scene:
-    """The scene with its crank held at the limit."""
-    driver = trial.scene.driver
-    low = float(driver.law.at(np.zeros(1))[0][0])
-    law = HeldAt(driver.law, low, trial.limit_rad - SHORT_RAD)
-    return replace(trial.scene, driver=replace(driver, law=law))
+def held(trial: Trial, time_s: Array) -> Motion:
+    """The truth to be drawn: the crank follows its command as far as the limit, and stands."""
+    law = trial.scene.driver.law
+    theta = law.at(np.append(0.0, time_s))[0]
+    low, high = sorted((float(theta[0]), trial.limit_rad))
+    still = np.zeros_like(time_s)
+    inside = np.clip(theta[1:], low + SHORT_RAD, high - SHORT_RAD)
+    return solve_driven(trial.scene, inside, still, still, time_s, bound=False)
 
 
 def at_limit(trial: Trial, run: Run) -> Seen:

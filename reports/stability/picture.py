@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import cast
 
 import numpy as np
 
 from models.errors import CrankcheckError
-from models.scene import Scene
+from models.motion import Motion
 from reports.page.drawing import INSTANTS, displacements, drawing, drawn_links, moving_points
 from reports.page.numbers import plain
 from reports.series import Array
-from reports.stability.case import Case
+from reports.stability.case import Case, Trial
 from reports.stability.matrix import Graded, Picture
 from sim.engine import Run
 
@@ -21,8 +21,11 @@ BEFORE = 0.3
 """How much of a turn is shown before the place of the failure, of one turn in all."""
 
 
-def picture(case: Case, scene: Scene, found: Graded, run: Run) -> Picture | None:
-    """The picture of a graded run; None where the reference cannot be drawn there."""
+def picture(
+    case: Case, trial: Trial, found: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
+) -> Picture | None:
+    """The picture of a graded run; None where there is no truth to be drawn there."""
+    scene = trial.scene
     assert run.motion is not None
     kept = _around(run.motion.time_s, found.at_s, scene.driver.law.period_s)
     if kept.size < 2:
@@ -36,7 +39,9 @@ def picture(case: Case, scene: Scene, found: Graded, run: Run) -> Picture | None
     for name in drawn_links(scene):
         trace[f"theta.{name}"] = run.motion.links[name].theta[kept]
     try:
-        shape, rows = drawing(scene, time_s), displacements(scene, trace, time_s)
+        true = truth(trial, time_s)
+        shape = drawing(scene, time_s, true)
+        rows = displacements(scene, trace, time_s, true)
     except CrankcheckError:
         return None
     if rows is None:

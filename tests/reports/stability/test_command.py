@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -123,3 +124,35 @@ def test_a_run_over_its_limit_is_a_row_with_its_reason(crank: Crank) -> None:
     result = crank(*args, "--limit-s", "0.3")
     assert result.exit_code == 0, result.output
     assert "crashed" in result.stdout
+
+
+def test_the_report_of_a_folder_of_hard_cases_is_their_page(
+    stored: tuple[Result, Path], crank: Crank, tmp_path: Path
+) -> None:
+    _, folder = stored
+    made = crank("report", str(folder), "-o", str(tmp_path / "page.html"))
+    assert made.exit_code == 0, made.output
+    assert "runs of hard cases" in made.stdout
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert page == (folder / "stability.html").read_text(encoding="utf-8")
+    text = crank("report", str(folder), "--format", "md")
+    assert text.exit_code == 2
+
+
+def test_the_report_of_a_sweep_has_the_hard_cases_beside_it_or_says_that_they_are_damaged(
+    stored: tuple[Result, Path], crank: Crank, tmp_path: Path
+) -> None:
+    folder, page = tmp_path / "store", tmp_path / "page.html"
+    swept = crank(
+        *("sweep", "fourbar-lecture-1", "-o", str(folder), "--engine", "pymunk"),
+        *("--profile", "tuned", "--steps-per-turn", "90,180", "--no-timing", "--jobs", "1"),
+    )
+    assert swept.exit_code == 0, swept.output
+    shutil.copy(stored[1] / "stability.json", folder)
+    assert crank("report", str(folder), "-o", str(page)).exit_code == 0
+    assert "Nearly a parallelogram" in page.read_text(encoding="utf-8")
+    (folder / "stability.json").write_text("{", encoding="utf-8")
+    told = crank("report", str(folder), "-o", str(page))
+    assert told.exit_code == 0
+    assert "stability.json: can not be read" in " ".join(told.stderr.split())
+    assert "Nearly a parallelogram" not in page.read_text(encoding="utf-8")
