@@ -23,7 +23,7 @@ from models.scene import Scene
 from reports.branch import departure
 from reports.errors import Error, Errors, Kind, Quantity, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
-from reports.settling import jolt, mass_ratio
+from reports.settling import jolts, mass_ratio
 from reports.stamps import incomplete
 from reports.summing import summed
 from reports.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
@@ -67,6 +67,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
     placed = list(tracks(scene, motion, reference, 0))
     geometric, notes = _geometric(scene, motion, at)
     reported, not_reported = _reported(scene, run, motion, reference)
+    jolt = jolts(scene, reference)
     return Errors(
         rows=(
             _drive(scene, motion, at),
@@ -86,7 +87,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         uncertain=_uncertain(scene, motion, reference),
         departure=departure(scene, run, placed, at.driver_rad),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
-        jolt=jolt(scene, reference),
+        jolt=float(jolt[0]),
+        worst_jolt=float(np.max(jolt)),
         mass_ratio=mass_ratio(scene),
     )
 

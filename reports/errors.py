@@ -80,8 +80,9 @@ class Errors:
     engine, whatever it reports. ``departure`` is None where the run stayed on its branch.
     ``summed_rad`` is the most that rounding makes of the driver's angle in an engine that adds it
     up step by step: it is what grows with the number of steps (`reports.summing`). ``jolt`` is how
-    much an engine may make up for at its start, over a step, as a pure number, and ``mass_ratio``
-    the mass of the heaviest body over that of the lightest (`reports.settling`).
+    much an engine may make up for at its start, over a step, as a pure number, ``worst_jolt`` the
+    most of it over the run, and ``mass_ratio`` the mass of the heaviest body over that of the
+    lightest (`reports.settling`).
     """
 
     rows: tuple[Error, ...]
@@ -96,6 +97,7 @@ class Errors:
     departure: Departure | None = None
     summed_rad: float = 0.0
     jolt: float = 0.0
+    worst_jolt: float = 0.0
     mass_ratio: float = 1.0
 
     def worst(

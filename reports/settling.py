@@ -6,7 +6,8 @@ body by half a step's acceleration, and its angular velocity by half a step's an
 as the acceleration of bodies that only their joints push is the least change that the joints ask
 for. A point of a body at the distance r from its centre is left with half of a + omega^2 r, as the
 part of its acceleration that points to the centre comes from turning, and does not jump; a slider
-moves by the difference of two bodies. The largest of these is the `jolt` of the start. The jump is
+moves by the difference of two bodies. The largest of these is the jolt of the start (`jolts`); from
+step to step it goes on as an error of place of jolt * step^2 (`reports.tolerance`). The jump is
 over with the next sample, or rings off where iterations leave a part of it. Differenced over two
 steps it is half as large; differenced twice, it is an acceleration of the jolt itself, at every
 step.
@@ -33,8 +34,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.motion import Motion
-from models.scene import GROUND, Point, Scene, Slider
+from models.scene import GROUND, Scene, Slider
 from reports.errors import Errors
+from reports.series import Array, length
+
+Place = tuple[float | Array, float | Array]
+"""A place in the frame of a body [m], the same or another at every sample."""
 
 ROOM = 2.0
 """What ringing may add: 1.6 of the jolt was seen where iterations left a fifth of an error from
@@ -60,13 +65,14 @@ def allowance(tolerance: str, errors: Errors) -> float:
     return 0.0
 
 
-def jolt(scene: Scene, reference: Motion) -> float:
-    """Half the largest pure acceleration that the first solution of an engine may make up for.
+def jolts(scene: Scene, reference: Motion) -> Array:
+    """Half the largest pure acceleration that joints make up for in a step, at every sample (T,).
 
-    The first sample of ``reference`` is where the run starts.
+    Samples at which it is not finite (singular ones) are 0.
     """
-    found = (push for push in _jolts(scene, reference) if math.isfinite(push))
-    return 0.5 * max(found, default=0.0) / scene.driver.law.peak_speed_rad_s**2
+    found = np.maximum.reduce(list(_pushes(scene, reference)))
+    half = 0.5 * found / scene.driver.law.peak_speed_rad_s**2
+    return np.where(np.isfinite(half), half, 0.0)
 
 
 def mass_ratio(scene: Scene) -> float:
@@ -77,22 +83,23 @@ def mass_ratio(scene: Scene) -> float:
     return max(given, default=1.0) / min(given, default=1.0)
 
 
-def _jolts(scene: Scene, reference: Motion) -> Iterator[float]:
-    """For links [rad/s^2], their points and sliders [m/s^2 over the longest link]."""
+def _pushes(scene: Scene, reference: Motion) -> Iterator[Array]:
+    """For links [rad/s^2], their points and sliders [m/s^2 over the longest link], each (T,)."""
     for name, link in scene.links.items():
-        yield abs(float(reference.links[name].alpha[0]))
+        yield np.abs(reference.links[name].alpha)
         for point, place in link.points.items():
-            push = math.hypot(*reference.points[point].acceleration[0].tolist())
+            push = length(reference.points[point].acceleration)
             yield (push + _turning(scene, reference, name, place)) / scene.longest_m
     for slider in scene.sliders.values():
-        push = abs(float(reference.sliders[slider.name].acceleration[0]))
-        parts = [_turning(scene, reference, *side) for side in _sides(scene, reference, slider)]
-        yield (push + sum(parts)) / scene.longest_m
+        push = np.abs(reference.sliders[slider.name].acceleration)
+        for body, at in _sides(scene, reference, slider):
+            push = push + _turning(scene, reference, body, at)
+        yield push / scene.longest_m
 
 
-def _sides(scene: Scene, reference: Motion, slider: Slider) -> Iterator[tuple[str, Point]]:
+def _sides(scene: Scene, reference: Motion, slider: Slider) -> Iterator[tuple[str, Place]]:
     """The guide, and the link that slides or carries the block, with the place on each."""
-    s = float(reference.sliders[slider.name].displacement[0])
+    s = reference.sliders[slider.name].displacement
     x, y = slider.through_m
     turn = slider.direction_rad
     yield slider.on, (x + s * math.cos(turn), y + s * math.sin(turn))
@@ -101,9 +108,10 @@ def _sides(scene: Scene, reference: Motion, slider: Slider) -> Iterator[tuple[st
         yield name, scene.links[name].points[slider.point]
 
 
-def _turning(scene: Scene, reference: Motion, body: str, place: Point) -> float:
-    """The acceleration of a place of a body towards its centre of mass [m/s^2]."""
+def _turning(scene: Scene, reference: Motion, body: str, place: Place) -> Array:
+    """The acceleration of a place of a body towards its centre of mass [m/s^2], (T,)."""
     if body == GROUND:
-        return 0.0
-    omega = float(reference.links[body].omega[0])
-    return float(np.square(omega)) * math.dist(place, scene.links[body].centre_m)
+        return np.zeros_like(reference.time_s)
+    x, y = scene.links[body].centre_m
+    arm = np.hypot(place[0] - x, place[1] - y)
+    return np.asarray(reference.links[body].omega ** 2 * arm)

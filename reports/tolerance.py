@@ -13,6 +13,10 @@ of the reference (at least 1), ``conditioning`` its smallest sine of a transmiss
 make of the driver's angle by the end of the run [rad] (`reports.summing`), which the mechanism
 passes on as it does the driver's motion: the one part that grows with the number of steps.
 
+For places and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
+a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
+solves for impulses sets bodies off to close its joints (`reports.settling`).
+
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
 
@@ -48,6 +52,7 @@ class Tolerance:
     order: int = 2
     power: float = 0.0
     conditioned: bool = False
+    closes: bool = False
     share: float = 0.0
     share_order: int = 0
     floor: float = 0.0
@@ -56,10 +61,12 @@ class Tolerance:
     def limit(self, errors: Errors) -> float:
         """The limit for a run with this step and this scene."""
         step, curvature = errors.step_rad, errors.curvature
-        budget = self.coefficient * step**self.order + errors.summed_rad
-        budget *= curvature**self.power
+        bend = curvature**self.power
         if self.conditioned:
-            budget /= max(errors.conditioning, 1e-12)
+            bend /= max(errors.conditioning, 1e-12)
+        if self.closes:
+            bend = max(bend, 2.0 * errors.worst_jolt)
+        budget = (self.coefficient * step**self.order + errors.summed_rad) * bend
         budget += self.share * curvature * step**self.share_order
         budget = min(float(budget), self.cap)
         return float(budget + self.floor + ROUNDING / step**self.differenced)
@@ -67,11 +74,13 @@ class Tolerance:
 
 PLACE = Tolerance(
     "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
-    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle.",
+    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
+    "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
     cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
     coefficient=1.0,
     power=1.0,
     conditioned=True,
+    closes=True,
 )
 VELOCITY = Tolerance(
     "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
@@ -103,7 +112,8 @@ DEFAULTS: dict[str, Tolerance] = {
     "position": PLACE,
     "gap": replace(
         PLACE,
-        reason="The arc of a step, step^2/2 times the curvature, is all that may be open.",
+        reason="The arc of a step, step^2/2 times the curvature, is all that may be open, or the "
+        "jolt that closes it, where that is more.",
         conditioned=False,
     ),
     "velocity": VELOCITY,

@@ -87,7 +87,8 @@ def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT
 
     Raises LookupError where that does not come about.
     """
-    chance = random.Random(seed)
+    chance = random.Random(f"{seed}: {'; '.join(forms)}")
+    name = f"random-{chance.getrandbits(64):x}"
     speed = chance.choice((1, -1)) * 10 ** chance.uniform(-1.0, 3.0)
     stuck = 0
     for _ in range(MOST_TRIES):
@@ -107,10 +108,9 @@ def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT
         raise LookupError(f"{forms}: none of {MOST_TRIES} layouts is within the range")
     shift = (chance.uniform(-3.0, 3.0), chance.uniform(-3.0, 3.0))
     scene = scaled(moved(scene, shift), 10 ** chance.uniform(-2.0, 2.0))
-    text = scene_text(replace(scene, name=f"random-{seed:x}"))
+    text = scene_text(replace(scene, name=name))
     steps = round(fewest * (MOST_STEPS / fewest) ** chance.random())
-    scene = parse_scene(text, scene.name)
-    return Driven(scene, text, designed.forms, steps, turns_round, left)
+    return Driven(parse_scene(text, name), text, designed.forms, steps, turns_round, left)
 
 
 def _laid_out(chance: random.Random, forms: Sequence[str], speed: float) -> Designed:

@@ -32,6 +32,16 @@ def test_a_badly_conditioned_scene_gets_wider_angles_and_no_wider_gap(fourbar: S
     assert near["gap"].number == far["gap"].number
 
 
+def test_places_have_room_for_what_closing_the_pins_sets_off(fourbar: Scene) -> None:
+    """Where bodies turn fast about a centre that is far from their pins, beyond the curvature."""
+    slow, fast = (limits(fourbar, replace(ERRORS, worst_jolt=jolt), {}) for jolt in (0.4, 3.0))
+    for name in ("angle", "displacement", "position", "gap"):
+        assert fast[name].number == pytest.approx(2.0 * 3.0 * ERRORS.step_rad**2, rel=1e-4)
+        assert slow[name].number < fast[name].number / 4
+    for name in ("velocity", "acceleration"):
+        assert fast[name].number == slow[name].number
+
+
 def test_near_a_singular_position_no_default_grows_beyond_what_is_plainly_wrong(
     fourbar: Scene,
 ) -> None:
