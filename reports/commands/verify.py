@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from reports.diff.junit import joined
 from reports.diff.reading import read_run, scene_digests
 from reports.diff.runs import Run, planned_run, run_of
 from reports.diff.terminal import show as show_diff
+from reports.finite import finite
 from reports.frames import cell_frame, error_frame, parquet
 from reports.junit import junit
 from reports.pool import check_all
@@ -229,15 +229,4 @@ def _json(results: Results) -> str:
         "scenes": dict(results.digests),
         "cells": cells,
     }
-    return json.dumps(_finite(content), indent=1) + "\n"
-
-
-def _finite(value: object) -> object:
-    """The value with numbers that JSON has no name for as None."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
+    return json.dumps(finite(content), indent=1) + "\n"
