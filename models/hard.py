@@ -23,51 +23,41 @@ def fourbar(
     source: str,
     start_deg: float = START_DEG,
     speed_rad_s: float = SPEED_RAD_S,
-    branch: int = 1,
 ) -> Scene:
-    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m."""
-    return parse_scene(
+    """A four-bar A B C D with A at the origin and D on the x-axis, all lengths in m.
+
+    C lies to the left of the line from B to D.
+    """
+    return _scene(
+        name,
+        source,
+        f"A = [0.0, 0.0], D = [{ground_m!r}, 0.0]",
         f"""
-name = "{name}"
-source = "{source}"
-ground = {{ points = {{ A = [0.0, 0.0], D = [{ground_m!r}, 0.0] }} }}
 [links]
 crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
 coupler = {{ bar = ["B", "C"], length_m = {coupler_m!r} }}
 rocker = {{ bar = ["D", "C"], length_m = {rocker_m!r} }}
-[driver]
-link = "crank"
-speed_rad_s = {speed_rad_s!r}
-start_deg = {start_deg!r}
-[branch]
-C = {branch}
 """,
-        name,
+        start_deg,
+        speed_rad_s,
     )
 
 
 def slider_crank(name: str, crank_m: float, rod_m: float, *, source: str) -> Scene:
     """A central slider-crank A B C along the x-axis, with a block of half a kilogram per metre of
     the crank."""
-    return parse_scene(
+    return _scene(
+        name,
+        source,
+        "A = [0.0, 0.0]",
         f"""
-name = "{name}"
-source = "{source}"
-ground = {{ points = {{ A = [0.0, 0.0] }} }}
 [links]
 crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
 rod = {{ bar = ["B", "C"], length_m = {rod_m!r} }}
 [sliders.C]
 on = "ground"
 mass_kg = {0.5 * crank_m!r}
-[driver]
-link = "crank"
-speed_rad_s = {SPEED_RAD_S!r}
-start_deg = {START_DEG!r}
-[branch]
-C = 1
 """,
-        name,
     )
 
 
@@ -77,45 +67,55 @@ def slotted_lever(name: str, crank_m: float, pivots_m: float, *, source: str) ->
     The lever swings where the crank is shorter than the distance of the pivots, and turns fully
     (Whitworth) where it is longer.
     """
-    return parse_scene(
+    return _scene(
+        name,
+        source,
+        f"A = [0.0, {pivots_m!r}], C = [0.0, 0.0]",
         f"""
-name = "{name}"
-source = "{source}"
-ground = {{ points = {{ A = [0.0, {pivots_m!r}], C = [0.0, 0.0] }} }}
 [links]
 crank = {{ bar = ["A", "B"], length_m = {crank_m!r} }}
 lever = {{ bar = ["C", "E"], length_m = {1.5 * (crank_m + pivots_m)!r} }}
 [sliders.B]
 on = "lever"
-[driver]
-link = "crank"
-speed_rad_s = {SPEED_RAD_S!r}
-start_deg = {START_DEG!r}
-[branch]
-B = 1
 """,
-        name,
     )
 
 
 def double_parallelogram(name: str, *, source: str) -> Scene:
     """A parallelogram with a third rocker: by count it cannot move, and it does."""
+    return _scene(
+        name,
+        source,
+        "A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0]",
+        """
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+coupler = { points = { B = [0.0, 0.0], C = [0.3, 0.0], F = [0.6, 0.0] }, mass_kg = 0.6 }
+rocker = { bar = ["D", "C"], length_m = 0.1 }
+third = { bar = ["G", "F"], length_m = 0.1 }
+""",
+    )
+
+
+def _scene(
+    name: str,
+    source: str,
+    ground: str,
+    bodies: str,
+    start_deg: float = START_DEG,
+    speed_rad_s: float = SPEED_RAD_S,
+) -> Scene:
+    """The scene of a crank and of bodies in the words of a scene file."""
     return parse_scene(
         f"""
 name = "{name}"
 source = "{source}"
-ground = {{ points = {{ A = [0.0, 0.0], D = [0.3, 0.0], G = [0.6, 0.0] }} }}
-[links]
-crank = {{ bar = ["A", "B"], length_m = 0.1 }}
-coupler = {{ points = {{ B = [0.0, 0.0], C = [0.3, 0.0], F = [0.6, 0.0] }}, mass_kg = 0.6 }}
-rocker = {{ bar = ["D", "C"], length_m = 0.1 }}
-third = {{ bar = ["G", "F"], length_m = 0.1 }}
+ground = {{ points = {{ {ground} }} }}
+{bodies}
 [driver]
 link = "crank"
-speed_rad_s = {SPEED_RAD_S!r}
-start_deg = {START_DEG!r}
-[branch]
-C = 1
+speed_rad_s = {speed_rad_s!r}
+start_deg = {start_deg!r}
 """,
         name,
     )
