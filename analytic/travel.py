@@ -9,6 +9,7 @@ slider-crank, slotted lever) the tests hold this to it.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from analytic.kinematics import repeats_after, solve_driven
 from analytic.plane import Array
 from models.errors import CrankcheckError
+from models.motion import Motion
 from models.scene import Scene
 
 SCAN = 720
@@ -62,45 +64,96 @@ def travel(scene: Scene, output: str) -> Travel:
     if output not in scene.links and output not in scene.sliders:
         have = ", ".join([*scene.links, *scene.sliders])
         raise CrankcheckError(f"{scene.name}: no link or slider {output!r}; it has {have}")
+    found = travels(scene, [output])[output]
+    if isinstance(found, CrankcheckError):
+        raise found
+    return found
+
+
+def travels(scene: Scene, outputs: Sequence[str]) -> dict[str, Travel | CrankcheckError]:
+    """The travel of several links and sliders, or why one has none.
+
+    The work is that of one output: all are refined together. Raises as `travel` what concerns the
+    whole mechanism.
+    """
     period = repeats_after(scene)
     count = SCAN * round(period / math.tau)
     grid: Array = (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
-    rate = _rate(scene, output, grid)
-    _refuse_singular(scene, grid)
-    turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
-    if len(turns) == 0:
-        raise CrankcheckError(f"{scene.name}: {output} never turns back: it has no limit positions")
-    if len(turns) != 2:
-        raise CrankcheckError(
-            f"{scene.name}: {output} turns back {len(turns)} times in a turn of the driver; "
-            "travel is between two limit positions"
+    looked = _driven(scene, outputs, grid)
+    _refuse_singular(scene, grid, looked)
+    found: dict[str, Travel | CrankcheckError] = {}
+    between: dict[str, tuple[Array, Array]] = {}
+    for output in outputs:
+        rate = _rate(looked, output)
+        turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
+        if len(turns) == 2:
+            between[output] = grid[turns], np.sign(rate[turns])
+        else:
+            found[output] = _not_two(scene, output, len(turns))
+    if between:
+        limits = dict(zip(between, _refined(scene, between), strict=True))
+        found |= _extremes(scene, grid, limits, period)
+    return {output: found[output] for output in outputs}
+
+
+def _not_two(scene: Scene, output: str, turns: int) -> CrankcheckError:
+    """Why an output without two limit positions has no travel."""
+    if turns == 0:
+        return CrankcheckError(
+            f"{scene.name}: {output} never turns back: it has no limit positions"
         )
-    low: Array = grid[turns]
-    high: Array = low + math.tau / SCAN
-    sign = np.sign(rate[turns])
-    for _ in range(60):
-        middle: Array = 0.5 * (low + high)
-        same = np.sign(_rate(scene, output, middle)) == sign
-        low = np.where(same, middle, low)
-        high = np.where(same, high, middle)
-    # Angles are continuous along the turn: a swing of more than half a turn is one, too.
-    order = np.argsort(np.concatenate([grid, low]))
-    places = _place(scene, output, np.concatenate([grid, low])[order])[np.argsort(order)[-2:]]
-    first = 0 if places[0] < places[1] else 1
-    at = low % period
-    return Travel(
-        float(places[first]),
-        float(places[1 - first]),
-        float(at[first]),
-        float(at[1 - first]),
-        period,
+    return CrankcheckError(
+        f"{scene.name}: {output} turns back {turns} times in a turn of the driver; "
+        "travel is between two limit positions"
     )
 
 
-def _refuse_singular(scene: Scene, grid: Array) -> None:
+def _refined(scene: Scene, between: Mapping[str, tuple[Array, Array]]) -> Array:
+    """The driver angles [rad] of the limit positions by bisection, shape (outputs, 2).
+
+    ``between`` has, by output, the samples just before them and the signs of the rate there.
+    """
+    low: Array = np.array([before for before, _ in between.values()])
+    high: Array = low + math.tau / SCAN
+    signs = np.array([sign for _, sign in between.values()])
+    for _ in range(60):
+        middle: Array = 0.5 * (low + high)
+        motion = _driven(scene, list(between), middle.ravel())
+        rates = [_rate(motion, o).reshape(middle.shape)[k] for k, o in enumerate(between)]
+        same = np.sign(rates) == signs
+        low = np.where(same, middle, low)
+        high = np.where(same, high, middle)
+    return low
+
+
+def _extremes(
+    scene: Scene, grid: Array, limits: Mapping[str, Array], period: float
+) -> dict[str, Travel]:
+    """The places of the limit positions, shape (2,) by output.
+
+    Angles are continuous along the turn: a swing of more than half a turn is one, too.
+    """
+    theta = np.concatenate([grid, *limits.values()])
+    order = np.argsort(theta)
+    motion = _driven(scene, list(limits), theta[order])
+    found = {}
+    for k, (output, low) in enumerate(limits.items()):
+        first = len(grid) + 2 * k
+        places = _place(motion, output)[np.argsort(order)[first : first + 2]]
+        small = 0 if places[0] < places[1] else 1
+        at = low % period
+        found[output] = Travel(
+            float(places[small]),
+            float(places[1 - small]),
+            float(at[small]),
+            float(at[1 - small]),
+            period,
+        )
+    return found
+
+
+def _refuse_singular(scene: Scene, grid: Array, motion: Motion) -> None:
     """Refuse a turn in which a dyad all but loses its position: its output may run to infinity."""
-    one, zero = np.ones_like(grid), np.zeros_like(grid)
-    motion = solve_driven(scene, grid, one, zero, links=(), points=(), sliders=(), bound=False)
     passed = {crossing.dyad for crossing in motion.crossings}
     for key, sine in motion.conditioning.items():
         if key in passed:
@@ -113,24 +166,25 @@ def _refuse_singular(scene: Scene, grid: Array) -> None:
             )
 
 
-def _rate(scene: Scene, output: str, theta: Array) -> Array:
-    """The rate of the output per rate of the driver."""
+def _driven(scene: Scene, outputs: Sequence[str], theta: Array) -> Motion:
+    """The outputs with the driver at some angles and at unit speed."""
+    links = [output for output in outputs if output in scene.links]
+    sliders = [output for output in outputs if output not in scene.links]
     one, zero = np.ones_like(theta), np.zeros_like(theta)
-    if output in scene.links:
-        motion = solve_driven(
-            scene, theta, one, zero, links=(output,), points=(), sliders=(), bound=False
-        )
-        return motion.links[output].omega
-    motion = solve_driven(
-        scene, theta, one, zero, links=(), points=(), sliders=(output,), bound=False
+    return solve_driven(
+        scene, theta, one, zero, links=links, points=(), sliders=sliders, bound=False
     )
+
+
+def _rate(motion: Motion, output: str) -> Array:
+    """The rate of the output per rate of the driver."""
+    if output in motion.links:
+        return motion.links[output].omega
     return motion.sliders[output].speed
 
 
-def _place(scene: Scene, output: str, theta: Array) -> Array:
+def _place(motion: Motion, output: str) -> Array:
     """The angle or displacement of the output."""
-    one, zero = np.ones_like(theta), np.zeros_like(theta)
-    motion = solve_driven(scene, theta, one, zero, points=(), bound=False)
-    if output in scene.links:
+    if output in motion.links:
         return motion.links[output].theta
     return motion.sliders[output].displacement

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from models.laws import Law
 
@@ -100,7 +101,7 @@ class Scene:
                 bodies.setdefault(point, []).append(link.name)
         return {point: tuple(names) for point, names in bodies.items()}
 
-    @property
+    @cached_property  # asked for at every step of a search
     def longest_m(self) -> float:
         """The longest distance between two points of one link: the scale that errors are over."""
         return max(span(link.points) for link in self.links.values())

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from analytic.fourbar import FourBar
 from analytic.kinematics import reach
 from analytic.structure import Structure
-from analytic.travel import travel
+from analytic.travel import Travel, travels
 from models.errors import CrankcheckError
 from models.scene import Scene
 
@@ -40,10 +40,12 @@ def _grashof(bar: FourBar) -> str:
 
 def _travels(scene: Scene) -> Iterator[str]:
     """One line per output that goes back and forth once in a turn of the driver."""
-    for output in (*scene.links, *scene.sliders):
-        try:
-            found = travel(scene, output)
-        except CrankcheckError:
+    try:
+        every = travels(scene, (*scene.links, *scene.sliders))
+    except CrankcheckError:
+        return  # the mechanism passes a singular position
+    for output, found in every.items():
+        if not isinstance(found, Travel):
             continue  # it turns fully, stands still, or turns back more than twice
         size = f"{found.stroke:.6g} m" if output in scene.sliders else f"{_deg(found.stroke)} deg"
         word = "stroke" if output in scene.sliders else "swing"

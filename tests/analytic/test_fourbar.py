@@ -10,7 +10,7 @@ import pytest
 
 from analytic.fourbar import FourBar
 from analytic.kinematics import solve, solve_driven
-from analytic.travel import travel
+from analytic.travel import Travel, travel, travels
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files import load_scene
 from models.scene import Scene
@@ -187,3 +187,26 @@ def test_output_without_limits_is_refused() -> None:
         travel(load_scene("shaper"), "ram")
     with pytest.raises(ReachError, match="driver can stand at"):
         travel(load_scene("fourbar-double-rocker"), "rocker")
+
+
+def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("sixbar-watt")
+    outputs = (*scene.links, *scene.sliders)
+    asked: list[int] = []
+
+    def counting(*args: object, **options: object) -> object:
+        asked.append(1)
+        return solve_driven(*args, **options)  # type: ignore[arg-type]  # passed on as they are
+
+    monkeypatch.setattr("analytic.travel.solve_driven", counting)
+    found = travels(scene, outputs)
+    together = len(asked)
+    for output in outputs:
+        asked.clear()
+        if isinstance(found[output], Travel):
+            assert travel(scene, output) == found[output]
+            assert len(asked) == together
+        else:
+            with pytest.raises(CrankcheckError, match=r"turns back|never turns"):
+                travel(scene, output)
+    assert sum(isinstance(one, Travel) for one in found.values()) > 2

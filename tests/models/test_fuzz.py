@@ -28,7 +28,7 @@ from reports.sweep.isolation import Isolated, Limits, Lost
 from tests import fuzzing
 from tests.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
 from tests.mutation import mutant
-from tests.scene_files import scene_files
+from tests.scene_files import scene_files, toml
 
 LIMITS = Limits(time_s=10.0, memory_gb=1.0)
 """Memory is that beyond a child with all engines in it, which has 0.2 GB in use."""
@@ -121,6 +121,23 @@ def test_every_file_runs_or_is_refused_with_a_message(kind: str, bench: Bench) -
 def test_ten_thousand_files_run_or_are_refused(kind: str, part: int, bench: Bench) -> None:
     TRY[kind](bench, 1_000_000 + part * EACH, COMMANDS)
     assert bench.ends["exit 0"] > 0.1 * EACH, bench.report()
+
+
+def test_a_crank_with_fifty_rods_and_rockers_is_solved_in_time(bench: Bench) -> None:
+    count = range(25)
+    rods = {f"rod{k}": {"bar": ["B", f"C{k}"], "length_m": 0.3} for k in count}
+    rockers = {f"rocker{k}": {"bar": [f"D{k}", f"C{k}"], "length_m": 0.2} for k in count}
+    raw = toml(
+        {
+            "name": "many",
+            "source": "a test",
+            "ground": {"points": {"A": [0.0, 0.0]} | {f"D{k}": [0.3, 1e-3 * k] for k in count}},
+            "links": {"crank": {"bar": ["A", "B"], "length_m": 0.05}} | rods | rockers,
+            "driver": {"link": "crank", "speed_rad_s": 10.0},
+        }
+    )
+    assert bench.try_out(raw.encode(), "solve FILE --at-deg 90") == []
+    assert bench.ends["exit 0"] == 1
 
 
 MISDEEDS: dict[str, tuple[Callable[[], object], str]] = {
