@@ -1,7 +1,8 @@
 """Scene files of every shape: mechanisms as a user may write them, with all that may be wrong.
 
-Half of what is drawn is a mechanism whose numbers may be extreme; the rest has one to three things
-spoiled: a number that is a date, a table in place of a name, a point that no link has.
+A crank with dyads that mostly close, and then up to four things wrong with it: two of three are a
+number at an end of its range or beyond, the others a date for a number, a table for a name, a point
+that no link has, a key too many.
 """
 
 from __future__ import annotations
@@ -190,16 +191,15 @@ def _at(tree: object, path: Path) -> object:
 
 
 def _put(holder: object, key: str | int, value: object) -> None:
-    text = repr(value)
-    if len(text) < 100_000:  # a copy of a copy of a whole tree grows without end
-        holder[key] = json_copy(value)  # type: ignore[index]  # a list or a dict
+    if len(repr(value)) < 100_000:  # a copy of a copy of a whole tree grows without end
+        holder[key] = _copied(value)  # type: ignore[index]  # a list or a dict
 
 
-def json_copy(value: object) -> object:
+def _copied(value: object) -> object:
     """The value with lists and tables of its own."""
     if isinstance(value, dict):
-        return {key: json_copy(each) for key, each in value.items()}
-    return [json_copy(each) for each in value] if isinstance(value, list) else value
+        return {key: _copied(each) for key, each in value.items()}
+    return [_copied(each) for each in value] if isinstance(value, list) else value
 
 
 def toml(tree: Mapping[str, object]) -> str:
