@@ -33,7 +33,6 @@ from models.poses import along, centre_of, frames, mass_of
 from models.rail import Rail
 from models.scene import GROUND, Point, Scene, Slider, span
 
-
 FAR = 1e3
 """Ends of a groove over the sum of all lengths: where lines cross at a small angle a slider travels
 much further than any link is long. Chipmunk rounds at 1e-13 of the lengths then."""
