@@ -60,8 +60,8 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
     chunk = stretched(scene, steps, theta)
     for k, step in enumerate(steps):
         closure = chunk.closures.get(step.key)
-        if closure is None or closure.root is None:
-            continue
+        if closure is None or closure.root is None or np.ndim(closure.root) == 0:
+            continue  # the last: it hangs on what stands still, and so stands still itself
         valleys = theta[_valleys(closure.root)]
         if not valleys.size:
             continue

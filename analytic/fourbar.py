@@ -64,12 +64,21 @@ class FourBar:
             first, second, held, free = second, first, free, held
         pivot = scene.driver_pivot
         driver = links[scene.driver.link]
-        return FourBar(
+        if held not in driver or free not in scene.ground:
+            raise StructureError(
+                f"{scene.name}: not a four-bar; {group.first} and {group.second} hang between "
+                "pins of one body"
+            )
+        lengths = (
             math.dist(driver[pivot], driver[held]),
             math.dist(links[first][held], links[first][group.inner]),
             math.dist(links[second][free], links[second][group.inner]),
             math.dist(scene.ground[pivot], scene.ground[free]),
         )
+        try:
+            return FourBar(*lengths)
+        except ValueError as error:
+            raise StructureError(f"{scene.name}: not a four-bar; {error}") from None
 
     @property
     def excess_m(self) -> float:

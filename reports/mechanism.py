@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Iterator
 
@@ -9,7 +10,7 @@ from analytic.fourbar import FourBar
 from analytic.kinematics import reach
 from analytic.structure import Structure
 from analytic.travel import Travel, travels
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, StructureError
 from models.scene import Scene
 
 FULL_TURN = math.tau - 1e-9
@@ -20,7 +21,8 @@ def facts(scene: Scene, structure: Structure) -> list[str]:
     fully; swing or stroke and time ratio of every output between two limit positions."""
     found = []
     if [group.kind for group in structure.groups] == ["RRR"]:
-        found.append(_grashof(FourBar.of(scene)))
+        with contextlib.suppress(StructureError):  # two links that stand still, or turn as one
+            found.append(_grashof(FourBar.of(scene)))
     spans = reach(scene)
     if sum(end - start for start, end in spans) < FULL_TURN:
         words = " and ".join(f"{_deg(a)} to {_deg(b)} deg" for a, b in spans)

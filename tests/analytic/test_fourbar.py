@@ -12,10 +12,23 @@ from analytic.fourbar import FourBar
 from analytic.kinematics import solve, solve_driven
 from analytic.travel import Travel, travel, travels
 from models.errors import CrankcheckError, ReachError, StructureError
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.scene import Scene
 from tests.analytic.test_reach import fourbar
 
+STILL = """
+name = "still"
+source = "a test"
+[ground]
+points = {{ A = [0.0, 0.0], D = [0.3, 0.0], E = [0.1, 0.0] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+rod = {{ bar = ["{rod}", "C"], length_m = 0.25 }}
+rocker = {{ bar = ["{rocker}", "C"], length_m = 0.2 }}
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+"""
 CRANK_ROCKERS = [
     (0.1, 0.25, 0.2, 0.3),
     (1.0, 2.5, 2.0, 3.0),
@@ -80,6 +93,23 @@ def test_lengths_are_read_from_a_scene(name: str) -> None:
     assert FourBar.of(load_scene(name)) == FourBar(*wanted)
     with pytest.raises(StructureError, match="shaper: not a four-bar; its groups are RPR, RRP"):
         FourBar.of(load_scene("shaper"))
+
+
+@pytest.mark.parametrize("rod", ["A", "E"])
+def test_two_links_that_stand_still_are_no_four_bar_and_pass_no_change_point(rod: str) -> None:
+    scene = parse_scene(STILL.format(rod=rod, rocker="D"), "test")
+    with pytest.raises(StructureError, match="still: not a four-bar; rod and rocker hang between"):
+        FourBar.of(scene)
+    motion = solve(scene, np.linspace(0.0, 1.0, 100))
+    assert motion.crossings == ()
+    assert not np.ptp(motion.points["C"].position, axis=0).any()
+    assert not motion.links["rod"].omega.any()
+
+
+def test_a_rocker_on_the_pivot_of_the_crank_is_no_four_bar() -> None:
+    scene = parse_scene(STILL.format(rod="B", rocker="A"), "test")
+    with pytest.raises(StructureError, match=r"still: not a four-bar; lengths .* above 0"):
+        FourBar.of(scene)
 
 
 @pytest.mark.parametrize("lengths", CRANK_ROCKERS)

@@ -155,6 +155,18 @@ def test_an_oscillating_driver_is_drawn_back_to_its_centre(crank: Crank) -> None
     assert float(lever[4]) == pytest.approx(-100.0 * math.radians(20.0), rel=1e-7)
 
 
+def test_two_links_that_stand_still_are_solved_and_called_nothing(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = tmp_path / "still.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text.replace('bar = ["B", "C"]', 'bar = ["A", "C"]'), encoding="utf-8")
+    result = crank("solve", str(path), "--at-deg", "90")
+    assert result.exit_code == 0, result.stderr
+    assert "groups in solving order: RRR" in result.output
+    assert "rocker (s + l" not in result.output
+
+
 MISTAKES = {
     "unknown scene": (["solve", "scotch-yok"], ["'scotch-yok'", "scotch-yoke"]),
     "angle out of reach": (
