@@ -1,7 +1,7 @@
 """Scenes that run into trouble as one of their numbers does: the shapes behind the hard cases.
 
 All links are slender rods of 1 kg/m, all drivers turn at 10 rad/s unless said otherwise. Crank
-angles start off round numbers, so that no sample falls on a singular position by chance.
+angles start off round numbers, so that no sample of a usual step falls on a singular position.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from models.files import parse_scene
 from models.scene import Scene
 
-START_DEG = 31.0
+START_DEG = 31.37
 SPEED_RAD_S = 10.0
 
 

@@ -11,7 +11,7 @@ from analytic.windows import Turning
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.windows import Chain
-from reports.branch import AWAY_RAD, HERE_RAD
+from reports.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.errors import Departure
 from reports.series import Array
 from sim.engine import Engine, Run, SettingValue
@@ -48,14 +48,17 @@ class Held:
 
     @property
     def left(self) -> Departure | None:
-        """Where a rod began to leave the others, if one came to stand at an angle to them."""
-        away = np.flatnonzero(~(self.lean_rad < AWAY_RAD))
+        """Where a rod began to leave the others, if one came to stand at an angle to them while
+        the pins were closed; the rod, and the angle of the first rocker there."""
+        closed = self.gap_m < CLOSED * self.chain.length_m
+        away = np.flatnonzero(closed & ~(self.lean_rad < AWAY_RAD))
         if not away.size or self.run.motion is None:
             return None
         here = np.flatnonzero(self.lean_rad[: away[0]] < HERE_RAD)
         index = int(here[-1]) if here.size else 0
         angle = self.run.motion.links["rocker0"].theta[index]
-        return Departure("rocker0", float(self.time_s[index]), float(angle))
+        rod = _leaning(self.chain, self.run.motion, int(away[0]))
+        return Departure(rod, float(self.time_s[index]), float(angle))
 
     def place_until(self, time_s: float) -> float:
         """The largest error of B0 up to a time [m]; NaN if the run ended before it."""
@@ -119,6 +122,15 @@ def _start_j(turning: Turning) -> float:
     """The energy of the start [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])
+
+
+def _leaning(chain: Chain, motion: Motion, index: int) -> str:
+    """The rod that stands at the largest angle to those that it is parallel to in truth."""
+    angles = {name: float(motion.links[name].theta[index]) for name in chain.rockers()}
+    middle = float(np.median(list(angles.values())))
+    off = {name: abs(angle - middle) for name, angle in angles.items()}
+    off |= {name: abs(float(motion.links[name].theta[index])) for name in chain.couplers()}
+    return max(off, key=lambda name: off[name])
 
 
 def _lean(chain: Chain, motion: Motion) -> Array:

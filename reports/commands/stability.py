@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -110,9 +109,8 @@ def _single(
         raise CrankcheckError(f"--at {value:g}: a value of one case; found {len(cases)}, name one")
     if request.folder is not None:
         raise CrankcheckError("--at and -o: one value is shown and not stored; leave one of them")
-    if not math.isfinite(value):
-        raise CrankcheckError(f"--at {value}: not a finite number")
     case, code = cases[0], 0
+    case.refuse(value)
     for name, profile in itertools.product(engines, profiles):
         try:
             found, _ = graded(case, name, profile, value, draw=False)

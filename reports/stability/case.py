@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
 from models.windows import Chain
@@ -76,6 +77,21 @@ class Case:
     good: tuple[Outcome, ...] = ("ok",)
     judge: Judge = "follow"
     within: float = WITHIN
+
+    def refuse(self, value: float) -> None:
+        """Refuse a value that means nothing for the case. Raises CrankcheckError."""
+        if value in self.values:
+            return
+        easy, hard = (label(end) for end in (self.values[0], self.values[-1]))
+        means = f"{self.parameter}, in the catalogue {easy} to {hard} {self.unit}".rstrip()
+        if len(self.values) == 1:
+            raise CrankcheckError(f"--at {value:g}: {self.name} has the one value {easy}")
+        if not math.isfinite(value):
+            raise CrankcheckError(f"--at {value:g}: not a finite number; it is the {means}")
+        if self.scale != "linear" and value <= 0.0:
+            raise CrankcheckError(f"--at {value:g}: not above 0; it is the {means}")
+        if self.scale == "whole" and value != round(value):
+            raise CrankcheckError(f"--at {value:g}: not a whole number; it is the {means}")
 
     def facts(self) -> CaseFacts:
         """What a reader needs."""

@@ -102,7 +102,8 @@ def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Gr
         return f"holds all, error up to {worst:.0e}" if len(good) > 1 else "holds"
     if holds is None:
         if good:
-            return f"{fails.outcome} at {label(fails.value)}, holds others"
+            held = sum(run.grid for run in good)
+            return f"{fails.outcome} at {label(fails.value)}, holds {held} of {len(case.values)}"
         return f"{fails.outcome} at once" if len(case.values) > 1 else fails.outcome
     way = "down to" if harder(case) < 0.0 else "up to"
     value = f"{label(holds.value)} {case.unit}".strip()

@@ -8,7 +8,7 @@ from analytic.windows import Turning
 from models.motion import Motion
 from reports.series import Array
 from reports.stability.case import Trial
-from reports.stability.seen import Seen
+from reports.stability.seen import Seen, lacking, worst_of
 from reports.windows import Held, compared
 from sim.engine import Run
 
@@ -27,14 +27,15 @@ def freely(trial: Trial, run: Run) -> Seen:
         reason=run.reason,
         time_s=held.time_s,
         driver_rad=theta,
-        place=np.nan_to_num(_error(held), nan=np.inf),
-        gap=np.nan_to_num(held.gap_m / trial.chain.length_m, nan=np.inf),
+        place=worst_of(_error(held)),
+        gap=worst_of(held.gap_m / trial.chain.length_m),
         drive=np.zeros_like(theta),
         crank=theta,
         period_s=Turning(trial.chain).period_s,
         settled=0,
         departure=held.left,
         sine=float(np.min(np.abs(np.sin(theta)))),
+        incomplete=lacking(trial.scene, run),
     )
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import solve
-from models.errors import EngineError
 from models.motion import Motion
 from reports.series import Array
 from reports.stability.case import Case, Judge, Trial, label
@@ -22,6 +21,7 @@ from reports.stability.picture import picture
 from reports.stability.seen import Seen, seen
 from sim.engine import Run
 from sim.run import run
+from sim.settings import SettingError
 
 Found = tuple[Graded, Picture | None]
 
@@ -55,7 +55,8 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     Raises
     ------
     CrankcheckError
-        The case has no reference at this value; the message is the reference's own.
+        The case has no reference at this value, or cannot be run with it; the message is that of
+        the reference, or of the engine.
     """
     began = time.perf_counter()
     trial = case.trial(value)
@@ -84,7 +85,7 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
             settings=trial.settings,
             open_m=trial.open_m,
         )
-    except EngineError as error:
+    except SettingError as error:
         return replace(blank, outcome="unsupported", reason=str(error)), None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"

@@ -8,7 +8,7 @@ from analytic.kinematics import solve_driven
 from models.motion import Motion
 from reports.series import Array
 from reports.stability.case import Trial
-from reports.stability.seen import Seen
+from reports.stability.seen import Seen, lacking, worst_of
 from sim.engine import Run
 
 WILD = 1e3
@@ -31,21 +31,21 @@ def held(trial: Trial, time_s: Array) -> Motion:
 def at_limit(trial: Trial, run: Run) -> Seen:
     """A run beside the limit that its crank cannot pass.
 
-    The error of place is how far the crank has gone beyond the limit [rad]; what the crank is
-    told is its command, so that a crank that is held back stands short of it.
+    The error of place is how far the crank is from its command, which ends at the limit [rad]. What
+    the crank is told goes on, so that a crank that is held back stands short of it.
     """
     assert run.motion is not None
     scene, motion = trial.scene, run.motion
     law = scene.driver.law
     driver = law.at(motion.time_s)[0]
     crank = motion.links[scene.driver.link].theta
-    forward = np.sign(driver[-1] - driver[0])
+    low, high = sorted((float(driver[0]), trial.limit_rad))
     with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
         spin = np.max([np.abs(link.omega) for link in motion.links.values()], axis=0)
         gap = np.max([np.abs(one) for one in run.gaps.values()], axis=0) / scene.longest_m
-        beyond = np.maximum(forward * (crank - trial.limit_rad), 0.0)
+        off = np.abs(crank - np.clip(driver, low, high))
     status, reason = run.status, run.reason
-    fastest = float(np.nan_to_num(spin, nan=np.inf).max()) / law.peak_speed_rad_s
+    fastest = float(worst_of(spin).max()) / law.peak_speed_rad_s
     if status == "ok" and fastest > WILD:
         status, reason = "diverged", f"a link turns {fastest:.1g} times as fast as the command"
     return Seen(
@@ -53,12 +53,14 @@ def at_limit(trial: Trial, run: Run) -> Seen:
         reason=reason,
         time_s=motion.time_s,
         driver_rad=driver,
-        place=np.nan_to_num(beyond, nan=np.inf),
-        gap=np.nan_to_num(gap, nan=np.inf),
-        drive=np.nan_to_num(np.abs(crank - driver), nan=np.inf),
+        place=worst_of(off),
+        gap=worst_of(gap),
+        drive=worst_of(np.abs(crank - driver)),
         crank=crank,
         period_s=law.period_s,
         settled=0,
         departure=None,
         sine=0.0,
+        incomplete=lacking(scene, run),
+        limited=True,
     )

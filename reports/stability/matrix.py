@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from pydantic import TypeAdapter
+
 from models.errors import CrankcheckError
 from reports.finite import finite
 
@@ -49,6 +51,10 @@ class CaseFacts:
     labels: tuple[str, ...]
     good: tuple[Outcome, ...]
     within: float
+
+    def __post_init__(self) -> None:
+        if not self.values or len(self.labels) != len(self.values):
+            raise ValueError(f"{self.name}: {len(self.labels)} labels, {len(self.values)} values")
 
 
 @dataclass(frozen=True)
@@ -158,19 +164,15 @@ def read_matrix(folder: Path) -> Matrix:
                 f"{path}: format {found}; this crankcheck reads format {FORMAT}: run "
                 f"`crankcheck stability -o {folder}` again"
             )
-        return Matrix(
-            facts=content["facts"],
-            cases=tuple(CaseFacts(**_tuples(row)) for row in content["cases"]),
-            runs=tuple(Graded(**_numbers(row)) for row in content["runs"]),
-            critical=tuple(Critical(**_numbers(row)) for row in content["critical"]),
-            pictures=tuple(Picture(**row) for row in content["pictures"]),
-        )
+        rows = {key: [_numbers(row) for row in content[key]] for key in ("runs", "critical")}
+        parts = {key: content[key] for key in ("facts", "cases", "pictures")}
+        return TypeAdapter(Matrix).validate_python(parts | rows)
     except FileNotFoundError:
         raise CrankcheckError(
             f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"
         ) from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        why = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        why = getattr(error, "strerror", None) or str(error).partition("\n")[0]
         raise CrankcheckError(
             f"{path}: can not be read ({why}); run `crankcheck stability -o {folder}` again"
         ) from None
@@ -179,8 +181,3 @@ def read_matrix(folder: Path) -> Matrix:
 def _numbers(row: Mapping[str, Any]) -> dict[str, Any]:
     """A row with NaN where the file has null."""
     return {key: math.nan if value is None else value for key, value in row.items()}
-
-
-def _tuples(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with tuples where the file has lists."""
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}

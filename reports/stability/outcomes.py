@@ -89,7 +89,8 @@ def _diverged(seen: Seen, _: float) -> Ending | None:
 
 
 def _crashed(seen: Seen, _: float) -> Ending | None:
-    return None if seen.status == "ok" else Ending("crashed", seen.reason, len(seen.time_s) - 1)
+    fault = seen.incomplete if seen.status == "ok" else seen.reason or seen.status
+    return Ending("crashed", fault, len(seen.time_s) - 1) if fault else None
 
 
 def _branch_changed(seen: Seen, _: float) -> Ending | None:
@@ -104,8 +105,10 @@ def _locked(seen: Seen, within: float) -> Ending | None:
     end = max(len(seen.time_s) // LAST, 1)
     turned = float(np.ptp(seen.crank[-end:]))
     told = float(np.ptp(seen.driver_rad[-end:]))
-    if turned > STANDS * told or seen.drive[-1] <= within or seen.gap[-end:].max() > within:
+    if turned > STANDS * told or seen.drive[-1] <= within or seen.worst(seen.gap)[0] > within:
         return None
+    if seen.limited and seen.worst(seen.place)[0] > within:
+        return None  # it stands, and somewhere else than at its limit
     behind = math.degrees(float(seen.drive[-1]))
     return Ending(
         "locked", f"the crank stands, {behind:.3g} deg behind", seen.first(seen.drive, within)
@@ -116,9 +119,7 @@ def _silently_open(seen: Seen, within: float) -> Ending | None:
     gap, _ = seen.worst(seen.gap)
     if gap <= within or seen.worst(seen.drive)[0] > within:
         return None
-    reason = (
-        f"the crank is where it should be, and a joint is open by {gap:.2g} of the longest link"
-    )
+    reason = f"a joint is open by {gap:.2g} of the longest link, and the crank does not show it"
     return Ending("silently-open", reason, seen.first(seen.gap, within))
 
 
@@ -133,10 +134,10 @@ def _drifts(seen: Seen, within: float) -> Ending | None:
 
 
 def _degraded(seen: Seen, within: float) -> Ending | None:
-    for what, series in (("place", seen.place), ("the crank", seen.drive), ("a joint", seen.gap)):
+    for what, series in (("a place", seen.place), ("the crank", seen.drive), ("a joint", seen.gap)):
         worst, at = seen.worst(series)
         if worst > within:
-            return Ending("degraded", f"{what} is off by {worst:.2g}, bounded", at)
+            return Ending("degraded", f"{what} is off by {worst:.2g}", at)
     return None
 
 
@@ -151,14 +152,14 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "diverged", "numbers blow up, or a joint is open by more than the longest link", _diverged
     ),
-    Rule("crashed", "the engine failed, or did not end in time", _crashed),
+    Rule("crashed", "the engine failed, did not end in time, or left a log with holes", _crashed),
     Rule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
     Rule("locked", "the loops are closed, and the crank stands short of its command", _locked),
     Rule(
         "silently-open", "the driven joint looks fine, and another has come apart", _silently_open
     ),
     Rule("drifts", "the error is over the class and grows with the turns", _drifts),
-    Rule("degraded", "the error is over the class, and bounded", _degraded),
+    Rule("degraded", "the error is over the class, and does not blow up", _degraded),
     Rule("ok", "within the class throughout", _ok),
 )
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {

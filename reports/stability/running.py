@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 
+from models.errors import CrankcheckError
 from reports.stability.case import Case, label
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import critical, line
@@ -44,8 +45,8 @@ def run_lines(
 
     ``done`` hears of each as it ends, in this thread.
     """
-    apart = [Isolated[Found](limits) for _ in range(max(min(jobs, len(lines)), 1))]
-    free: queue.SimpleQueue[Isolated[Found]] = queue.SimpleQueue()
+    apart = [Isolated[Found | str](limits) for _ in range(max(min(jobs, len(lines)), 1))]
+    free: queue.SimpleQueue[Isolated[Found | str]] = queue.SimpleQueue()
     for one in apart:
         free.put(one)
     pool = ThreadPoolExecutor(len(apart))
@@ -72,7 +73,7 @@ def _work(case: Case) -> int:
     return sum(case.trial(value).steps for value in case.values)
 
 
-def _line(given: Line, free: queue.SimpleQueue[Isolated[Found]]) -> Held:
+def _line(given: Line, free: queue.SimpleQueue[Isolated[Found | str]]) -> Held:
     """One line, in a child process that is free."""
     case, isolated = CATALOGUE[given.case], free.get()
     pictures: list[Picture] = []
@@ -81,6 +82,8 @@ def _line(given: Line, free: queue.SimpleQueue[Isolated[Found]]) -> Held:
         answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
         if isinstance(answer, Lost):
             return _lost(given, value, answer, grid)
+        if isinstance(answer, str):
+            raise CrankcheckError(f"case {given.case} at {label(value)}: {answer}")
         found, drawn = answer
         if drawn is not None:
             pictures.append(drawn)
@@ -93,9 +96,15 @@ def _line(given: Line, free: queue.SimpleQueue[Isolated[Found]]) -> Held:
     return Held(given, tuple(runs), critical(case, runs), tuple(pictures))
 
 
-def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> Found:
-    """As `grading.graded`, for a case by its name: what travels to the child process is small."""
-    return graded(CATALOGUE[case], engine, profile, value, draw=draw)
+def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> Found | str:
+    """As `grading.graded`, for a case by its name: what travels to the child process is small.
+
+    What has no reference, or cannot be asked of the engine, is no fault of the engine: its message.
+    """
+    try:
+        return graded(CATALOGUE[case], engine, profile, value, draw=draw)
+    except CrankcheckError as error:
+        return str(error)
 
 
 def _lost(given: Line, value: float, lost: Lost, grid: bool) -> Graded:

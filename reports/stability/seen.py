@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.kinematics import solve
+from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
-from reports.branch import departure
+from reports.branch import HERE_RAD, departure
 from reports.errors import Departure
 from reports.series import Array, angle_error, length
+from reports.stamps import incomplete
 from reports.tracks import tracks
 from sim.engine import Run
 
@@ -23,8 +25,9 @@ class Seen:
 
     ``place`` is the worst error of any link, slider and point, ``gap`` the widest open joint,
     ``drive`` the error of the crank, all as pure numbers (rad, lengths over the longest link) and
-    infinite where a number is missing. ``spin`` is the fastest link over the driver's peak speed.
-    ``settled`` is the first sample that counts.
+    infinite where a number is missing; ``crank`` is its logged angle [rad]. ``settled`` is the
+    first sample that counts, and ``incomplete`` what the log lacks of what was commanded.
+    ``limited`` says that ``place`` is the crank's, against a command that ends at a limit.
     """
 
     status: str
@@ -39,6 +42,8 @@ class Seen:
     settled: int
     departure: Departure | None
     sine: float
+    incomplete: str = ""
+    limited: bool = False
 
     @property
     def turn(self) -> Array:
@@ -72,7 +77,11 @@ def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
         crank = motion.links[scene.driver.link].theta
         drive = _widest([angle_error(crank, driver)], driver)
     period = scene.driver.law.period_s
-    settled = int(np.searchsorted(motion.time_s, motion.time_s[0] + settled_turns * period))
+    first = int(np.searchsorted(motion.time_s, motion.time_s[0] + settled_turns * period))
+    settled = min(first, len(driver) - 1)
+    left = departure(scene, run, placed, driver)
+    if place[settled:].max() < HERE_RAD:
+        left = None  # it came back before it counted
     return Seen(
         status=run.status,
         reason=run.reason,
@@ -83,10 +92,18 @@ def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
         drive=drive,
         crank=crank,
         period_s=period,
-        settled=min(settled, len(driver) - 1),
-        departure=departure(scene, run, placed, driver),
+        settled=settled,
+        departure=left,
         sine=nearest(reference),
+        incomplete=lacking(scene, run),
     )
+
+
+def lacking(scene: Scene, run: Run) -> str:
+    """What the log lacks of the samples that were commanded, or of the joints; "" if nothing."""
+    joined = dict.fromkeys([*(pin.point for pin in joints(scene).pins), *scene.sliders])
+    silent = [name for name in joined if name not in run.gaps]
+    return incomplete(run) or (f"no gap of {', '.join(silent)} in the log" if silent else "")
 
 
 def nearest(reference: Motion) -> float:
@@ -94,9 +111,13 @@ def nearest(reference: Motion) -> float:
     return min((float(np.min(sine)) for sine in reference.conditioning.values()), default=1.0)
 
 
+def worst_of(series: Array) -> Array:
+    """The series with what is not a number as infinite."""
+    return np.where(np.isnan(series), math.inf, series)
+
+
 def _widest(series: list[Array], like: Array) -> Array:
     """The largest of several series at each sample, infinite where one is not a number."""
     if not series:
         return np.zeros_like(like)
-    found = np.max([np.abs(one) for one in series], axis=0)
-    return np.where(np.isnan(found), math.inf, found)
+    return worst_of(np.max([np.abs(one) for one in series], axis=0))

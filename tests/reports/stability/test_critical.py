@@ -103,7 +103,7 @@ def test_only_the_values_before_the_first_failure_count_as_held() -> None:
 def test_a_line_that_fails_at_the_easiest_value_alone_says_that_others_hold() -> None:
     found, _ = held(case((8.0, 4.0, 2.0)), lambda v: v != 8.0)
     assert math.isnan(found.holds)
-    assert found.words == "branch-changed at 8, holds others"
+    assert found.words == "branch-changed at 8, holds 2 of 3"
 
 
 def test_a_line_that_holds_tells_its_worst_error_wherever_it_is() -> None:

@@ -17,6 +17,13 @@ from reports.stability.grading import graded
 from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
 
 
+def edited(text: str, table: str, **changed: object) -> str:
+    """The text with some of the first row of a table changed."""
+    content = json.loads(text)
+    content[table][0] |= changed
+    return json.dumps(content)
+
+
 @pytest.fixture(scope="module")
 def matrix() -> Matrix:
     """A small real one, with runs that hold, and one with a picture."""
@@ -58,6 +65,14 @@ def test_a_number_that_is_missing_is_still_missing(matrix: Matrix, tmp_path: Pat
         lambda text: json.dumps(json.loads(text) | {"format": 99}),
         lambda text: json.dumps({"format": 1, "facts": {}}),
         lambda text: text.replace('"outcome"', '"ending"'),
+        lambda text: text.replace('"branch-changed"', '"gone"'),
+        lambda text: edited(text, "runs", error="abc"),
+        lambda text: edited(text, "cases", values=None),
+        lambda text: edited(text, "cases", labels=["0.01"]),
+        lambda text: edited(text, "pictures", drawing=3),
+        lambda text: json.dumps(json.loads(text) | {"facts": [1]}),
+        lambda text: json.dumps(json.loads(text) | {"runs": 5}),
+        lambda text: json.dumps(json.loads(text) | {"runs": ["a"]}),
     ],
 )
 def test_a_damaged_matrix_is_refused_with_the_cure(
