@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from analytic.jolts import mass_ratio
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
@@ -21,7 +22,6 @@ from reports.errors import Departure, Errors
 from reports.halving import followed
 from reports.rules import judge
 from reports.rules.base import Evidence, Finding
-from reports.settling import mass_ratio
 from reports.tolerance import Limit, limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run

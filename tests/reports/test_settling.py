@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import pytest
 
+from analytic.jolts import mass_ratio
 from models.files import load_scene
 from models.scene import Scene
 from reports.cell import Cell, Checked, check
 from reports.errors import Errors
-from reports.settling import allowance, mass_ratio
+from reports.settling import allowance
 
 ERRORS = Errors((), (), (), curvature=2.0, conditioning=0.5, step_rad=0.01, jolt=3.0)
 
