@@ -64,12 +64,16 @@ def turned(name: str, angle: Callable[[np.ndarray], np.ndarray]) -> Callable[[Po
 def test_a_rod_that_leaves_the_others_is_seen_where_it_began(
     fake_engine: ModuleType, name: str
 ) -> None:
-    found = held(fake_engine, turned(name, lambda t: np.clip(t - 1.0, 0.0, 0.6)))
+    apart = held(fake_engine, turned(name, lambda t: np.clip(t - 1.0, 0.0, 0.6)))
+    assert apart.gap_m.max() == pytest.approx(2.0 * np.sin(0.3), abs=1e-3)
+    assert apart.left is None  # its pins are open: it has not left its branch, but come apart
+    shut = {pin: 0.0 * gap for pin, gap in apart.run.gaps.items()}
+    found = compared(CHAIN, replace(apart.run, gaps=shut))
     assert found.left is not None
+    assert found.left.link == name
     assert found.left.time_s == pytest.approx(1.02, abs=0.006)
     truth = Turning(CHAIN).at(np.array([found.left.time_s]))[0]
     assert found.left.driver_rad == pytest.approx(truth[0], abs=0.03)
-    assert found.gap_m.max() == pytest.approx(2.0 * np.sin(0.3), abs=1e-3)
 
 
 def test_a_rod_that_gives_way_a_little_has_not_left(fake_engine: ModuleType) -> None:
