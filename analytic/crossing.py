@@ -41,6 +41,10 @@ WIDTHS = (4e-3, 4e-4, 4e-5, 1e-6)
 place to about 1e-10 rad where rounding is taken a root of."""
 TIP = 1e-8
 """Half-width of one more look [rad]: the tip that two pins make that meet is found to rounding."""
+CLOSER = 3
+"""Looks at where a driver begins to move, each `SCAN` times as close as the one before it."""
+LONGEST_REST = 1e9
+"""Periods after which a law counts as one that never moves."""
 UNSURE = 64.0
 """How much more than by itself a dyad may be open in a change point of one before it."""
 
@@ -172,11 +176,25 @@ class _Look:
 
 
 def _start(law: Law) -> float:
-    """The driver's angle just after the time at which the branch is stated."""
-    theta = law.at(np.linspace(0.0, law.period_s, SCAN + 1))[0]
-    moved = theta[np.abs(theta - theta[0]) > AT_START]
-    way = float(np.sign(moved[0] - theta[0])) if moved.size else 1.0
-    return float(theta[0]) + way * AT_START
+    """The driver's angle just after the time at which the branch is stated.
+
+    A law may rest for longer than its period: it is looked at over twice the time until it moves,
+    and there ever closer, as it may turn back between two looks.
+    """
+    low, high = 0.0, law.period_s
+    first = float(law.at(np.zeros(1))[0][0])
+    way, closer = 1.0, 0
+    while closer < CLOSER and high < LONGEST_REST * law.period_s:
+        time_s = np.linspace(low, high, SCAN + 1)
+        off = law.at(time_s)[0] - first
+        moved = np.flatnonzero(np.abs(off) > AT_START)
+        if moved.size:
+            k = int(moved[0])
+            way = float(np.sign(off[k]))
+            low, high, closer = float(time_s[max(k - 1, 0)]), float(time_s[k]), closer + 1
+        else:
+            low, high = high, 2.0 * high
+    return first + way * AT_START
 
 
 def _grid(start: float, period: float) -> Array:

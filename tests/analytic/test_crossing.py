@@ -18,7 +18,7 @@ from analytic.kinematics import reach, solve, solve_driven
 from analytic.travel import travel
 from models.errors import CrankcheckError, ReachError
 from models.files import parse_scene
-from models.laws import FromRest, Law, Oscillating
+from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic import jets, oracle
@@ -315,6 +315,22 @@ def test_laws_that_start_stop_and_turn_back_in_a_change_point(law: Law) -> None:
     exact = exact_fourbar(scene, lengths, [0.0, math.pi], lambda i: law_at(law, float(time_s[i])))
     assert shares(motion, exact).max() <= 1.0
     assert finite_below(motion, 1e-6)
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize("rest_s", [0.1, 0.62, 0.63, 0.7, 2.0, 300.0, 1e6])
+def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to(
+    rest_s: float, speed: float
+) -> None:
+    """However long it rests: for more than a period, too."""
+    lengths = (0.1, 0.3, 0.1, 0.3)
+    scene = fourbar(*lengths)
+    law = SpeedChange(0.0, 0.0, speed, rest_s, 0.0)
+    resting = replace(scene, driver=replace(scene.driver, law=law))
+    found = solve(resting, np.array([0.0, rest_s + 0.1])).links["coupler"].theta[1]
+    # The branch is stated just beside the change point, so the oracle passes none.
+    exact = exact_fourbar(scene, lengths, [], at_angles(np.array([math.copysign(1.0, speed)])))
+    assert found == pytest.approx(float(exact(0)["coupler"].value), abs=1e-8)
 
 
 @pytest.mark.parametrize("power", range(2, 13))
