@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 
+from analytic.jolts import jolts, mass_ratio
 from analytic.kinematics import solve, solve_driven
 from models.errors import ReachError
 from models.joints import joints
@@ -23,7 +24,6 @@ from models.scene import Scene
 from reports.branch import departure
 from reports.errors import Error, Errors, Kind, Quantity, Source
 from reports.series import Array, angle_error, length, rate, second_rate, size
-from reports.settling import jolts, mass_ratio
 from reports.stamps import incomplete
 from reports.summing import summed
 from reports.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks

@@ -82,7 +82,7 @@ class Errors:
     up step by step: it is what grows with the number of steps (`reports.summing`). ``jolt`` is how
     much an engine may make up for at its start, over a step, as a pure number, ``worst_jolt`` the
     most of it over the run, and ``mass_ratio`` the mass of the heaviest body over that of the
-    lightest (`reports.settling`).
+    lightest (`analytic.jolts`).
     """
 
     rows: tuple[Error, ...]
