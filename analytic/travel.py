@@ -1,9 +1,10 @@
 """How far an output travels: swing of a link, stroke of a slider, time ratio, limit positions.
 
 For any mechanism whose driver turns fully: the output's rate per driver rate is looked at over a
-turn (over two, where change points let positions repeat after two only), and its changes of sign,
-the limit positions, are refined by bisection. Where a closed form exists (`analytic.fourbar`,
-slider-crank, slotted lever) the tests hold this to it.
+turn (over two, where change points let positions repeat after two only), closer where it comes
+nearer to zero than beside it, as an output may turn back and forth between two looks; its changes
+of sign, the limit positions, are refined by bisection. Where a closed form exists
+(`analytic.fourbar`, slider-crank, slotted lever) the tests hold this to it.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.kinematics import repeats_after, solve_driven
 from analytic.plane import Array
@@ -21,6 +23,12 @@ from models.motion import Motion
 from models.scene import Scene
 
 SCAN = 720
+"""Looks at a turn."""
+ZOOMS = 5
+FINER = 65
+"""Looks at the neighbourhood of every smallest rate in each zoom."""
+DEPTH = 1e-9
+"""What a rate falls by, over the largest, or is below zero by, if it is more than rounding."""
 
 
 @dataclass(frozen=True)
@@ -82,18 +90,62 @@ def travels(scene: Scene, outputs: Sequence[str]) -> dict[str, Travel | Crankche
     looked = _driven(scene, outputs, grid)
     _refuse_singular(scene, grid, looked)
     found: dict[str, Travel | CrankcheckError] = {}
-    between: dict[str, tuple[Array, Array]] = {}
-    for output in outputs:
-        rate = _rate(looked, output)
-        turns = np.flatnonzero(np.sign(rate) != np.sign(np.roll(rate, -1)))
+    between: dict[str, tuple[Array, Array, Array]] = {}
+    for output, (theta, rate) in _closer(scene, outputs, grid, looked).items():
+        sign = np.sign(rate)
+        turns = np.flatnonzero(sign != np.roll(sign, -1))
         if len(turns) == 2:
-            between[output] = grid[turns], np.sign(rate[turns])
+            after = np.append(theta[1:], theta[0] + period)
+            between[output] = theta[turns], after[turns], sign[turns]
         else:
             found[output] = _not_two(scene, output, len(turns))
     if between:
         limits = dict(zip(between, _refined(scene, between), strict=True))
         found |= _extremes(scene, grid, limits, period)
     return {output: found[output] for output in outputs}
+
+
+def _closer(
+    scene: Scene, outputs: Sequence[str], grid: Array, looked: Motion
+) -> dict[str, tuple[Array, Array]]:
+    """By output, the driver angles of the grid and those where it turned back between them, in
+    order, and the output's rates there.
+
+    A rate that is nearest to zero at one sample is looked at ever closer on both sides of it, as
+    far as where it is smallest.
+    """
+    rates = {output: _rate(looked, output) for output in dict.fromkeys(outputs)}
+    valleys = [(output, k) for output, rate in rates.items() for k in _valleys(rate)]
+    if not valleys:
+        return {output: (grid, rate) for output, rate in rates.items()}
+    places = np.array([grid[k] for _, k in valleys])
+    signs = np.array([np.sign(rates[output][k]) for output, k in valleys])
+    width = math.tau / SCAN
+    for _ in range(ZOOMS):
+        near = places[:, None] + np.linspace(-width, width, FINER)
+        motion = _driven(scene, list(rates), near.ravel())
+        rows = [_rate(motion, o).reshape(near.shape)[i] for i, (o, _) in enumerate(valleys)]
+        signed = np.array(rows) * signs[:, None]
+        best = np.arange(len(near)), np.argmin(signed, axis=1)
+        places, least = near[best], signed[best]
+        width *= 2.0 / (FINER - 1)
+    found = {}
+    for output, rate in rates.items():
+        back = -DEPTH * np.max(np.abs(rate))
+        more = [i for i, (name, _) in enumerate(valleys) if name == output and least[i] < back]
+        theta = np.append(grid, places[more])
+        order = np.argsort(theta)
+        found[output] = theta[order], np.append(rate, signs[more] * least[more])[order]
+    return found
+
+
+def _valleys(rate: Array) -> NDArray[np.intp]:
+    """The samples at which a rate that repeats is nearer to zero than beside them, of one sign."""
+    before, after, size = np.roll(rate, 1), np.roll(rate, -1), np.abs(rate)
+    same = (np.sign(before) == np.sign(rate)) & (np.sign(after) == np.sign(rate))
+    least = (size <= np.abs(before)) & (size <= np.abs(after))
+    depth = np.maximum(np.abs(before), np.abs(after)) - size
+    return np.flatnonzero(same & least & (depth > DEPTH * np.max(size)))
 
 
 def _not_two(scene: Scene, output: str, turns: int) -> CrankcheckError:
@@ -108,14 +160,15 @@ def _not_two(scene: Scene, output: str, turns: int) -> CrankcheckError:
     )
 
 
-def _refined(scene: Scene, between: Mapping[str, tuple[Array, Array]]) -> Array:
+def _refined(scene: Scene, between: Mapping[str, tuple[Array, Array, Array]]) -> Array:
     """The driver angles [rad] of the limit positions by bisection, shape (outputs, 2).
 
-    ``between`` has, by output, the samples just before them and the signs of the rate there.
+    ``between`` has, by output, the looks just before and after them, and the signs of the rate
+    before.
     """
-    low: Array = np.array([before for before, _ in between.values()])
-    high: Array = low + math.tau / SCAN
-    signs = np.array([sign for _, sign in between.values()])
+    low: Array = np.array([before for before, _, _ in between.values()])
+    high: Array = np.array([after for _, after, _ in between.values()])
+    signs = np.array([sign for _, _, sign in between.values()])
     for _ in range(60):
         middle: Array = 0.5 * (low + high)
         motion = _driven(scene, list(between), middle.ravel())

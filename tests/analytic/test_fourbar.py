@@ -172,6 +172,20 @@ def test_swing_and_time_ratio_of_the_slotted_lever() -> None:
     assert found.time_ratio == pytest.approx((math.pi + beta) / (math.pi - beta), abs=1e-9)
 
 
+@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_lever_that_swings_back_between_two_looks_is_seen_to(short: float) -> None:
+    """With the block next to the pivot it goes half a turn back in a millionth of one."""
+    scene = load_scene("slotted-lever")
+    scene = replace(
+        scene, ground={**scene.ground, "A": (0.0, 0.1 / (1.0 - short)), "C": (0.0, 0.0)}
+    )
+    beta = 2.0 * math.asin(1.0 - short)
+    found = travel(scene, "lever")
+    assert found.stroke == pytest.approx(beta, abs=1e-8)
+    narrow = 2.0 * math.acos(1.0 - short)  # math.pi - beta, with its digits
+    assert found.time_ratio == pytest.approx((math.tau - narrow) / narrow, rel=1e-3)
+
+
 def test_limit_positions_are_where_the_output_rests() -> None:
     for name, output in (("shaper", "F"), ("sixbar-watt", "lever"), ("slider-crank-offset", "C")):
         scene = load_scene(name)
