@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import count
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from reports.store.damage import Damage, indented
 from reports.store.examine import HANGING, STOPPED, Examined
 from reports.store.manifest import MANIFEST
 from reports.store.part import part_bytes
-from reports.store.schema import DAMAGED
+from reports.store.schema import DAMAGED, TABLES
 from reports.writing import write
 
 
@@ -38,13 +38,7 @@ def mend(folder: Path, found: Examined) -> list[str]:
     aside = dict.fromkeys(path for each in found.damage for path in each.aside)
     moved = []
     for table, name in found.repeated:
-        for each in (table, *HANGING) if table == "cells" else (table,):
-            path = f"{each}/{name}"
-            if path not in aside and name in found.folders[each].parts:
-                rows = found.rows(each, name)
-                moved.append(_set_aside(folder, path))
-                if rows.num_rows:
-                    write(folder / path, part_bytes(rows))
+        moved += _keep_what_counts(folder, found, table, name, aside)
     moved += [_set_aside(folder, path) for path in aside]
     told = [each.line for each in found.damage if _worth_telling(each)]
     if moved:
@@ -52,6 +46,30 @@ def mend(folder: Path, found: Examined) -> list[str]:
     if any(each.path == MANIFEST and each.cure == "sweep" for each in found.damage):
         told.append(f"{MANIFEST} is made again as far as the cells tell, with a note in it")
     return [f"{folder}: damaged", *indented(told)] if told else []
+
+
+def _keep_what_counts(
+    folder: Path, found: Examined, table: str, name: str, aside: Collection[str]
+) -> list[str]:
+    """Write the rows of a part that count as a part of their own, then move it aside; gives its
+    new names. A cell is there twice in between, which readers know, and at no moment not at all:
+    its cells are written last and moved first, as they are what says that a part is whole."""
+    tables = (*HANGING, table) if table == "cells" else (table,)
+    parts = {t: found.folders[t].parts for t in tables}
+    chosen = [t for t in tables if name in parts[t] and f"{t}/{name}" not in aside]
+    new = _free_name(folder, name)
+    for each in chosen:
+        rows = found.rows(each, name)
+        if rows.num_rows:
+            write(folder / each / new, part_bytes(rows))
+    return [_set_aside(folder, f"{each}/{name}") for each in reversed(chosen)]
+
+
+def _free_name(folder: Path, name: str) -> str:
+    """A name for a part in place of another, which no table has yet: the next free count."""
+    stem, _, number = name.removesuffix(".parquet").rpartition("-")
+    names = (f"{stem}-{free}.parquet" for free in count(int(number) + 1))
+    return next(n for n in names if not any(os.path.lexists(folder / t / n) for t in TABLES))
 
 
 def _worth_telling(damage: Damage) -> bool:
