@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from models.errors import CrankcheckError
 from reports.diff.runs import Run, counted
+from reports.store.damage import BUSY
 
 
 def refuse_gone(old: Run, new: Run) -> None:
@@ -28,7 +29,9 @@ def refuse_gone(old: Run, new: Run) -> None:
             which = f"cells that {other.label} has lost too"
         else:
             continue
+        busy = any(BUSY in each for each in run.gone)
         raise CrankcheckError(
             f"{run.label}: {which} may be among what is missing there "
-            f"({'; '.join(run.gone)}); mend it first, or compare with a whole run"
+            f"({'; '.join(run.gone)}); {'let its sweep end' if busy else 'mend it'} first, or "
+            "compare with a whole run"
         )

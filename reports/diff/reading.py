@@ -115,7 +115,7 @@ def _store(folder: Path) -> _Contents:
         {},
         tuple(stored.notice),
         tuple(each.line for each in gone),
-        any(each.what != STOPPED for each in gone),
+        any(each.cure != "wait" and each.what != STOPPED for each in gone),
     )
 
 

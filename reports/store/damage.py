@@ -10,7 +10,8 @@ from typing import Literal
 from models.errors import harmless
 from reports.store.manifest import Manifest
 
-Cure = Literal["sweep", "version", "nothing"]
+Cure = Literal["sweep", "version", "wait", "nothing"]
+BUSY = "a sweep is writing here: what it has finished is shown"
 MOST = 20
 """Lines of a notice; more of them are counted."""
 COMMANDS = 3
@@ -23,8 +24,8 @@ class Damage:
     ``path`` is that of the file or folder in the store. ``lost`` is how many cells are not to be
     read for it, None where that can not be told; with ``hides`` a cell may be among them that one
     asks for, or be called otherwise. ``cure`` is what mends it: the same sweep again, a version of
-    crankcheck that reads it, or nothing, since nothing is lost. ``aside`` are the files that stand
-    in the way of the cure.
+    crankcheck that reads it, waiting for the sweep that writes it now, or nothing, since nothing is
+    lost. ``aside`` are the files that stand in the way of the cure.
     """
 
     path: str
@@ -66,11 +67,13 @@ def notice(folder: object, damage: Sequence[Damage], safe: int, manifest: Manife
     """The lines that name every damage of a store once; none where there is none."""
     if not damage:
         return []
-    bad = [each for each in damage if each.cure != "nothing"]
+    bad = [each for each in damage if each.cure not in ("wait", "nothing")]
     named = [each.line for each in (*bad, *(one for one in damage if one.cure == "nothing"))]
+    busy = f"{BUSY}; " * any(each.cure == "wait" for each in damage)
+    head = f"{folder}: {busy}{'not whole; ' * bool(bad)}{safe_and_lost(damage, safe)}"
     if not bad:
-        return [f"{folder}: {safe_and_lost(damage, safe)}; there is also", *indented(named)]
-    lines = [f"{folder}: not whole; {safe_and_lost(damage, safe)}", *indented(named)]
+        return [f"{head}; there is also", *indented(named)] if named else [head]
+    lines = [head, *indented(named)]
     return [*lines, *indented(cures(folder, bad, manifest))]
 
 

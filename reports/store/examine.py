@@ -21,6 +21,7 @@ from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES
 OWN = {MANIFEST, LOCK, DAMAGED, TRAJECTORIES, *TABLES}
 HANGING = ("errors", "traces")
 """Tables whose rows are of the cells in the part of the same name."""
+LACKING = "not there, though its errors are"
 STOPPED = "not all that its sweeps asked for; was one stopped?"
 UNSEALED = "without a checksum (an older crankcheck, or another program): read as they are"
 
@@ -100,7 +101,7 @@ def _cells(
         yield Damage("cells", here.fault, "sweep", len(lost) or None, True, aside)
         return
     for name in sorted({*here.faults, *alone}):
-        error = here.faults.get(name) or UnreadableError("not there, though its errors are")
+        error = here.faults.get(name) or UnreadableError(LACKING)
         gone = [key for key in hanging.get(name, ()) if key not in owners]
         known = len(gone) if name in hanging else None
         aside = _siblings(folder, name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -14,9 +14,10 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
 from models.errors import CrankcheckError
 from reports.series import Array
-from reports.store.damage import Damage, notice
-from reports.store.examine import Examined, examine
+from reports.store.damage import BUSY, Damage, notice
+from reports.store.examine import LACKING, STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of
+from reports.store.lock import is_written
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.part import UnreadableError
 
@@ -74,7 +75,7 @@ def read_store(folder: Path) -> Stored:
     """
     try:
         _refuse_none(folder)
-        found = examine(folder)
+        found = _examined(folder)
     except OSError as error:
         raise CrankcheckError(
             f"{folder}: can not be read: {error.strerror or error}; name the folder of a sweep"
@@ -90,6 +91,27 @@ def read_store(folder: Path) -> Stored:
     named = _named(cells, found.manifest)
     joined = named.merge(timings, on="key", how="left", validate="one_to_one")
     return Stored(folder, found.manifest, joined, timings, found)
+
+
+def _examined(folder: Path) -> Examined:
+    """A store, looked through, of which a sweep may write more meanwhile; one that came to its end
+    since then is seen by its lock before, and one that began by its lock after."""
+    busy = is_written(folder)
+    found = examine(folder)
+    return _while_written(found) if found.damage and (busy or is_written(folder)) else found
+
+
+def _while_written(found: Examined) -> Examined:
+    """A store that a sweep writes to: cells that it is still to write are no damage of it.
+
+    They stay in the way of whoever must know all cells, as a comparison.
+    """
+    later = [each for each in found.damage if each.what in (LACKING, STOPPED)]
+    if not later:
+        return found
+    lost = sum(each.lost or 0 for each in later)
+    waiting = Damage("cells", BUSY, "wait", lost, lost > 0)
+    return replace(found, damage=(waiting, *(each for each in found.damage if each not in later)))
 
 
 def _refuse_none(folder: Path) -> None:

@@ -8,8 +8,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from filelock import FileLock, Timeout
-
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.frames import parquet
@@ -17,6 +15,7 @@ from reports.motion_frame import motion_frame
 from reports.series import Array
 from reports.store.examine import examine
 from reports.store.folder import has_parts, paths_of
+from reports.store.lock import locked
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.mending import mend, refuse_other_format
 from reports.store.part import UnreadableError, open_part, part_bytes
@@ -51,7 +50,8 @@ class Writer:
         self._count = 0
         self._manifest = ""
         _refuse_other(folder)
-        self._lock = _locked(folder)
+        _create(folder, ("",))
+        self._lock = locked(folder)
         try:
             self._open(manifest)
         except BaseException:
@@ -179,24 +179,6 @@ def _refuse_other(folder: Path) -> None:
 def _begun(path: Path) -> bool:
     """Whether it is what a sweep makes first: a lock, and folders with nothing in them."""
     return path.name == LOCK or (path.name in TABLES and path.is_dir() and not any(path.iterdir()))
-
-
-def _locked(folder: Path) -> FileLock:
-    """The lock of a store, taken; its folder is made where there is none."""
-    _create(folder, ("",))
-    lock = FileLock(folder / LOCK, timeout=0)
-    try:
-        lock.acquire()
-    except Timeout:
-        raise CrankcheckError(
-            f"-o {folder}: another sweep writes there now; wait for it, or choose another"
-        ) from None
-    except OSError as error:
-        raise CrankcheckError(
-            f"-o {folder}: {LOCK} can not be locked: {error.strerror or error}; remove it, or "
-            "choose another place"
-        ) from None
-    return lock
 
 
 def _create(folder: Path, names: Iterable[str]) -> None:
