@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.jolts import jolts, mass_ratio
 from analytic.kinematics import solve, solve_driven
@@ -23,6 +24,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.branch import departure
 from reports.errors import Error, Errors, Kind, Quantity, Source
+from reports.passage import WINDOW_RAD, conditioning, near
 from reports.series import Array, angle_error, length, rate, second_rate, size
 from reports.stamps import incomplete
 from reports.summing import summed
@@ -37,10 +39,15 @@ EPSILON = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class _Instants:
-    """The samples of a series: time [s] and commanded driver angle [rad], each (T,)."""
+    """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
+    window of a change point, each (T,)."""
 
     time_s: Array
     driver_rad: Array
+    passed: NDArray[np.bool_]
+
+    def __getitem__(self, part: slice | NDArray[np.bool_]) -> _Instants:
+        return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
 
 
 def compare(scene: Scene, run: Run) -> Errors | None:
@@ -62,8 +69,8 @@ def compare(scene: Scene, run: Run) -> Errors | None:
     motion = run.motion
     if motion is None or motion.time_s.size == 0:
         return None
-    at = _instants(scene, motion.time_s)
     reference = solve(scene, motion.time_s)
+    at = _instants(scene, motion.time_s, reference)
     placed = list(tracks(scene, motion, reference, 0))
     geometric, notes = _geometric(scene, motion, at)
     reported, not_reported = _reported(scene, run, motion, reference)
@@ -80,7 +87,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         not_reported=not_reported,
         notes=notes,
         curvature=curvature(scene, reference),
-        conditioning=min((float(np.min(s)) for s in reference.conditioning.values()), default=1.0),
+        conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=(*lacking(motion, reference), *_without_gap(scene, run)),
         incomplete=incomplete(run),
@@ -90,6 +97,7 @@ def compare(scene: Scene, run: Run) -> Errors | None:
         jolt=float(jolt[0]),
         worst_jolt=float(np.max(jolt)),
         mass_ratio=mass_ratio(scene),
+        starts_in_passage=bool(np.any(at.passed[: _settled(at)])),
     )
 
 
@@ -99,14 +107,20 @@ def places(scene: Scene, run: Run) -> list[Error]:
     motion = run.motion
     if motion is None or motion.time_s.size == 0:
         return []
-    at = _instants(scene, motion.time_s)
     reference = solve(scene, motion.time_s, bound=False)
+    at = _instants(scene, motion.time_s, reference)
     found = (*tracks(scene, motion, reference, 0), *_gaps(scene, run, at))
     return [_drive(scene, motion, at), *(_row(track, at) for track in found)]
 
 
-def _instants(scene: Scene, time_s: Array) -> _Instants:
-    return _Instants(time_s, scene.driver.law.at(time_s)[0])
+def _instants(scene: Scene, time_s: Array, reference: Motion) -> _Instants:
+    driver_rad = scene.driver.law.at(time_s)[0]
+    return _Instants(time_s, driver_rad, near(reference.crossings, driver_rad, WINDOW_RAD))
+
+
+def _settled(at: _Instants) -> int:
+    """The number of samples that are the start."""
+    return min(SETTLING, at.time_s.size // 4)
 
 
 def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = "total") -> Error:
@@ -131,17 +145,17 @@ def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = 
 
 
 def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
-    """A rate as two rows: the first samples, and the rest."""
-    settled = min(SETTLING, at.time_s.size // 4)
-    parts: tuple[tuple[Kind, slice], ...] = (
-        ("start", slice(0, settled)),
-        ("total", slice(settled, None)),
+    """A rate as rows of its parts: the first samples, those at change points, and the rest."""
+    first = np.arange(at.time_s.size) < _settled(at)
+    parts: tuple[tuple[Kind, NDArray[np.bool_]], ...] = (
+        ("start", first),
+        ("total", ~first & ~at.passed),
+        ("passage", ~first & at.passed),
     )
     for kind, part in parts:
-        error, bound = track.error[part], track.bound[part]
-        if error.shape[0]:
-            instants = _Instants(at.time_s[part], at.driver_rad[part])
-            yield _row(replace(track, error=error, bound=bound), instants, source, kind)
+        if np.any(part):
+            cut = replace(track, error=track.error[part], bound=track.bound[part])
+            yield _row(cut, at[part], source, kind)
 
 
 def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
@@ -201,7 +215,7 @@ def _reported(
     for order, instants in ((1, run.velocity_time_s), (2, run.acceleration_time_s)):
         time_s = motion.time_s if instants is None else instants
         known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
-        at = _instants(scene, time_s)
+        at = _instants(scene, time_s, known)
         found = list(tracks(scene, motion, known, 1 if order == 1 else 2))
         # Silence is no fault of an engine that reports no accelerations, if it is silent of all.
         silent = order == 2 and not run.reports_accelerations
@@ -219,7 +233,7 @@ def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[E
         return
     step_s = float(at.time_s[1] - at.time_s[0])
     speed = scene.driver.law.peak_speed_rad_s
-    inner = _Instants(at.time_s[1:-1], at.driver_rad[1:-1])
+    inner = at[1:-1]
     for track in placed:
         # The logged numbers are rounded too: that is part of what a difference is uncertain by.
         unsure = (track.bound + EPSILON * track.magnitude)[1:-1]

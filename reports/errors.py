@@ -9,7 +9,7 @@ from typing import Literal
 
 Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
 Source = Literal["reported", "differenced"]
-Kind = Literal["total", "geometric", "start"]
+Kind = Literal["total", "geometric", "start", "passage"]
 BodyKind = Literal["driver", "link", "slider", "point"]
 
 
@@ -19,8 +19,9 @@ class Error:
 
     ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
     driver's speed (times that length) for velocities, its square for accelerations. Rates of the
-    first steps, in which an engine takes up its pins, are of kind ``start``. ``bound`` is
-    the largest error of the reference itself [unit].
+    first steps, in which an engine takes up its pins, are of kind ``start``, those of later ones
+    near a change point of kind ``passage`` (`reports.passage`). ``bound`` is the largest error of
+    the reference itself [unit].
     """
 
     quantity: Quantity
@@ -72,7 +73,8 @@ class Errors:
     """All errors of one run.
 
     ``curvature`` is the largest pure acceleration of the reference (at least 1) and
-    ``conditioning`` its smallest sine of a transmission angle: both say how hard the scene is.
+    ``conditioning`` its smallest sine of a transmission angle, away from the change points that it
+    goes through: both say how hard the scene is.
     ``step_rad`` is the driver's peak speed times the time between two steps. ``missing`` names
     what the scene has and the log has not; ``incomplete`` says what the time stamps lack of those
     that were commanded, and is empty where they are whole. ``uncertain`` is what the reference
@@ -82,7 +84,8 @@ class Errors:
     up step by step: it is what grows with the number of steps (`reports.summing`). ``jolt`` is how
     much an engine may make up for at its start, over a step, as a pure number, ``worst_jolt`` the
     most of it over the run, and ``mass_ratio`` the mass of the heaviest body over that of the
-    lightest (`analytic.jolts`).
+    lightest (`analytic.jolts`). ``starts_in_passage`` says that one of the first samples is near a
+    change point.
     """
 
     rows: tuple[Error, ...]
@@ -99,6 +102,7 @@ class Errors:
     jolt: float = 0.0
     worst_jolt: float = 0.0
     mass_ratio: float = 1.0
+    starts_in_passage: bool = False
 
     def worst(
         self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"

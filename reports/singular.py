@@ -15,6 +15,7 @@ from analytic.kinematics import repeats_after, solve, solve_driven
 from models.errors import CrankcheckError
 from models.motion import Crossing, Motion
 from models.scene import Scene
+from reports.passage import near
 from reports.series import Array
 
 Mask = NDArray[np.bool_]
@@ -108,11 +109,7 @@ def _steady(scene: Scene, theta: Array) -> Motion:
 
 def _is_passed(crossings: Iterable[Crossing], key: str, theta: Array) -> Mask:
     """Whether driver angles are in a change point of a dyad."""
-    near = np.zeros(theta.shape, dtype=bool)
-    for crossing in crossings:
-        away = np.remainder(theta - crossing.driver_rad + math.pi, math.tau) - math.pi
-        near |= (np.abs(away) < SAME_RAD) & (crossing.dyad == key)
-    return near
+    return near((crossing for crossing in crossings if crossing.dyad == key), theta, SAME_RAD)
 
 
 def _places(crossings: Iterable[Crossing]) -> str:

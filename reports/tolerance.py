@@ -17,6 +17,10 @@ For places and gaps ``curvature / conditioning`` is at least twice the largest `
 a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
 solves for impulses sets bodies off to close its joints (`reports.settling`).
 
+A change point that the motion goes through is left out of ``conditioning``, with half a radian of
+the driver on both sides (`reports.passage`). Rates there are held to limits of their own
+(`in_passage`): what it takes to make good an error of place, within its limit, in one step.
+
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
 
@@ -57,6 +61,7 @@ class Tolerance:
     share_order: int = 0
     floor: float = 0.0
     differenced: int = 0
+    rate: int = 0
 
     def limit(self, errors: Errors) -> float:
         """The limit for a run with this step and this scene."""
@@ -70,6 +75,11 @@ class Tolerance:
         budget += self.share * curvature * step**self.share_order
         budget = min(float(budget), self.cap)
         return float(budget + self.floor + ROUNDING / step**self.differenced)
+
+    def passing(self, errors: Errors) -> float:
+        """The limit of a rate near a change point, where places are made good within a step."""
+        made_good = PLACE.limit(errors) / errors.step_rad**self.rate
+        return max(self.limit(errors), made_good)
 
 
 PLACE = Tolerance(
@@ -91,6 +101,7 @@ VELOCITY = Tolerance(
     conditioned=True,
     share=OPEN_SHARE,
     share_order=1,
+    rate=1,
 )
 ACCELERATION = Tolerance(
     "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
@@ -100,6 +111,7 @@ ACCELERATION = Tolerance(
     power=2.0,
     conditioned=True,
     share=OPEN_SHARE,
+    rate=2,
 )
 DEFAULTS: dict[str, Tolerance] = {
     "drive": Tolerance(
@@ -152,6 +164,13 @@ def limits(scene: Scene, errors: Errors, overrides: Mapping[str, float]) -> dict
         else:
             chosen[name] = Limit(default.limit(errors), "default")
     return chosen
+
+
+def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
+    """The limit for a rate near a change point; one that was given stands there too."""
+    if limit.origin != "default":
+        return limit
+    return Limit(DEFAULTS[name].passing(errors), "default near a change point")
 
 
 def parse(texts: Iterable[str]) -> dict[str, float]:

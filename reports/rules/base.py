@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 
 from reports.convergence import Convergence
 from reports.errors import Error, Errors, Quantity, Source
-from reports.tolerance import Limit
+from reports.tolerance import Limit, in_passage
 
 Level = Literal["pass", "advice", "fail"]
 
@@ -64,17 +64,32 @@ class Rule(Protocol):
 def within(
     rule: str, evidence: Evidence, quantity: Quantity, tolerance: str, source: Source = "reported"
 ) -> Finding | None:
-    """Hold the largest error of a quantity to its limit; an error that is not finite fails."""
-    worst = evidence.errors.worst(quantity, source) if evidence.errors else None
-    if worst is None or evidence.errors is None:
+    """Hold the largest error of a quantity to its limit; an error that is not finite fails.
+
+    Rates near a change point are held to theirs, and what takes the larger share is told.
+    """
+    if evidence.errors is None:
         return None
     limit = evidence.limits[tolerance]
+    worst = evidence.errors.worst(quantity, source)
+    passing = evidence.errors.worst(quantity, source, "passage")
+    if passing is not None:
+        wide = in_passage(tolerance, limit, evidence.errors)
+        if worst is None or _share(passing, wide) > _share(worst, limit):
+            worst, limit = passing, wide
+    if worst is None:
+        return None
     level: Level = "pass" if worst.pure <= limit.number else "fail"
     at_crank = evidence.errors.worst(quantity, source, "geometric")
     geometric = f"; {measure(at_crank)} at the logged crank angle" if at_crank else ""
     number = f"{limit.number:.2g} {SCALES[worst.unit]} ({limit.origin})"
     text = f"{place(worst)}{geometric}; limit {number}"
     return Finding(rule, level, text, worst.pure, limit.number)
+
+
+def _share(error: Error, limit: Limit) -> float:
+    """What an error takes of a limit; infinite for one that is not finite."""
+    return error.pure / limit.number if error.finite else math.inf
 
 
 SCALES = {

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from reports.errors import Error
+from reports.errors import Error, Errors
 from reports.rules.base import SCALES, Evidence, Finding, Level, place
 from reports.settling import allowance
+from reports.tolerance import in_passage
 
 
 class StartWithin:
@@ -27,7 +28,8 @@ class StartWithin:
         if errors is None or not rows:
             return None
         limits = {
-            row.tolerance: evidence.limits[row.tolerance].number + allowance(row.tolerance, errors)
+            row.tolerance: _settled(row.tolerance, evidence, errors)
+            + allowance(row.tolerance, errors)
             for row in rows
         }
 
@@ -40,3 +42,9 @@ class StartWithin:
         level: Level = "pass" if worst.pure <= limit else "fail"
         text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {SCALES[worst.unit]}"
         return Finding(self.id, level, text, worst.pure, limit)
+
+
+def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
+    """The limit that later samples are held to, near a change point if the start is."""
+    limit = evidence.limits[tolerance]
+    return (in_passage(tolerance, limit, errors) if errors.starts_in_passage else limit).number
