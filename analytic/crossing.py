@@ -161,8 +161,8 @@ class _Look:
                 f"{self.scene.name}: at {self.scene.driver.link} "
                 f"{math.degrees(whole_turns_off(float(theta[unsure][0]))):.6g} deg the dyad of "
                 f"{self.steps[-1].key} is singular to within the rounding of the change point of "
-                "a dyad before it, so that its motion is not determined there; change a length, "
-                "or keep the driver's range away from there"
+                "a dyad before it, so that its motion is not determined there, nor which branch "
+                "it is on beyond: change a length"
             )
         return touched
 

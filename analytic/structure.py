@@ -12,7 +12,7 @@ A link that is pinned at two or more points to bodies that move without it is re
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from analytic.groups import Bridge, Group, Pairs, decompose
@@ -20,8 +20,11 @@ from models.errors import StructureError
 from models.joints import block_name
 from models.scene import GROUND, Scene, Slider
 
-MOST_SETS = 20_000
-"""Sets of links that are looked at to name a group without closed form: about 0.2 s."""
+MOST_LOOKS = 200_000
+"""Pairs that are looked at, over all sets of links, to name a group without closed form: about
+0.2 s, however many links there are."""
+SHOWN = 8
+"""Links that are named of those left over."""
 
 
 @dataclass(frozen=True)
@@ -147,22 +150,54 @@ def _no_closed_form(
                 f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
                 "before it, so it is rigid and another link is loose: mobility 1 is only a count"
             )
-    for group in itertools.islice(_sets(left), MOST_SETS):
+    parts = _parts(left, pins, prismatics)
+    most = MOST_LOOKS // (len(left) + len(pins) + len(prismatics))
+    for group in itertools.islice(_sets(parts), most):
         size = len(group)
         inside, outside = _pairs_of(set(group), left, pins, prismatics)
         if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
             return (
-                f"links {', '.join(group)} form an Assur group of {size} links and "
+                f"links {_named(group)} form an Assur group of {size} links and "
                 f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
                 "dyads (RRR, RRP, RPR, PRP, RPP) have"
             )
-    return f"{', '.join(left)} do not hang on the driver and the ground by dyads; check their pins"
+    return f"{_named(left)} do not hang on the driver and the ground by dyads; check their pins"
 
 
-def _sets(left: list[str]) -> Iterator[tuple[str, ...]]:
+def _named(links: Sequence[str]) -> str:
+    """Links by name, as many as are read, and how many more there are."""
+    more = f" and {len(links) - SHOWN} more" if len(links) > SHOWN else ""
+    return ", ".join(links[:SHOWN]) + more
+
+
+def _parts(
+    left: list[str],
+    pins: Mapping[str, tuple[str, ...]],
+    prismatics: Mapping[str, tuple[str, str]],
+) -> list[list[str]]:
+    """The links left over, apart where no pair without a known body joins them: a group is one."""
+    unknown = set(left)
+    part = {body: [body] for body in left}
+    for names in (*pins.values(), *prismatics.values()):
+        if not unknown.issuperset(names):
+            continue
+        first = part[names[0]]
+        for name in names[1:]:
+            other = part[name]
+            if other is not first:
+                first.extend(other)
+                part.update(dict.fromkeys(other, first))
+    place = {body: k for k, body in enumerate(left)}
+    return [
+        sorted(own, key=place.__getitem__) for own in {id(p): p for p in part.values()}.values()
+    ]
+
+
+def _sets(parts: list[list[str]]) -> Iterator[tuple[str, ...]]:
     """The sets of links that may form a group of class III or higher, the smallest first."""
-    for size in range(4, len(left) + 1, 2):
-        yield from itertools.combinations(left, size)
+    for size in range(4, max(map(len, parts)) + 1, 2):
+        for part in parts:
+            yield from itertools.combinations(part, size)
 
 
 def _pairs_of(

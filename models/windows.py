@@ -70,7 +70,12 @@ class Chain:
         return tuple(f"coupler{i}" for i in range(self.count))
 
     def scene(self) -> Scene:
-        """The chain, to be left free, or to be driven at rocker0 with the speed of the start."""
+        """The chain, to be left free; its driver has the place and the speed of the start.
+
+        Driven at rocker0 by `analytic.kinematics.solve` it goes through the flat position up to
+        N = 6. Longer chains are refused at any angle: there each dyad is in a change point with
+        all before it, and from the seventh on that is lost in their rounding.
+        """
         links = [self._rod("rocker0", "A0", "B0")]
         for i, coupler in enumerate(self.couplers()):
             links.append(self._rod(coupler, f"B{i}", f"B{i + 1}"))

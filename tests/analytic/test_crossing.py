@@ -21,6 +21,7 @@ from models.files import parse_scene
 from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
+from models.windows import windows
 from tests.analytic import jets, oracle
 from tests.analytic.chain import law_at
 from tests.analytic.jets import Jet
@@ -331,6 +332,16 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
     # The branch is stated just beside the change point, so the oracle passes none.
     exact = exact_fourbar(scene, lengths, [], at_angles(np.array([math.copysign(1.0, speed)])))
     assert found == pytest.approx(float(exact(0)["coupler"].value), abs=1e-8)
+
+
+def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
+    """As `models.windows` says; longer ones are refused at any angle."""
+    theta = np.array([1.5, 0.5, -0.5])
+    motion = driven(windows(6), theta)
+    assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
+    for count in (7, 8, 40):
+        with pytest.raises(CrankcheckError, match="B7 is singular .*: change a length$"):
+            driven(windows(count), theta[:1])
 
 
 @pytest.mark.parametrize("power", range(2, 13))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from analytic import newton
+from analytic import newton, structure
 from analytic.kinematics import solve
 from analytic.newton import Guess
 from analytic.structure import analyse
@@ -111,6 +114,64 @@ def test_class_iii_group_names_its_links() -> None:
     said = str(raised.value)
     assert "platform, leg1, leg2, leg3 form an Assur group of 4 links and 6 pairs" in said
     assert "RRR, RRP, RPR, PRP, RPP" in said
+
+
+def platforms(count: int) -> Scene:
+    """Platforms on three legs, each with one of them on the crank."""
+    scene = build(
+        {"crank": "AB", "platform": "CEF", "leg1": "BC", "leg2": "DE", "leg3": "GF"}, "ADG"
+    )
+    links = {"crank": scene.links["crank"]}
+    for name in ("leg1", "leg2", "leg3", "platform"):
+        for i in reversed(range(count)):
+            link = scene.links[name]
+            points = {p if p in "BDG" else f"{p}{i}": at for p, at in link.points.items()}
+            links[f"{name}-{i}"] = replace(link, name=f"{name}-{i}", points=points)
+    return replace(scene, links=links)
+
+
+def chain_of_platforms(count: int) -> Scene:
+    """As `platforms`, and each next one hangs on the last by its first leg."""
+    scene = platforms(count)
+    links = dict(scene.links)
+    for i in range(1, count):
+        leg = links[f"leg1-{i}"]
+        points = {f"C{i - 1}" if p == "B" else p: at for p, at in leg.points.items()}
+        links[f"leg1-{i}"] = replace(leg, points=points)
+    return replace(scene, links=links)
+
+
+def test_a_group_of_many_alike_is_named_alone() -> None:
+    with pytest.raises(StructureError, match="class III") as raised:
+        analyse(platforms(50))
+    assert "links leg1-49, leg2-49, leg3-49, platform-49 form an Assur group" in str(raised.value)
+
+
+@pytest.mark.parametrize("count", [10, 60])
+def test_the_work_of_naming_a_group_does_not_grow_with_the_links(
+    monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    """All hang together, so a group is searched for among all; what is left is not listed whole."""
+    looks = 0
+    whole = structure._pairs_of
+
+    def counting(
+        group: set[str],
+        left: list[str],
+        pins: Mapping[str, tuple[str, ...]],
+        prismatics: Mapping[str, tuple[str, str]],
+    ) -> tuple[int, int]:
+        nonlocal looks
+        looks += len(left) + len(pins)
+        return whole(group, left, pins, prismatics)
+
+    monkeypatch.setattr(structure, "_pairs_of", counting)
+    with pytest.raises(StructureError) as raised:
+        analyse(chain_of_platforms(count))
+    assert looks <= structure.MOST_LOOKS
+    said = str(raised.value)
+    assert f" and {4 * count - 8} more do not hang on the driver" in said
+    assert len(said) < 300
 
 
 def test_class_iii_group_is_named_apart_from_the_dyads_before_and_after_it() -> None:
