@@ -340,7 +340,7 @@ def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
     motion = driven(windows(6), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
     for count in (7, 8, 40):
-        with pytest.raises(CrankcheckError, match="B7 is singular .*: change a length$"):
+        with pytest.raises(CrankcheckError, match=r"B7 is singular .*: change a length$"):
             driven(windows(count), theta[:1])
 
 

@@ -1,0 +1,39 @@
+"""How far each dyad of a motion stays from where its motion is not determined.
+
+The conditioning of a dyad is the sine of its transmission angle or its like, a pure number for the
+direction in which its parts lie. That of an RPR dyad whose line goes through the pin of its link is
+always 1, though nothing says where the link points when the block stands on that pin: what counts
+there is their distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.plane import Array
+from analytic.structure import analyse
+from models.motion import Motion
+from models.scene import Scene
+
+
+def nearness(scene: Scene, motion: Motion) -> dict[str, Array]:
+    """The distance of every dyad from its nearest singular position at the samples, (T,) by name.
+
+    As ``motion.conditioning`` (1 best, 0 singular); of an RPR dyad times the distance of its two
+    pins over the largest in the motion. The motion is one by `analytic.kinematics`, of ``scene``,
+    with all its points.
+    """
+    found = dict(motion.conditioning)
+    for group in analyse(scene).groups:
+        if group.kind == "RPR":
+            ends = (_place(scene, motion, pin) for pin in (group.outer1, group.outer2))
+            apart = np.hypot(*np.subtract(*ends).T)
+            found[group.branch_key] = found[group.branch_key] * apart / np.max(apart)
+    return found
+
+
+def _place(scene: Scene, motion: Motion, pin: str) -> Array:
+    """A pin at the samples [m], (T, 2)."""
+    if pin in motion.points:
+        return motion.points[pin].position
+    return np.broadcast_to(np.array(scene.ground[pin]), (len(motion.time_s), 2))
