@@ -1,0 +1,42 @@
+"""Faults in a run through change points are seen as they are elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from models.hard import fourbar
+from reports.selftest import trial
+from reports.selftest.registry import FAULTS
+
+PARALLELOGRAM = replace(
+    fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
+    branch={"C": 1},
+)
+NO_FAULT_THERE = {
+    "line-turned": "no slider",
+    "origin-off": "no slider",
+    "body-collides": "the post stands beside another rocker",
+    "acceleration-late": "the rocker turns steadily, with no acceleration that could be late",
+    "first-order": "parallel links have no error of angle, of first order or other: CC113 sees it",
+}
+ENGINES = ("mujoco", "pymunk")
+
+
+@pytest.mark.parametrize("name", [name for name in FAULTS if name not in NO_FAULT_THERE])
+def test_a_fault_in_a_run_through_change_points_fails_the_rule_that_it_names(name: str) -> None:
+    fault = FAULTS[name]
+    for engine in fault.engines:
+        place = trial._place(fault, PARALLELOGRAM, engine, trial.STEPS, search=False)
+        assert place.finding is not None, (engine, place.failed)
+        assert not place.false
+
+
+def test_points_show_the_first_order_that_parallel_links_do_not() -> None:
+    place = trial._place(FAULTS["first-order"], PARALLELOGRAM, "pymunk", trial.STEPS, search=False)
+    assert {"CC105", "CC113"} <= set(place.failed)
+
+
+def test_every_fault_that_is_left_out_is_one() -> None:
+    assert set(NO_FAULT_THERE) <= set(FAULTS)
