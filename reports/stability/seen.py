@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.nearness import nearness
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
@@ -94,7 +95,7 @@ def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
         period_s=period,
         settled=settled,
         departure=left,
-        sine=nearest(reference),
+        sine=nearest(scene, reference),
         incomplete=lacking(scene, run),
     )
 
@@ -106,9 +107,10 @@ def lacking(scene: Scene, run: Run) -> str:
     return incomplete(run) or (f"no gap of {', '.join(silent)} in the log" if silent else "")
 
 
-def nearest(reference: Motion) -> float:
-    """The smallest sine of a transmission angle of a motion; 1 where it has no dyad."""
-    return min((float(np.min(sine)) for sine in reference.conditioning.values()), default=1.0)
+def nearest(scene: Scene, reference: Motion) -> float:
+    """How near a motion comes to a singular position (`nearness`); 1 where it has no dyad."""
+    found = nearness(scene, reference).values()
+    return min((float(np.min(each)) for each in found), default=1.0)
 
 
 def worst_of(series: Array) -> Array:
