@@ -3,6 +3,7 @@
 #   make verify       compare the engines with the reference on all shipped scenes
 #   make test         lint, types and tests
 #   make report       run the shipped study into out/, with its page, figures and summary
+#   make hard         hard cases, graded, into out/hard
 #   make slow         the long checks that `make test` leaves out
 #   make benchmarks   speed of the reference and of logging, as ratios
 #   make models       write the MJCF files in models/canonical/ anew
@@ -13,7 +14,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test browser report slow benchmarks models format clean
+.PHONY: verify test browser report hard slow benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
@@ -36,6 +37,9 @@ report: $(VENV)/crankcheck
 	$(BIN)/crankcheck report out/study -o out/report.html
 	$(BIN)/crankcheck report out/study --format md -o out/summary.md
 	$(BIN)/crankcheck figures out/study -o out/figures
+
+hard: $(VENV)/crankcheck
+	$(BIN)/crankcheck stability -o out/hard
 
 slow: $(VENV)/test
 	$(BIN)/python -m pytest -q -n 2 -m slow $(PYTEST)
