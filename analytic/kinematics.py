@@ -191,6 +191,6 @@ class _Way:
         scene, index = self.scene, int(np.argmax(short_m))
         return (
             f"{scene.name}: {scene.driver.link} at {math.degrees(theta[index]):.6g} deg: the loop "
-            f"cannot close at {step.key}, it is open by {float(short_m[index]):.3g} m. "
+            f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
             f"{describe_reach(scene, self.stretched)}"
         )

@@ -84,8 +84,8 @@ def analyse(scene: Scene) -> Structure:
     Raises
     ------
     StructureError
-        Mobility other than 1; links that hang on nothing; a group that is not a dyad (the message
-        names its links); a branch for something that has one assembly only.
+        Mobility other than 1; links that hang on nothing, or in pairs on one pin; a group that is
+        not a dyad (the message names its links); a branch for something that has one assembly only.
     """
     blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
     bodies = (*scene.links, *blocks)
@@ -95,6 +95,7 @@ def analyse(scene: Scene) -> Structure:
     found = Structure(bodies, pins, prismatics, order)
     if left or found.mobility != 1:
         raise StructureError(f"{scene.name}: {_fault(found, left)}")
+    _check_held(scene, found.groups)
     _check_branches(scene, found.groups)
     return found
 
@@ -217,6 +218,16 @@ def _pairs_of(
         inside += {a, b} <= group
         outside += len({a, b} & group) == 1 and len({a, b} & others) == 1
     return inside, outside
+
+
+def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
+    """Refuse two bodies that only one pin holds: the count takes them for held at two."""
+    for group in groups:
+        if group.kind[0] == group.kind[2] == "R" and group.outer1 == group.outer2:
+            raise StructureError(
+                f"{scene.name}: {group.first} and {group.second} both hang on pin {group.outer1}, "
+                "and turn about it whatever the driver does; pin one of them at another point"
+            )
 
 
 def _check_branches(scene: Scene, groups: tuple[Group, ...]) -> None:

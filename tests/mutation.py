@@ -5,12 +5,26 @@ from __future__ import annotations
 import math
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from models.files import shipped
 
 Rng = random.Random
 NUMBER = re.compile(r"(?<![\w.-])-?\d+\.\d*(?:e[+-]?\d+)?(?![\w.])")
+TIED = re.compile(r'\b[A-G]\b|"\w+"')
+ENDS = (
+    "0.0",
+    "-1.0",
+    "1e-15",
+    "-1e-15",
+    "1e-9",
+    "1e-4",
+    "1e4",
+    "1e9",
+    "1e15",
+    "-1e15",
+    "123456.789",
+)
 WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 GENTLE = (0.9, 0.95, 0.99, 0.999, 1.0 + 1e-12, 1.01, 1.05, 1.1)
 FACTORS = (-1.0, 0.0, 0.5, 2.0, 10.0, 1e-3, 1e3, 1e-6, 1e6, 1e-9, 1e9, 1e-14, 1e14, 1e30)
@@ -39,6 +53,31 @@ def mutant(seed: int) -> bytes:
     if rng.random() < 0.08:
         raw = rng.choice(BYTES)(rng, raw)
     return raw
+
+
+def retied() -> Iterator[tuple[str, bytes]]:
+    """Every shipped file with one name in place of another, each with each: what was done, and the
+    file."""
+    for name, path in shipped().items():
+        text = path.read_text(encoding="utf-8")
+        body = text.index("[ground]")
+        found = [one for one in TIED.finditer(text) if one.start() > body]
+        for new in sorted({one[0].strip('"') for one in found} | {"ground"}):
+            for one in found:
+                quote = '"' if one[0].startswith('"') else ""
+                changed = text[: one.start()] + quote + new + quote + text[one.end() :]
+                if changed != text:
+                    yield f"{name}: {new} for {one[0]} at {one.start()}", changed.encode()
+
+
+def stretched() -> Iterator[tuple[str, bytes]]:
+    """Every shipped file with one number in place of each of its own."""
+    for name, path in shipped().items():
+        text = path.read_text(encoding="utf-8")
+        for one in NUMBER.finditer(text):
+            for new in ENDS:
+                changed = text[: one.start()] + new + text[one.end() :]
+                yield f"{name}: {new} for {one[0]} at {one.start()}", changed.encode()
 
 
 def _shipped(rng: Rng) -> str:

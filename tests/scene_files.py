@@ -1,8 +1,8 @@
 """Scene files of every shape: mechanisms as a user may write them, with all that may be wrong.
 
-A crank with dyads that mostly close, and then up to four things wrong with it: two of three are a
-number at an end of its range or beyond, the others a date for a number, a table for a name, a point
-that no link has, a key too many.
+A crank with dyads that mostly close, and then up to four things wrong with it: a number at an end
+of its range, two numbers that are the same, a point by the name of another, or what is no scene at
+all: a date for a number, a table for a name, a key too many.
 """
 
 from __future__ import annotations
@@ -47,13 +47,7 @@ def scene_files(draw: st.DrawFn) -> str:
     """The text of a scene file."""
     tree = draw(mechanisms())
     for _ in range(draw(st.sampled_from([0, 1, 1, 1, 2, 2, 4]))):
-        if draw(st.integers(0, 2)):
-            numbers = [p for p in _paths(tree) if isinstance(_at(tree, p), float)]
-            if numbers:
-                path = draw(st.sampled_from(numbers))
-                _put(_at(tree, path[:-1]), path[-1], draw(EXTREME))
-        else:
-            _spoil(draw, tree)
+        draw(st.sampled_from([_stretch, _stretch, _twin, _tie, _tie, _spoil]))(draw, tree)
     return toml(tree)
 
 
@@ -150,6 +144,39 @@ def drivers(draw: st.DrawFn) -> Tree:
     if law == "from-rest":
         found["rise_s"] = draw(between(0.1, 2.0))
     return {"link": "crank"} | ({"law": law} if law else {}) | found
+
+
+def _stretch(draw: st.DrawFn, tree: Tree) -> None:
+    """A number at an end of its range, or beyond."""
+    if numbers := _leaves(tree, float):
+        path = draw(st.sampled_from(numbers))
+        _put(_at(tree, path[:-1]), path[-1], draw(EXTREME))
+
+
+def _twin(draw: st.DrawFn, tree: Tree) -> None:
+    """Two numbers that are the same: parallelograms, kites, points that meet."""
+    if numbers := _leaves(tree, float):
+        path, other = draw(st.sampled_from(numbers)), draw(st.sampled_from(numbers))
+        _put(_at(tree, path[:-1]), path[-1], _at(tree, other))
+
+
+def _tie(draw: st.DrawFn, tree: Tree) -> None:
+    """A point, link or guide by the name of another: joints where none should be."""
+    names = sorted({key for path in _paths(tree) for key in path[-1:] if isinstance(key, str)})
+    tied = [p for p in _paths(tree) if isinstance(_at(tree, p), str) or p[-2:-1] == ("points",)]
+    if not tied:
+        return
+    path, name = draw(st.sampled_from(tied)), draw(st.sampled_from([*names, "ground"]))
+    holder, key = _at(tree, path[:-1]), path[-1]
+    if isinstance(_at(tree, path), str):
+        _put(holder, key, name)
+    elif isinstance(holder, dict):
+        holder[name] = holder.pop(key)
+
+
+def _leaves(tree: Tree, kind: type) -> list[Path]:
+    """Where there is something of a kind."""
+    return [path for path in _paths(tree) if isinstance(_at(tree, path), kind)]
 
 
 def _spoil(draw: st.DrawFn, tree: Tree) -> None:

@@ -106,6 +106,12 @@ def test_two_links_that_stand_still_are_no_four_bar_and_pass_no_change_point(rod
     assert not motion.links["rod"].omega.any()
 
 
+def test_two_links_that_stand_still_and_do_not_meet_are_out_of_reach() -> None:
+    text = STILL.format(rod="A", rocker="D").replace("0.25", "0.05")
+    with pytest.raises(ReachError, match=r"cannot close at C, it is open by 0\.05 m"):
+        solve(parse_scene(text, "test"), np.zeros(3))
+
+
 def test_a_rocker_on_the_pivot_of_the_crank_is_no_four_bar() -> None:
     scene = parse_scene(STILL.format(rod="B", rocker="A"), "test")
     with pytest.raises(StructureError, match=r"still: not a four-bar; lengths .* above 0"):

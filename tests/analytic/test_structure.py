@@ -197,6 +197,18 @@ def test_redundant_link_beside_a_loose_one_is_not_taken_for_mobility_one() -> No
         analyse(build(bars))
 
 
+def test_two_links_with_both_pins_in_common_hang_loose() -> None:
+    bars = {"crank": "AB", "coupler": "DC", "rocker": "DC"}
+    with pytest.raises(StructureError, match="coupler and rocker both hang on pin D, and turn"):
+        analyse(build(bars))
+
+
+def test_a_block_on_a_lever_that_is_pinned_where_the_block_is_hangs_loose() -> None:
+    bars = {"crank": "AB", "lever": "BE"}
+    with pytest.raises(StructureError, match="lever and block B both hang on pin B, and turn"):
+        analyse(build(bars, ground="A", sliders='[sliders.B]\non = "lever"'))
+
+
 def test_branch_that_chooses_nothing_is_refused() -> None:
     with pytest.raises(
         StructureError, match=r"branch\.B chooses between no two assemblies; it has C"

@@ -9,6 +9,7 @@ them (`tests.mutation`). Each is read in a process apart. A failure prints what 
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import sys
@@ -27,7 +28,7 @@ from models.files import shipped
 from reports.sweep.isolation import Isolated, Limits, Lost
 from tests import fuzzing
 from tests.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
-from tests.mutation import mutant
+from tests.mutation import mutant, retied, stretched
 from tests.scene_files import scene_files, toml
 
 LIMITS = Limits(time_s=10.0, memory_gb=1.0)
@@ -121,6 +122,25 @@ def test_every_file_runs_or_is_refused_with_a_message(kind: str, bench: Bench) -
 def test_ten_thousand_files_run_or_are_refused(kind: str, part: int, bench: Bench) -> None:
     TRY[kind](bench, 1_000_000 + part * EACH, COMMANDS)
     assert bench.ends["exit 0"] > 0.1 * EACH, bench.report()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize(
+    ("changed", "commands"),
+    [(retied, ("solve FILE", VERIFY, "view FILE -o OUT.png")), (stretched, (VERIFY,))],
+)
+def test_each_name_and_each_number_in_place_of_another(
+    changed: Callable[[], Iterator[tuple[str, bytes]]],
+    commands: tuple[str, ...],
+    part: int,
+    bench: Bench,
+) -> None:
+    for done, raw in itertools.islice(changed(), part, None, 4):
+        for command in commands:
+            faults = bench.try_out(raw, command)
+            assert not faults, f"{faults}: {command} of {done}"
+    assert bench.ends["exit 0"] > 30, bench.report()
 
 
 def test_a_crank_with_fifty_rods_and_rockers_is_solved_in_time(bench: Bench) -> None:
