@@ -18,6 +18,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from analytic.kinematics import solve
+from analytic.nearness import nearness
 from analytic.structure import analyse
 from models.errors import ReachError
 from models.laws import ConstantSpeed, Law, Oscillating
@@ -143,12 +144,12 @@ def swinging(designed: Designed, frequency_rad_s: float) -> Designed:
 
 
 def _worst(scene: Scene) -> float:
-    """The worst conditioning over a swing; 0 where it does not close."""
+    """The nearest singular position over a swing; 0 where it does not close."""
     try:
         motion: Motion = solve(scene, swing_times(scene, 65), bound=False)
     except ReachError:
         return 0.0
-    return min(float(sine.min()) for sine in motion.conditioning.values())
+    return min(float(sine.min()) for sine in nearness(scene, motion).values())
 
 
 def swing_times(scene: Scene, count: int) -> np.ndarray:
