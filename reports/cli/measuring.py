@@ -111,7 +111,9 @@ def tune(
 
 @app.command()
 def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a sweep.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder of a sweep, or of hard cases.")
+    ],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="File to write (default report.html; md: none)."),
@@ -164,7 +166,10 @@ def stability(
     memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0,
     jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
 ) -> None:
-    """Grade the engines on hard cases, and find how far each holds them."""
+    """Grade the engines on hard cases, and find how far each holds them.
+
+    The exit code is 0; with --at it is 1 where the value is not held.
+    """
     with guarded():
         from reports.commands import stability as command
 

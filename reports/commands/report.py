@@ -46,7 +46,11 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
         output = Path("report.html")
     if output is not None:
         check_file(output, "-o", ENDINGS[format])
-    if format == "html" and (folder / MATRIX).is_file() and not _swept(folder):
+    if (folder / MATRIX).is_file() and not _swept(folder):
+        if format == "md":
+            raise CrankcheckError(
+                f"{folder}: hard cases alone, which have a page and no Markdown; leave out --format"
+            )
         from reports.page.build import stability_page
 
         matrix = read_matrix(folder)

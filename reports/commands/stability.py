@@ -13,16 +13,16 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.commands.names import PROFILES, chosen_engines, chosen_profiles
+from reports.page.numbers import count
 from reports.pool import processors
 from reports.provenance import provenance
 from reports.stability.case import Case
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import command
-from reports.stability.grading import graded
-from reports.stability.matrix import FILE, Matrix, to_json
-from reports.stability.running import Line, run_lines
+from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
+from reports.stability.running import Line, run_lines, run_one
 from reports.stability.table import show, show_run
-from reports.sweep.isolation import Limits
+from reports.sweep.isolation import Limits, checked_limits
 from reports.sweep.progress import progress_bar
 from reports.writing import check_folder, write
 from sim.registry import engine
@@ -56,15 +56,16 @@ def stability(request: Request, console: Console, progress: Console) -> int:
     cases = _cases(request.cases)
     engines = chosen_engines(request.engines)
     profiles = [name for name, _ in chosen_profiles(request.profiles or PROFILES, engines)]
+    limits = checked_limits(request.limit_s, request.memory_gb)
     if request.at is not None:
-        return _single(cases, request, engines, profiles, console)
+        return _single(cases, request, engines, profiles, limits, console)
     if request.folder is not None:
         check_folder(request.folder, "-o", (FILE, TABLE, PAGE))
+        _keep_others(request.folder, {case.name for case in cases})
     lines = [
         Line(case.name, engine_, profile)
         for case, engine_, profile in itertools.product(cases, engines, profiles)
     ]
-    limits = Limits(request.limit_s, request.memory_gb)
     with progress_bar(progress, "lines", len(lines)) as advance:
         held = run_lines(lines, request.jobs or processors(), limits, lambda _: advance())
     matrix = Matrix(
@@ -95,11 +96,25 @@ def _cases(names: Sequence[str]) -> list[Case]:
     return [CATALOGUE[name] for name in dict.fromkeys(names or CATALOGUE)]
 
 
+def _keep_others(folder: Path, wanted: set[str]) -> None:
+    """Refuse to put a few cases in the place of a matrix that holds others as well."""
+    try:
+        stored = {case.name for case in read_matrix(folder).cases}
+    except CrankcheckError:
+        return  # there is none, or none that can be read
+    if others := stored - wanted:
+        raise CrankcheckError(
+            f"-o {folder}: holds a matrix with {count(len(others), 'case')} not run now "
+            f"({', '.join(sorted(others)[:3])}); name another folder, or run these cases as well"
+        )
+
+
 def _single(
     cases: Sequence[Case],
     request: Request,
     engines: Sequence[str],
     profiles: Sequence[str],
+    limits: Limits,
     console: Console,
 ) -> int:
     """One value of one case, in full."""
@@ -112,14 +127,7 @@ def _single(
     case, code = cases[0], 0
     case.refuse(value)
     for name, profile in itertools.product(engines, profiles):
-        try:
-            found, _ = graded(case, name, profile, value, draw=False)
-        except (ValueError, ArithmeticError) as error:
-            easy, hard = case.facts().labels[0], case.facts().labels[-1]
-            raise CrankcheckError(
-                f"--at {value:g}: {case.name} cannot have this {case.parameter} ({error}); "
-                f"its values run from {easy} to {hard} {case.unit}".rstrip()
-            ) from None
+        found = run_one(Line(case.name, name, profile), value, limits)
         show_run(console, case.facts(), found)
         code = max(code, int(found.outcome not in case.good))
     return code

@@ -23,12 +23,10 @@ from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from reports.store.writer import Writer
 from reports.sweep.grid import Grid, grid
-from reports.sweep.isolation import LIMIT_S, MEMORY_GB, Limits
+from reports.sweep.isolation import LIMIT_S, MEMORY_GB, checked_limits
 from reports.sweep.parallel import backend
 from reports.sweep.running import Done, Running
 from reports.sweep.study import Study, Value, Variant, load_study
-
-MOST_S, MOST_GB = 1e6, 1e4
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
     CrankcheckError
         Anything about the request that can be told before running.
     """
-    limits = _limits(request)
+    limits = checked_limits(request.limit_s, request.memory_gb)
     study = asked(request)
     laid = grid(study)
     where = backend(request.jobs, request.dask)
@@ -154,17 +152,6 @@ def _steps(text: str | None) -> list[float]:
         raise CrankcheckError(
             f"--steps-per-turn {text!r}: write numbers with commas between, such as 90,180,360"
         ) from None
-
-
-def _limits(request: Request) -> Limits:
-    """What a cell may take. Raises CrankcheckError for numbers that are no limits."""
-    for option, value, most, unit in (
-        ("--limit-s", request.limit_s, MOST_S, "seconds"),
-        ("--memory-gb", request.memory_gb, MOST_GB, "GB"),
-    ):
-        if not 0.0 < value <= most:
-            raise CrankcheckError(f"{option} {value:g}: give a number above 0 to {most:g} {unit}")
-    return Limits(request.limit_s, request.memory_gb)
 
 
 def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:

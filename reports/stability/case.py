@@ -18,6 +18,8 @@ WITHIN = 1e-2
 """The class of every case that names no other: a hundredth of a radian, or of the longest link."""
 STEPS_PER_TURN = 360.0
 TURNS = 2.0
+BEYOND = 10.0
+"""How far beyond its values a case may be looked at: by that factor."""
 Scale = Literal["log", "linear", "whole"]
 Judge = Literal["follow", "limit", "free"]
 
@@ -90,6 +92,9 @@ class Case:
             raise CrankcheckError(f"--at {value:g}: not a finite number; it is the {means}")
         if self.scale != "linear" and value <= 0.0:
             raise CrankcheckError(f"--at {value:g}: not above 0; it is the {means}")
+        far = (min(self.values) / BEYOND, max(self.values) * BEYOND)
+        if self.scale != "linear" and not far[0] <= value <= far[1]:
+            raise CrankcheckError(f"--at {value:g}: too far off; it is the {means}")
         if self.scale == "whole" and value != round(value):
             raise CrankcheckError(f"--at {value:g}: not a whole number; it is the {means}")
 

@@ -97,12 +97,13 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
 def _told(blank: Graded, found: Seen, ending: Ending) -> Graded:
     """The grade of what was seen."""
     at = ending.sample
+    apart = ending.outcome == "diverged"  # what was logged ends before it came apart
     return replace(
         blank,
         outcome=ending.outcome,
         reason=ending.reason,
-        error=found.worst(found.place)[0],
-        gap=found.worst(found.gap)[0],
+        error=math.nan if apart else found.worst(found.place)[0],
+        gap=math.nan if apart else found.worst(found.gap)[0],
         drive=found.worst(found.drive)[0],
         sine=found.sine,
         at_s=math.nan if at is None else float(found.time_s[at]),

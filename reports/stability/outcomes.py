@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from reports.branch import CLOSED
 from reports.series import Array
 from reports.stability.matrix import Outcome
 from reports.stability.seen import Seen
@@ -18,6 +19,7 @@ GROWN = 2.0
 """An error that grows is that much larger in the last turn than in the first, at least."""
 STANDS = 0.02
 """A crank that is slower than this share of its command, at the end, stands."""
+STEADY: tuple[Outcome, ...] = ("ok", "degraded", "silently-open")
 LAST = 10
 """The part of a run that is its end: one of so many."""
 
@@ -44,14 +46,20 @@ class Rule:
 
 
 def outcome(seen: Seen, within: float) -> Ending:
-    """The grade of a run by the first rule that applies.
+    """The grade of a run by the first rule that applies; where errors keep to bounds, with what
+    they grow by in a turn.
 
     Parameters
     ----------
     within : float
         The class: the largest pure error that counts as held.
     """
-    return next(ending for rule in RULES if (ending := rule.tell(seen, within)) is not None)
+    found = next(ending for rule in RULES if (ending := rule.tell(seen, within)) is not None)
+    slope, doubt = drift(seen)
+    if found.outcome not in STEADY or math.isnan(slope):
+        return found
+    growth = f"drift {slope:.1e} +- {doubt:.0e} a turn"
+    return replace(found, reason=f"{found.reason}; {growth}" if found.reason else growth)
 
 
 def drift(seen: Seen) -> tuple[float, float]:
@@ -94,7 +102,7 @@ def _crashed(seen: Seen, _: float) -> Ending | None:
 
 
 def _branch_changed(seen: Seen, _: float) -> Ending | None:
-    if seen.departure is None:
+    if seen.departure is None or seen.worst(seen.gap)[0] > CLOSED:
         return None
     at = int(np.searchsorted(seen.time_s, seen.departure.time_s))
     reason = f"{seen.departure.link} went over to the other assembly"
@@ -142,15 +150,14 @@ def _degraded(seen: Seen, within: float) -> Ending | None:
 
 
 def _ok(seen: Seen, _: float) -> Ending:
-    slope, doubt = drift(seen)
-    if math.isnan(slope):
-        return Ending("ok", "")
-    return Ending("ok", f"drift {slope:.1e} +- {doubt:.0e} a turn")
+    return Ending("ok", "")
 
 
 RULES: tuple[Rule, ...] = (
     Rule(
-        "diverged", "numbers blow up, or a joint is open by more than the longest link", _diverged
+        "diverged",
+        "numbers blow up, a link turns wildly, or a joint is open by a whole link",
+        _diverged,
     ),
     Rule("crashed", "the engine failed, did not end in time, or left a log with holes", _crashed),
     Rule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),

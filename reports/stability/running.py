@@ -68,6 +68,15 @@ def run_lines(
     return [found[index] for index in range(len(lines))]
 
 
+def run_one(given: Line, value: float, limits: Limits) -> Graded:
+    """One run in a process apart. Raises CrankcheckError where it cannot be asked for."""
+    isolated = Isolated[Found | str](limits)
+    try:
+        return _graded(given, value, isolated, grid=False)[0]
+    finally:
+        isolated.close()
+
+
 def _work(case: Case) -> int:
     """The steps of a line, roughly."""
     return sum(case.trial(value).steps for value in case.values)
@@ -79,21 +88,27 @@ def _line(given: Line, free: queue.SimpleQueue[Isolated[Found | str]]) -> Held:
     pictures: list[Picture] = []
 
     def grade(value: float, grid: bool) -> Graded:
-        answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
-        if isinstance(answer, Lost):
-            return _lost(given, value, answer, grid)
-        if isinstance(answer, str):
-            raise CrankcheckError(f"case {given.case} at {label(value)}: {answer}")
-        found, drawn = answer
+        found, drawn = _graded(given, value, isolated, grid=grid)
         if drawn is not None:
             pictures.append(drawn)
-        return replace(found, grid=grid)
+        return found
 
     try:
         runs = list(line(case, grade))
     finally:
         free.put(isolated)
     return Held(given, tuple(runs), critical(case, runs), tuple(pictures))
+
+
+def _graded(given: Line, value: float, isolated: Isolated[Found | str], *, grid: bool) -> Found:
+    """A run in the child process, with its picture where it is of the grid."""
+    answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
+    if isinstance(answer, Lost):
+        return _lost(given, value, answer, grid), None
+    if isinstance(answer, str):
+        raise CrankcheckError(f"case {given.case} at {label(value)}: {answer}")
+    found, drawn = answer
+    return replace(found, grid=grid), drawn
 
 
 def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> Found | str:

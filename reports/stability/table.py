@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from reports.stability.case import WITHIN
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
 from reports.stability.outcomes import MEANINGS
 
@@ -23,6 +24,8 @@ LETTERS: Mapping[Outcome, str] = {
     "crashed": "!",
     "unsupported": "-",
 }
+NARROW = 80
+"""Columns of a terminal below which a case is told in words alone."""
 BARE = ("X", "!", "-")
 """Letters that stand alone: their error says nothing."""
 STYLES: Mapping[Outcome, str] = {
@@ -54,7 +57,14 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
     for text in case.labels:
         table.add_column(text, justify="right", no_wrap=True, header_style="dim")
     table.add_column("", overflow="fold")
-    for critical in (one for one in matrix.critical if one.case == case.name):
+    lines = [one for one in matrix.critical if one.case == case.name]
+    if console.width < NARROW:
+        for critical in lines:
+            style = _style(case, critical.outcome)
+            console.print(f"  {critical.engine} {critical.profile}:", Text(critical.words, style))
+        console.print()
+        return
+    for critical in lines:
         runs = {
             run.value: run
             for run in matrix.runs
@@ -96,10 +106,12 @@ def _legend(matrix: Matrix) -> str:
         for outcome, meaning in MEANINGS.items()
         if outcome in seen and LETTERS[outcome]
     )
-    within = sorted({case.within for case in matrix.cases})
-    classes = " or ".join(f"{one:g}" for one in within)
+    within = {case.within: case.group for case in matrix.cases}
+    usual = f"{WITHIN:g}"
+    classes = ", ".join([usual, *(f"{w:g} ({g})" for w, g in within.items() if w != WITHIN)])
     return (
-        "Numbers: the worst error of place (rad, or over the longest link); easy to hard from left "
+        "Numbers: the worst error of place (rad, or over the longest link; of a limit that of the "
+        "crank, of a free chain that of its first pin and of its energy); easy to hard from left "
         f"to right; held is what stays within {classes}. {letters}.\n"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )
@@ -115,10 +127,10 @@ def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
         degrees = math.degrees(run.at_driver_rad)
         console.print(f"  at t = {run.at_s:.6g} s, driver {degrees:.4g} deg", highlight=False)
     for name, number in (
-        ("error of place", run.error),
-        ("widest joint", run.gap),
-        ("error of the crank", run.drive),
-        ("distance from singular (sine)", run.sine),
+        ("error of place, rad or over the longest link", run.error),
+        ("widest open joint, over the longest link", run.gap),
+        ("error of the crank, rad", run.drive),
+        ("distance of the scene from a singular position, 0 to 1", run.sine),
     ):
         if not math.isnan(number):
             console.print(f"  {name}: {number:.3g}", highlight=False)

@@ -18,7 +18,9 @@ from reports.store.part import OtherFormatError, Part, UnreadableError
 from reports.store.rebuilding import rebuilt
 from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES
 
-OWN = {MANIFEST, LOCK, DAMAGED, TRAJECTORIES, *TABLES}
+HARD = ("stability.json", "stability.csv", "stability.html")
+"""What `crankcheck stability` may have put beside a sweep."""
+OWN = {MANIFEST, LOCK, DAMAGED, TRAJECTORIES, *TABLES, *HARD}
 HANGING = ("errors", "traces")
 """Tables whose rows are of the cells in the part of the same name."""
 LACKING = "not there, though its errors are"

@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import IO, Generic, TypeVar, cast
 
+from models.errors import CrankcheckError
 from reports.sweep.child import receive, send
 
 Result = TypeVar("Result")
 LIMIT_S = 60.0
 MEMORY_GB = 2.0
+MOST_S, MOST_GB = 1e6, 1e4
 START_S = 60.0
 """How long a child may take to import what it needs."""
 START = (
@@ -31,6 +33,17 @@ class Limits:
 
     time_s: float = LIMIT_S
     memory_gb: float = MEMORY_GB
+
+
+def checked_limits(time_s: float, memory_gb: float) -> Limits:
+    """What a user lets a cell take. Raises CrankcheckError for numbers that are no limits."""
+    for option, value, most, unit in (
+        ("--limit-s", time_s, MOST_S, "seconds"),
+        ("--memory-gb", memory_gb, MOST_GB, "GB"),
+    ):
+        if not 0.0 < value <= most:
+            raise CrankcheckError(f"{option} {value:g}: give a number above 0 to {most:g} {unit}")
+    return Limits(time_s, memory_gb)
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@
   }
 
   const stage = crankcheck.stage("hard", {
-    overlays: () => [{ name: name(own.runs[picture.run]), rows: picture.rows, paint: "failed", trail: true }],
+    overlays: () => !picture ? [] : [{ name: name(own.runs[picture.run]), rows: picture.rows, paint: "failed", trail: true }],
     home: farthest, lasts, rest: 0.2, reach: FARTHEST,
   });
 

@@ -62,7 +62,8 @@ def test_every_run_is_stored_with_the_command_that_repeats_it(
     alone = crank(*words[1:])
     assert alone.exit_code == 1
     assert lost["outcome"] in alone.stdout
-    assert f"error of place: {lost['error']:.3g}" in alone.stdout
+    number = f"error of place, rad or over the longest link: {lost['error']:.3g}"
+    assert number in " ".join(alone.stdout.split())
 
 
 def test_the_page_and_the_pictures_of_failures_are_written(stored: tuple[Result, Path]) -> None:
@@ -86,6 +87,24 @@ def test_a_second_run_takes_the_place_of_the_first(
     assert {run.engine for run in read_matrix(tmp_path).runs} == {"pymunk"}
 
 
+def test_a_few_cases_do_not_take_the_place_of_a_matrix_of_more(
+    stored: tuple[Result, Path], crank: Crank
+) -> None:
+    _, folder = stored
+    before = (folder / "stability.json").read_bytes()
+    result = crank("stability", "wrong-branch", "--engine", "pymunk", "-o", str(folder))
+    assert result.exit_code == 2
+    assert "holds a matrix with 1 case not run now" in " ".join(result.stderr.split())
+    assert (folder / "stability.json").read_bytes() == before
+
+
+def test_a_single_value_has_a_limit_of_its_time(crank: Crank) -> None:
+    args = ["stability", "long-fourbar", "--engine", "pymunk", "--profile", "tuned"]
+    result = crank(*args, "--at", "10000", "--limit-s", "0.3")
+    assert result.exit_code == 1
+    assert "no end within 0.3 s" in result.stdout
+
+
 def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Crank) -> None:
     held = crank(*LINE, "--at", "1e-3")
     assert (held.exit_code, "ok" in held.stdout) == (0, True)
@@ -102,7 +121,9 @@ def test_a_value_that_is_held_ends_with_0_and_one_that_is_not_with_1(crank: Cran
         (["stability", "--at", "1e-3"], ["a value of one case", "name one"]),
         ([*LINE, "--at", "nan"], ["not a finite number"]),
         ([*LINE, "--at", "-0.5"], ["not above 0", "Grashof margin", "0.01 to 1e-6 m"]),
-        ([*LINE, "--at", "5"], ["the loop cannot close at C"]),
+        ([*LINE, "--at", "5"], ["too far off", "0.01 to 1e-6 m"]),
+        (["stability", "tiny-step", "--at", "1e-9"], ["too far off"]),
+        ([*LINE, "--limit-s", "0"], ["--limit-s 0: give a number above 0"]),
         (["stability", "long-fourbar", "--at", "2.5"], ["not a whole number", "turns"]),
         (["stability", "wrong-branch", "--at", "5"], ["has the one value -1"]),
         (["stability", "coarse-step", "--at", "5"], ["at least 8"]),
