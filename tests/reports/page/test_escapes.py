@@ -24,10 +24,8 @@ from reports.commands.figures import run_figures
 from reports.page.report import Report
 from reports.store.reader import read_store
 from tests.fuzzing import COMMANDS, attempt
-from tests.reports.page.conftest import Opened, browser, open_page
+from tests.reports.page.conftest import Opened
 from tests.scene_files import toml
-
-__all__ = ["browser", "open_page"]  # fixtures, of the tests of the page
 
 NASTY = (
     "=1+cmd|' /C calc'!A0 </script><script>window.hacked = 1</script><!-- --> -- ]]> <b>&amp; \" ' "
