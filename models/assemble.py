@@ -19,6 +19,8 @@ from models.schema import (
 )
 
 ROD_KG_PER_M = 1.0
+FARTHEST = 1e12
+"""Of a ground point from the origin, over the longest link: places keep four digits there."""
 BLOCK_OF_LONGEST = 0.1
 """Side of a square slider block with mass, over the longest link, where no inertia is given."""
 
@@ -29,7 +31,7 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
     Raises
     ------
     SceneError
-        Links without length, masses that cannot be derived.
+        Links without length or too far away, masses that cannot be derived.
     """
     faults: list[str] = []
     points = {name: _points(link) for name, link in table.links.items()}
@@ -45,6 +47,8 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
         faults.append(f"driver: {error}")
     if longest == 0.0:
         faults.append("links: no link has two points, so the scene has no length; add a point")
+    else:
+        faults += _faults_of_place(table.ground.points, longest)
     if faults:
         raise SceneError(place, faults)
     return Scene(
@@ -91,6 +95,16 @@ def _faults_of_lengths(table: SceneTable, points: Mapping[str, Mapping[str, Poin
                 "mass_kg, centre_m and inertia_kg_m2, or a second point"
             )
     return faults
+
+
+def _faults_of_place(ground: Mapping[str, Point], longest: float) -> list[str]:
+    """Points so far away that a float does not tell the places of the links apart."""
+    return [
+        f"ground.points.{name}: {math.hypot(*place):.3g} m from the origin, {far:.3g} times the "
+        f"longest link ({longest:.3g} m); at most {FARTHEST:g}: move the scene towards the origin"
+        for name, place in ground.items()
+        if (far := math.hypot(*place) / longest) > FARTHEST
+    ]
 
 
 def _longest(points: Mapping[str, Point]) -> tuple[float, Point, Point]:

@@ -174,6 +174,7 @@ FAULTS = {
     "control character of eight bits": ('source = "a test"', 'source = "a \\u009b31m"', "text without control characters"),
     "letter that XML lacks": ('source = "a test"', 'source = "a \\uffff"', "text without control characters"),
     "speed whose inverse is no number": ("speed_rad_s = 10.0", "speed_rad_s = -1e-300", "driver.speed_rad_s: found -1e-300; use 1e-15 or more, or -1e-15 or less"),
+    "scene beyond digits": ("A = [0.0, 0.0]", "A = [0.0, 1e12]", "ground.points.A: 1e+12 m from the origin, 4e+12 times the longest link (0.25 m); at most 1e+12"),
     "points next to each other": ("D = [0.3, 0.0]", "D = [1e-300, 0.0]", "ground: length AD is 1e-300; set the points apart"),
     "number of too many digits": ("length_m = 0.25", "length_m = " + "9" * 5000, "not valid TOML: a number of more digits than can be read"),
     "lists too deep": ("length_m = 0.25", "length_m = " + "[" * 5000, "not valid TOML: lists or tables nested too deep"),
