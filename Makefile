@@ -47,7 +47,7 @@ slow: $(VENV)/test
 benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/reference.py
 	$(BIN)/python benchmarks/logging.py
-	$(BIN)/python benchmarks/windows.py
+	$(BIN)/python benchmarks/window_chain.py
 
 models: $(VENV)/crankcheck
 	for scene in fourbar-lecture-1 slider-crank-central; do \

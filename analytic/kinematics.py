@@ -2,7 +2,7 @@
 
 `solve` runs the driver's law through the mechanism's Assur groups in solving order, in chunks that
 stay in cache, and writes what was asked for. With ``bound`` every number carries a bound of its own
-error, propagated from group to group (`analytic.closure`).
+error, propagated from group to group (`analytic.dyads.closure`).
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.chunk import Chunk
-from analytic.crossing import passages, passed
+from analytic.change_points.find import passages, passed
+from analytic.change_points.sign import Passage
+from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import OpenError
-from analytic.passage import Passage
-from analytic.plane import EPS, STEADY, AngleError, Array, Real
+from analytic.dyads.plane import EPS, STEADY, AngleError, Array, Real
+from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted
-from analytic.steps import Step, prepare, stretched
-from analytic.structure import analyse
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Crossing, Motion

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.plane import Array
-from analytic.structure import analyse
+from analytic.dyads.plane import Array
+from analytic.structure.mobility import analyse
 from models.motion import Motion
 from models.scene import Scene
 

@@ -2,7 +2,7 @@
 
 Found by the shortage of closure over a turn of the driver, its sign changes refined by bisection.
 Source: rotatability of a driver, e.g. Norton, Design of Machinery, section 4.10 (limit positions);
-for the four-bar `analytic.fourbar` has the closed form, and a test holds this one to it.
+for the four-bar `analytic.mechanism.fourbar` has the closed form, and a test holds this one to it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.chunk import Chunk
-from analytic.plane import Array
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import Array
 from models.scene import Scene
 
 SCAN = 1440

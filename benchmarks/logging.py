@@ -24,7 +24,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from reports.provenance import processor
+from reports.output.provenance import processor
 from sim.engine import Engine, Session
 from sim.registry import engine
 from sim.settings import resolved

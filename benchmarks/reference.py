@@ -25,7 +25,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from reports.provenance import processor
+from reports.output.provenance import processor
 
 POSITIONS = 100_000
 ROUNDS, CALLS = 8, 5

@@ -13,8 +13,8 @@ from models.errors import EngineError
 from sim.engine import Engine
 
 ENGINES: Mapping[str, str] = {
-    "mujoco": "sim.mujoco_engine",
-    "pymunk": "sim.pymunk_engine",
+    "mujoco": "sim.mujoco.engine",
+    "pymunk": "sim.pymunk.engine",
 }
 """Name to module; each module has an ``ENGINE``. To add an engine, add a file and a line here."""
 

@@ -1,7 +1,7 @@
 """An engine broken on purpose: opened as ever, then meddled with at chosen steps.
 
 What is done to a session is the engine's own affair, and stands in a file per engine
-(`sim.mujoco_spoil`, `sim.pymunk_spoil`): the model in the engine is changed, not its log.
+(`sim.mujoco.spoil`, `sim.pymunk.spoil`): the model in the engine is changed, not its log.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, Setti
 from sim.run import joined, stretch
 
 Array = NDArray[np.float64]
-SPOILERS: Mapping[str, str] = {"mujoco": "sim.mujoco_spoil", "pymunk": "sim.pymunk_spoil"}
+SPOILERS: Mapping[str, str] = {"mujoco": "sim.mujoco.spoil", "pymunk": "sim.pymunk.spoil"}
 """Engine to module; each module has a ``SPOILER``."""
 
 

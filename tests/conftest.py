@@ -12,10 +12,10 @@ import pytest
 
 @pytest.fixture(scope="session")
 def fake_engine() -> ModuleType:
-    """The module `tests/fake_engine.py`: an engine whose error is known."""
+    """The module `tests/worlds/fake_engine.py`: an engine whose error is known."""
     name = "crankcheck_fake_engine"
     if name not in sys.modules:
-        path = Path(__file__).with_name("fake_engine.py")
+        path = Path(__file__).parent / "worlds" / "fake_engine.py"
         spec = importlib.util.spec_from_file_location(name, path)
         assert spec is not None
         assert spec.loader is not None

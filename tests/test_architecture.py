@@ -16,8 +16,8 @@ ALLOWED = {
     "reports": {"models", "analytic", "sim", "reports"},
 }
 ENGINES = {
-    "mujoco": {"mujoco_engine", "mujoco_viewer", "mujoco_spoil"},
-    "pymunk": {"space", "rail", "pymunk_engine", "pymunk_spoil"},
+    "mujoco": "sim/mujoco",
+    "pymunk": "sim/pymunk",
 }
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 
@@ -63,8 +63,8 @@ def test_imports_follow_the_arrows(path: Path) -> None:
 @pytest.mark.parametrize("path", modules(), ids=name_of)
 def test_engines_stay_in_their_adapter_and_builder(path: Path) -> None:
     for module, _ in imported(path):
-        homes = ENGINES.get(module.split(".")[0])
-        assert homes is None or path.stem in homes, f"imports {module}"
+        home = ENGINES.get(module.split(".")[0])
+        assert home is None or name_of(path.parent) == home, f"imports {module}"
 
 
 @pytest.mark.parametrize("path", modules(), ids=name_of)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.plane import (
+from analytic.dyads.plane import (
     EPS,
     AngleError,
     Array,

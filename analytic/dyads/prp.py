@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Closure, Dyad, MovingLine, OpenError, SlideError, Sliding
-from analytic.plane import EPS, Real
+from analytic.dyads.plane import EPS, Real
 
 
 def solve(

@@ -19,7 +19,7 @@ import numpy as np
 
 from analytic.dyads import prp
 from analytic.dyads.parts import Closure, Dyad, MovingLine, Sliding
-from analytic.plane import PointKinematics, Vec
+from analytic.dyads.plane import PointKinematics, Vec
 
 
 def solve(

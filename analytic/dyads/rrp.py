@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Dyad, MovingLine, SlideError, Sliding, Turning, closing_root
-from analytic.plane import EPS, AngleError, PointKinematics, Real
+from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 
 def solve(

@@ -17,9 +17,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from analytic.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Dyad, Turning, closing_root
-from analytic.plane import EPS, AngleError, PointKinematics, Real, Vec
+from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 
 
 def solve(

@@ -13,8 +13,8 @@ from typing import Annotated, NoReturn
 import typer
 
 from models.errors import CrankcheckError, harmless
-from reports.stopping import Stopped, broken_pipe_ends, install, seen
-from reports.terminal import UNWRITABLE, give_up_output, readable_everywhere
+from reports.output.console import UNWRITABLE, give_up_output, readable_everywhere
+from reports.workers.signals import Stopped, broken_pipe_ends, install, seen
 
 app = typer.Typer(
     name="crankcheck",
@@ -86,7 +86,7 @@ def _end(code: int, text: str) -> NoReturn:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from reports.provenance import crankcheck_version
+        from reports.output.provenance import crankcheck_version
 
         typer.echo(f"crankcheck {crankcheck_version()}")
         raise typer.Exit

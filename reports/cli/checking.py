@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from reports.cli.base import app, guarded
-from reports.terminal import terminal
+from reports.output.console import terminal
 
 
 @app.command()
@@ -52,7 +52,7 @@ def verify(
 ) -> None:
     """Run scenes in engines and hold them to the closed form; exit 1 when out of tolerance."""
     with guarded():
-        from reports.commands import verify as command
+        from reports.cli.commands import verify as command
 
         request = command.Request(
             scenes=scenes or (),
@@ -98,7 +98,7 @@ def diff(
 ) -> None:
     """Compare two stored runs; exit 1 when an error grew past the factor."""
     with guarded():
-        from reports.commands import diff as command
+        from reports.cli.commands import diff as command
 
         request = command.Request(
             old=old,
@@ -148,7 +148,7 @@ def history(
 ) -> None:
     """Run the same verification with several versions of an engine, and show what changed."""
     with guarded():
-        from reports.commands import history as command
+        from reports.cli.commands import history as command
 
         request = command.Request(
             engine=engine,
@@ -185,7 +185,7 @@ def selftest(
 ) -> None:
     """Plant faults in healthy runs, and see that the right rule catches each; exit 1 if not."""
     with guarded():
-        from reports.commands import selftest as command
+        from reports.cli.commands import selftest as command
 
         request = command.Request(
             engines=engine or (),

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from reports.cli.base import app, guarded
-from reports.terminal import terminal
+from reports.output.console import terminal
 
 
 @app.command()
@@ -49,7 +49,7 @@ def sweep(
 ) -> None:
     """Run a grid of scenes, engines, settings and steps; keep and time every cell."""
     with guarded():
-        from reports.commands import sweep as command
+        from reports.cli.commands import sweep as command
 
         request = command.Request(
             folder=output,
@@ -92,7 +92,7 @@ def tune(
 ) -> None:
     """Search an engine's settings for the cheapest that reach a target error."""
     with guarded():
-        from reports.commands import tune as command
+        from reports.cli.commands import tune as command
 
         request = command.Request(
             scenes=scenes,
@@ -124,7 +124,7 @@ def report(
 ) -> None:
     """Write a sweep as one page that works offline, or as Markdown for a pull request."""
     with guarded():
-        from reports.commands import report as command
+        from reports.cli.commands import report as command
 
         code = command.run_report(folder, output, command.format_of(format_), terminal())
     raise typer.Exit(code)
@@ -143,7 +143,7 @@ def figures(
 ) -> None:
     """Draw the diagrams of a sweep as SVG and PDF, for a paper."""
     with guarded():
-        from reports.commands import figures as command
+        from reports.cli.commands import figures as command
 
         code = command.run_figures(folder, output, terminal(), scene or (), only or ())
     raise typer.Exit(code)
@@ -171,7 +171,7 @@ def stability(
     The exit code is 0; with --at it is 1 where the value is not held.
     """
     with guarded():
-        from reports.commands import stability as command
+        from reports.cli.commands import stability as command
 
         request = command.Request(
             cases=cases or (),

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from reports.cli.base import app, guarded
-from reports.terminal import terminal
+from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
 
@@ -31,7 +31,7 @@ def solve(
 ) -> None:
     """Show the closed-form reference alone: angles, points and sliders with all their rates."""
     with guarded():
-        from reports.commands import solve as command
+        from reports.cli.commands import solve as command
 
         request = command.Request(scene, at_deg, turns, steps_per_turn, output)
         command.run_solve(request, terminal())
@@ -50,7 +50,7 @@ def export(
 ) -> None:
     """Write the scene as MJCF, assembled, with its state as the keyframe."""
     with guarded():
-        from reports.commands import listing
+        from reports.cli.commands import listing
 
         listing.export(scene, output, tuple(close or ()), terminal())
 
@@ -59,7 +59,7 @@ def export(
 def scenes() -> None:
     """List the shipped scenes with their structure, driver and source."""
     with guarded():
-        from reports.commands import listing
+        from reports.cli.commands import listing
 
         listing.scenes(terminal())
 
@@ -72,7 +72,7 @@ def engines(
 ) -> None:
     """List the engines with their version, or the command that installs them, and profiles."""
     with guarded():
-        from reports.commands import listing
+        from reports.cli.commands import listing
 
         listing.engines(terminal(), settings)
 
@@ -87,6 +87,6 @@ def view(
 ) -> None:
     """Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""
     with guarded():
-        from reports.commands import view as command
+        from reports.cli.commands import view as command
 
         command.run_view(scene, output, terminal())

@@ -11,7 +11,7 @@ from typing import Literal
 from models.errors import CrankcheckError
 from reports.diff.gone import refuse_gone
 from reports.diff.runs import Found, Name, Run
-from reports.tolerance import DEFAULTS, ROUNDING
+from reports.judge.tolerance import DEFAULTS, ROUNDING
 
 FACTOR = 1.1
 """How much an error may grow before it is called worse."""
@@ -163,7 +163,7 @@ def compare(old: Run, new: Run, factor: float = FACTOR) -> Diff:
 
 
 def floor(quantity: str, steps_per_turn: float) -> float:
-    """What rounding alone may make of an error, as a pure number (see `reports.tolerance`).
+    """What rounding alone may make of an error, as a pure number (see `reports.judge.tolerance`).
 
     The step is taken as an equal part of a turn, which it is for a driver of constant speed.
     """

@@ -5,9 +5,9 @@ from __future__ import annotations
 import statistics
 from dataclasses import dataclass
 
-from reports.choice.cost import equal, noise_of
 from reports.diff.changes import Diff
 from reports.diff.runs import counted, few
+from reports.results.cost import equal, noise_of
 
 LEAST_NOISE = 0.1
 """Two sweeps are further apart than two timings within one: another machine of the same kind, or

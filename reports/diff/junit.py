@@ -8,7 +8,7 @@ from xml.etree import ElementTree as Xml
 from reports.diff.changes import Diff, Pair
 from reports.diff.runs import Found, Name
 from reports.diff.words import ratio, size, told
-from reports.writing import clean
+from reports.output.write import clean
 
 DECLARATION = '<?xml version="1.0" encoding="utf-8"?>\n'
 

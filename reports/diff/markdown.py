@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from reports.diff.changes import Diff
 from reports.diff.words import HEADS, Line, footer, headline, left_out, lines, remarks, verdict
-from reports.markdown import counted, folded, plain, table
+from reports.output.markdown import counted, folded, plain, table
 
 BUDGETS = {"worse": 30_000, "better": 8_000, "new": 4_000, "missing": 4_000}
 """Bytes of each part: all of them with the heads stay below the 65,536 of a comment on GitHub."""

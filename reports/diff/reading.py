@@ -12,9 +12,9 @@ from typing import cast
 from models.errors import CrankcheckError
 from models.files import scene_texts
 from reports.diff.runs import Found, Name, Row, Run, found_in, text
+from reports.plan.key import digest
 from reports.store.examine import STOPPED
 from reports.store.folder import has_parts
-from reports.store.key import digest
 from reports.store.manifest import MANIFEST
 from reports.store.reader import read_store
 

@@ -7,10 +7,10 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from reports.cell import Cell, Checked
-from reports.choice.cost import apart
-from reports.rows import cell_row
-from reports.tolerance import DEFAULTS
+from reports.judge.cell import Cell, Checked
+from reports.judge.rows import cell_row
+from reports.judge.tolerance import DEFAULTS
+from reports.results.cost import apart
 
 QUANTITIES = tuple(DEFAULTS)
 """What is compared: the largest error of each, as a pure number."""
@@ -126,7 +126,7 @@ def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> Run:
 
 
 def found_in(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> Found:
-    """One cell of a row as `reports.rows.cell_row` makes it, of a store or of a CSV file.
+    """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file.
 
     Raises
     ------

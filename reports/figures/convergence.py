@@ -20,14 +20,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from reports.choice.lines import Line, Named, named
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, label, marks
-from reports.figures.notes import notes
-from reports.figures.points import PLACE, around, ends, fitted, measured, of_scene, scenes_of
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
-from reports.page.report import Report
+from reports.results.lines import Line, Named, named
+from reports.results.origin import notes
+from reports.results.overview import Report
+from reports.results.points import PLACE, around, ends, fitted, measured, of_scene, scenes_of
 
 STEP = "time step [s]"
 PER_TURN = "steps per turn"

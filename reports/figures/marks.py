@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from reports.choice.lines import Line, Named, called, named
+from reports.results.lines import Line, Named, called, named
 
 MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "X", "P", "h", "*")
 DASHES: tuple[tuple[float, ...], ...] = (

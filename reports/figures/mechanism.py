@@ -1,7 +1,7 @@
 """The mechanism of a scene in one position: links and points by name, and the paths of the points.
 
-It is drawn with the parts of `reports.picture`; only letters and names are placed anew, as a figure
-of a column's width has little room for them.
+It is drawn with the parts of `reports.drawing.gif`; only letters and names are placed anew, as a
+figure of a column's width has little room for them.
 """
 
 from __future__ import annotations
@@ -17,13 +17,9 @@ from matplotlib.figure import Figure
 
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
-from reports.commands.solve import describe_law
-from reports.figures.lettering import Label, place
-from reports.figures.notes import facts_of
-from reports.figures.sheet import Panels, sheet
-from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
-from reports.page.report import Report
-from reports.picture import (
+from reports.cli.commands.solve import describe_law
+from reports.compare.series import Array
+from reports.drawing.gif import (
     GUIDE,
     MARGIN,
     PATH_SAMPLES,
@@ -34,7 +30,11 @@ from reports.picture import (
     draw_slider,
     turn_of,
 )
-from reports.series import Array
+from reports.drawing.lettering import Label, place
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
+from reports.results.origin import facts_of
+from reports.results.overview import Report
 
 TRIED = 24
 """Positions of a turn of which the clearest is drawn."""

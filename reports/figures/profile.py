@@ -14,14 +14,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from reports.choice.lines import named
-from reports.choice.pareto import performance_profile
-from reports.choice.recommend import TARGETS
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, label, marks
-from reports.figures.notes import notes
 from reports.figures.style import power_of_ten
-from reports.page.report import Report
+from reports.results.lines import named
+from reports.results.origin import notes
+from reports.results.overview import Report
+from reports.results.pareto import performance_profile
+from reports.results.recommend import TARGETS
 
 FACTOR = "time over that of the fastest [-]"
 SHARE = "share of the scenes [%]"

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from reports.figures import convergence, mechanism, profile, split, work_precision
-from reports.page.report import Report
+from reports.figures import convergence, mechanism, profile, work_precision
+from reports.figures import error_parts as split
+from reports.results.overview import Report
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 
 from reports.figures.style import FONT, styled
-from reports.writing import clean
+from reports.output.write import clean
 
 FORMATS = ("svg", "pdf")
 Face = Literal["normal", "italic"]

@@ -15,15 +15,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from reports.choice.lines import Line, Named, named
-from reports.choice.pareto import front, front_over_all
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, label, marks
-from reports.figures.notes import notes
-from reports.figures.points import PLACE, around, ends, scenes_of, timed
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
-from reports.page.report import Report
+from reports.results.lines import Line, Named, named
+from reports.results.origin import notes
+from reports.results.overview import Report
+from reports.results.pareto import front, front_over_all
+from reports.results.points import PLACE, around, ends, scenes_of, timed
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"

@@ -11,7 +11,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from models.errors import CrankcheckError
-from reports.writing import check_folder
+from reports.output.write import check_folder
 
 
 def user_cache(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from reports.history.measured import QUANTITIES, Found, Outcome, Quantity
-from reports.tolerance import ROUNDING
+from reports.judge.tolerance import ROUNDING
 
 STANDS_OUT = 2.0
 """The factor from which on an error that changed is told of in words."""

@@ -11,7 +11,7 @@ from reports.history.changes import Change, changes, headlines, steps
 from reports.history.measured import QUANTITIES, Found, Outcome
 from reports.history.overview import overview
 from reports.history.table import compared
-from reports.markdown import plain, table
+from reports.output.markdown import plain, table
 
 COLUMNS = (
     "engine",

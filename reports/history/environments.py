@@ -16,9 +16,9 @@ from pathlib import Path
 from packaging.version import InvalidVersion, Version
 
 from models.errors import CrankcheckError
-from reports.history.children import Ended, Runner
-from reports.history.reasons import reason, shortened
-from reports.writing import write
+from reports.history.install_errors import reason, shortened
+from reports.output.write import write
+from reports.workers.programs import Ended, Runner
 
 COMPLETE = "complete.txt"
 LEAKS = (

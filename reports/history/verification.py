@@ -13,22 +13,22 @@ from importlib import import_module
 from pathlib import Path
 
 from models.errors import CrankcheckError
-from reports.history.children import Ended, Runner, run_child
 from reports.history.environments import NotMeasuredError, Wanted, clean_variables, held_numpy
-from reports.history.reasons import shortened
-from reports.provenance import crankcheck_version, processor
+from reports.history.install_errors import shortened
+from reports.output.provenance import crankcheck_version, processor
+from reports.workers.programs import Ended, Runner, run_child
 
 PACKAGES = ("models", "analytic", "sim", "reports")
 RESULT = "verify.csv"
 UNWIND_S = 2.0
-"""Less than `reports.stopping.PATIENCE_S`: the child ends before this process is ended."""
+"""Less than `reports.workers.signals.PATIENCE_S`: the child ends before this process is ended."""
 LAUNCH = """\
 import sys
 from importlib.util import find_spec
 if find_spec({engine!r}) is None:
     sys.exit("the environment holds no {engine}")
 sys.path += {folders!r}
-from reports.stopping import leave_to_parent
+from reports.workers.signals import leave_to_parent
 leave_to_parent()
 from reports.cli import main
 sys.argv[0] = "crankcheck"

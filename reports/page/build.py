@@ -11,15 +11,15 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from reports.page.embed import embedded, policy
-from reports.page.looks import Look
-from reports.page.numbers import NONE, count, duration, error_text
-from reports.page.report import Report
+from reports.drawing.packed import embedded, policy
+from reports.output.numbers import NONE, count, duration, error_text
 from reports.page.sections import SECTIONS
 from reports.page.sections.base import Section
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.thinning import BUDGET
+from reports.results.looks import Look
+from reports.results.overview import Report
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 

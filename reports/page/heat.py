@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from reports.page.numbers import error_text
+from reports.output.numbers import error_text
 from reports.stability.matrix import OUTCOMES, CaseFacts, Critical, Graded, Matrix, Outcome
 from reports.stability.table import LETTERS
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reports.choice.lines import Line
+from reports.results.lines import Line
 
 BUDGET = 1_900_000
 """Characters for all drawings and curves: with Plotly (4.8 MB) a page of 560 cells stays below

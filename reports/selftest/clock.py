@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from models.scene import Scene
-from reports.cell import Runner
+from reports.judge.cell import Runner
 from reports.selftest.fault import FOURBAR, Fault, in_log, switched
 from reports.selftest.logs import WHEN, last, output, rows, with_link, with_times
 from sim.engine import Run

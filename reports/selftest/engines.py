@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene, span
-from reports.cell import Runner
+from reports.judge.cell import Runner
 from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, in_engine, in_settings
 from reports.selftest.logs import last, moved
 from sim.engine import Run, Session, SettingValue

@@ -14,7 +14,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from reports.cell import Runner
+from reports.judge.cell import Runner
 from sim.engine import Run, Session, SettingValue
 from sim.registry import ENGINES, engine
 from sim.run import run

@@ -9,8 +9,8 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from reports.cell import Checked
-from reports.rules import RULES
+from reports.judge.cell import Checked
+from reports.judge.rules import RULES
 from reports.selftest.fault import Fault
 from reports.selftest.registry import GROUPS
 from reports.selftest.trial import PROFILE, STEPS, Place, Verdict, passes

@@ -13,11 +13,11 @@ from functools import cache, partial
 
 from models.files import load_scene
 from models.scene import Scene
-from reports.cell import Cell, Checked, check, examined
-from reports.pool import do_all
-from reports.rules.base import Finding
+from reports.judge.cell import Cell, Checked, check, examined
+from reports.judge.rules.base import Finding
 from reports.selftest.fault import Fault
 from reports.selftest.registry import FAULTS
+from reports.workers.pool import do_all
 
 STEPS = 360
 PROFILE = "tuned"

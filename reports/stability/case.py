@@ -10,7 +10,7 @@ from typing import Literal
 from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
-from models.windows import Chain
+from models.window_chain import Chain
 from reports.stability.matrix import CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
 

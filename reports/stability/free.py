@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.windows import Turning
+from analytic.free.window_chain import Turning
 from models.motion import Motion
-from reports.series import Array
+from reports.compare.free_chain import Held, compared
+from reports.compare.series import Array
 from reports.stability.case import Trial
-from reports.stability.seen import Seen, lacking, worst_of
-from reports.windows import Held, compared
+from reports.stability.error_series import Seen, lacking, worst_of
 from sim.engine import Run
 
 

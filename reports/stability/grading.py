@@ -11,14 +11,14 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.motion import Motion
-from reports.series import Array
+from reports.compare.series import Array
 from reports.stability.case import Case, Judge, Trial, label
+from reports.stability.error_series import Seen, seen
 from reports.stability.free import falling, freely
+from reports.stability.grades import Ending, outcome
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture
-from reports.stability.outcomes import Ending, outcome
 from reports.stability.picture import picture
-from reports.stability.seen import Seen, seen
 from sim.engine import Run
 from sim.run import run
 from sim.settings import SettingError

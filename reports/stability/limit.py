@@ -6,9 +6,9 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.motion import Motion
-from reports.series import Array
+from reports.compare.series import Array
 from reports.stability.case import Trial
-from reports.stability.seen import Seen, lacking, worst_of
+from reports.stability.error_series import Seen, lacking, worst_of
 from sim.engine import Run
 
 WILD = 1e3

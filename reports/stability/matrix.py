@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 from pydantic import TypeAdapter
 
 from models.errors import CrankcheckError
-from reports.finite import finite
+from reports.output.json_numbers import finite
 
 Outcome = Literal[
     "ok",
@@ -111,7 +111,7 @@ class Critical:
 class Picture:
     """A run that failed, to be seen moving beside the truth.
 
-    ``drawing`` is what `reports.page.drawing.drawing` gives, and ``rows`` the run's displacements
+    ``drawing`` is what `reports.drawing.moving.drawing` gives, and ``rows`` the run's displacements
     from it; ``title`` says what is seen. The run is that of ``case``, ``engine``, ``profile`` at
     ``value``.
     """

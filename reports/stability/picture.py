@@ -10,9 +10,9 @@ import numpy as np
 
 from models.errors import CrankcheckError
 from models.motion import Motion
-from reports.page.drawing import INSTANTS, displacements, drawing, drawn_links, moving_points
-from reports.page.numbers import plain
-from reports.series import Array
+from reports.compare.series import Array
+from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
+from reports.output.numbers import plain
 from reports.stability.case import Case, Trial
 from reports.stability.matrix import Graded, Picture
 from sim.engine import Run

@@ -13,7 +13,7 @@ from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import critical, line
 from reports.stability.grading import Found, graded
 from reports.stability.matrix import Critical, Graded, Picture
-from reports.sweep.isolation import Isolated, Limits, Lost
+from reports.workers.isolated import Isolated, Limits, Lost
 
 LIMIT_S = 120.0
 MEMORY_GB = 4.0

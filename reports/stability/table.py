@@ -10,8 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.stability.case import WITHIN
+from reports.stability.grades import MEANINGS
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
-from reports.stability.outcomes import MEANINGS
 
 LETTERS: Mapping[Outcome, str] = {
     "ok": "",

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from models.errors import CrankcheckError
-from reports.store.key import digest
+from reports.plan.key import digest
 from reports.store.part import OtherFormatError, UnreadableError, regular_bytes
 from reports.store.schema import FORMAT
 

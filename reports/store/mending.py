@@ -8,12 +8,12 @@ from itertools import count
 from pathlib import Path
 
 from models.errors import CrankcheckError
+from reports.output.write import write
 from reports.store.damage import Damage, indented
 from reports.store.examine import HANGING, STOPPED, Examined
 from reports.store.manifest import MANIFEST
 from reports.store.part import part_bytes
 from reports.store.schema import DAMAGED, TABLES
-from reports.writing import write
 
 
 def refuse_other_format(folder: Path, found: Examined) -> None:

@@ -17,7 +17,7 @@ from pathlib import Path
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
-from reports.provenance import crankcheck_version
+from reports.output.provenance import crankcheck_version
 from reports.store.schema import FORMAT, typed
 
 MAGIC = b"PAR1"

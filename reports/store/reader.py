@@ -13,7 +13,7 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
 from models.errors import CrankcheckError
-from reports.series import Array
+from reports.compare.series import Array
 from reports.store.damage import BUSY, Damage, notice
 from reports.store.examine import LACKING, STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of
@@ -61,7 +61,7 @@ class Stored:
         return found
 
     def trace(self, key: str) -> Mapping[str, Array]:
-        """The last turn of a cell (see `reports.store.trace`); empty where there is none."""
+        """The last turn of a cell (see `reports.compare.last_turn`); empty where there is none."""
         return self._traces.get(key, {})
 
 

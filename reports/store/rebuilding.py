@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 
 from models.files import read_text, shipped
-from reports.store.key import digest
+from reports.plan.key import digest
 from reports.store.manifest import Manifest
 
 NOTE = (

@@ -10,9 +10,10 @@ from types import TracebackType
 
 from models.errors import CrankcheckError
 from models.motion import Motion
-from reports.frames import parquet
-from reports.motion_frame import motion_frame
-from reports.series import Array
+from reports.compare.series import Array
+from reports.describe.frame import motion_frame
+from reports.judge.frames import parquet
+from reports.output.write import check_folder, write
 from reports.store.examine import examine
 from reports.store.folder import has_parts, paths_of
 from reports.store.lock import locked
@@ -21,7 +22,6 @@ from reports.store.mending import mend, refuse_other_format
 from reports.store.part import UnreadableError, open_part, part_bytes
 from reports.store.rebuilding import digests
 from reports.store.schema import LOCK, TABLES, table
-from reports.writing import check_folder, write
 
 EVERY_S = 1.0
 """What is lost when the process is killed is the work of so many seconds, at most."""

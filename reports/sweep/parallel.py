@@ -9,10 +9,10 @@ from typing import cast
 from joblib import Parallel, delayed, parallel_config  # type: ignore[import-untyped]  # no stubs
 
 from models.errors import CrankcheckError
-from reports.pool import processors
-from reports.sweep.grid import Task
-from reports.sweep.isolation import Isolated, Limits, Lost
-from reports.sweep.outcome import Outcome, measured
+from reports.plan.grid import Task
+from reports.sweep.measured import Outcome, measured
+from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.pool import processors
 
 _own = threading.local()
 _all: list[Isolated[Outcome]] = []

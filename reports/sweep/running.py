@@ -11,15 +11,15 @@ from itertools import chain
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cell import unfinished
-from reports.rows import cell_row
+from reports.judge.cell import unfinished
+from reports.judge.rows import cell_row
+from reports.plan.grid import Task
 from reports.store.reader import Ending, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.grid import Task
-from reports.sweep.isolation import Isolated, Limits, Lost
-from reports.sweep.outcome import UNMEASURED, Outcome, timed, timing_row
+from reports.sweep.measured import UNMEASURED, Outcome, timed, timing_row
 from reports.sweep.parallel import Backend, run_all
-from reports.sweep.progress import progress_bar
+from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.progress import progress_bar
 
 PASSES = 6
 """Passes of timing over the same cells, A and B in turn: a disturbance is shorter than most."""

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from mpmath import mp, mpf
 
-from analytic.constraints import Constraints
+from analytic.check.constraints import Constraints
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
-from tests.analytic import jets, oracle
-from tests.analytic.jets import Jet, Number
+from tests.analytic import oracle
+from tests.analytic.change_points import jets
+from tests.analytic.change_points.jets import Jet, Number
 from tests.analytic.oracle import Place
 
 DONE = mpf(10) ** -42

@@ -2,7 +2,7 @@
 
 The solvers under test use vectors, Heron's area, and one Jacobian per dyad. Here stand the law of
 cosines, arcus functions, and coordinates in the frame of the turning line; derivatives come from
-`tests.analytic.jets`. What cannot close is taken as stretched, without rates.
+`tests.analytic.change_points.jets`. What cannot close is taken as stretched, without rates.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from mpmath import mp
 
-from tests.analytic.jets import Jet, Number, acos, atan2, cos, sin, sqrt
+from tests.analytic.change_points.jets import Jet, Number, acos, atan2, cos, sin, sqrt
 
 
 @dataclass(frozen=True)

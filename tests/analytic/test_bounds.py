@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
+from analytic.check.moved_scene import moved
 from analytic.kinematics import solve
-from analytic.transform import moved
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Driver, Point, Scene
 from tests.analytic.chain import Chain, Solved, coordinates
-from tests.analytic.jets import Jet
-from tests.strategies import FORMS, Designed, mechanisms
+from tests.analytic.change_points.jets import Jet
+from tests.worlds.strategies import FORMS, Designed, mechanisms
 
 Array = NDArray[np.float64]
 NOTHING = 1e-38

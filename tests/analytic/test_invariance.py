@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analytic import transform
+from analytic.check import moved_scene as transform
+from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
-from analytic.plane import EPS
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
-from tests.strategies import swing_times
+from tests.worlds.strategies import swing_times
 
 Array = NDArray[np.float64]
 

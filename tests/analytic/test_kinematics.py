@@ -16,7 +16,7 @@ from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene
-from tests.strategies import FORMS, mechanisms
+from tests.worlds.strategies import FORMS, mechanisms
 
 Array = NDArray[np.float64]
 

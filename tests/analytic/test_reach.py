@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from analytic.fourbar import FourBar
 from analytic.kinematics import reach, solve, solve_driven
+from analytic.mechanism.fourbar import FourBar
 from models.errors import ReachError
 from models.files import load_scene, parse_scene, shipped
 from models.scene import Scene

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
-from analytic.plane import EPS
 from models.files import load_scene, shipped
 
 Array = NDArray[np.float64]

@@ -1,9 +1,10 @@
 """Every scene file either runs or ends with exit code 2 and a message, in time and in memory.
 
-Files that were made from nothing (`tests.scene_files`) and shipped files with something done to
-them (`tests.mutation`). Each is read in a process apart. A failure prints what brings it back::
+Files that were made from nothing (`tests.worlds.scene_files`) and shipped files with something done
+to them (`tests.worlds.mutation`). Each is read in a process apart. A failure prints what brings it
+back::
 
-    python -c "from tests.fuzzing import *; from tests.mutation import mutant
+    python -c "from tests.worlds.fuzzing import *; from tests.worlds.mutation import mutant
     print(attempt(mutant(SEED), *'COMMAND'.split()))"
 """
 
@@ -25,11 +26,11 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from models.files import shipped
-from reports.sweep.isolation import Isolated, Limits, Lost
-from tests import fuzzing
-from tests.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
-from tests.mutation import mutant, retied, stretched
-from tests.scene_files import scene_files, toml
+from reports.workers.isolated import Isolated, Limits, Lost
+from tests.worlds import fuzzing
+from tests.worlds.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
+from tests.worlds.mutation import mutant, retied, stretched
+from tests.worlds.scene_files import scene_files, toml
 
 LIMITS = Limits(time_s=10.0, memory_gb=1.0)
 """Memory is that beyond a child with all engines in it, which has 0.2 GB in use."""

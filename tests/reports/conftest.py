@@ -11,8 +11,8 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare import compare
-from reports.errors import Errors
+from reports.compare.compare import compare
+from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run
 

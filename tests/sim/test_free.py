@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analytic.free.window_chain import Turning
 from analytic.kinematics import solve
-from analytic.windows import Turning
 from models.errors import EngineError
 from models.files import load_scene
 from models.laws import ConstantSpeed, Oscillating
 from models.mjcf_options import has_control
 from models.motion import State
 from models.scene import Driver, Scene
-from models.windows import Chain
-from sim import mujoco_settings
+from models.window_chain import Chain
 from sim.check import refuse_other_model
 from sim.drive import pace, period
 from sim.engine import Engine, Poses, Run, Session
+from sim.mujoco import settings as mujoco_settings
 from sim.registry import ENGINES, engine
 from sim.run import run, time_run
 from sim.settings import resolved

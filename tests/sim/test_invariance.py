@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from analytic.check.moved_scene import mirrored, moved, rotated, scaled
 from analytic.kinematics import solve
-from analytic.transform import mirrored, moved, rotated, scaled
 from models.files import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene

@@ -12,8 +12,8 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene
 from sim.engine import Facts, SettingValue
-from sim.mujoco_engine import MujocoSession
-from sim.pymunk_engine import PymunkSession
+from sim.mujoco.engine import MujocoSession
+from sim.pymunk.engine import PymunkSession
 from sim.registry import engine
 from sim.settings import SettingError, resolved
 

@@ -7,8 +7,8 @@ import pytest
 
 from analytic.kinematics import solve
 from models.hard import double_parallelogram
-from models.space import build
 from models.tree import plan
+from sim.pymunk.space import build
 from sim.registry import ENGINES
 from sim.run import run
 

@@ -237,8 +237,8 @@ def test_an_engine_that_is_not_installed_names_the_command(
 ) -> None:
     monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.delitem(sys.modules, ENGINES[name], raising=False)
-    monkeypatch.delitem(sys.modules, "models.space", raising=False)
-    monkeypatch.delitem(sys.modules, "models.rail", raising=False)
+    monkeypatch.delitem(sys.modules, "sim.pymunk.space", raising=False)
+    monkeypatch.delitem(sys.modules, "sim.pymunk.rail", raising=False)
     with pytest.raises(
         EngineError, match=f"engine {name}: not installed; .* -m pip install {name}"
     ):

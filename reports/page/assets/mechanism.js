@@ -1,6 +1,6 @@
 "use strict";
 // A drawing of a mechanism that moves: the reference, and over it any runs, their error magnified.
-// It reads what `reports.page.drawing` writes, and nothing of the page around it.
+// It reads what `reports.drawing.moving` writes, and nothing of the page around it.
 
 crankcheck.mechanism = (() => {
   const { svg, unpacked } = crankcheck;

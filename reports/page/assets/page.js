@@ -12,7 +12,7 @@ const crankcheck = (() => {
     return found && JSON.parse(found.textContent);
   }
 
-  /** Rows of numbers from the form of `reports.page.embed.packed`; what is missing is NaN. */
+  /** Rows of numbers from the form of `reports.drawing.packed.packed`; what is missing is NaN. */
   function unpacked(packed) {
     const bytes = Uint8Array.from(atob(packed.base64), (c) => c.charCodeAt(0));
     const whole = new DataView(bytes.buffer);

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from reports.page.report import Report
 from reports.page.sections.base import Section
 from reports.page.sections.convergence import build as convergence
 from reports.page.sections.fairness import build as fairness
@@ -19,6 +18,7 @@ from reports.page.sections.provenance import build as provenance
 from reports.page.sections.recommendation import build as recommendation
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
+from reports.results.overview import Report
 
 SECTIONS: dict[str, Callable[[Report], Section | None]] = {
     "verdict": verdict,

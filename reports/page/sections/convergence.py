@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from reports.choice.lines import Line, lines
-from reports.fits.line import LineFit
-from reports.page.numbers import error_text
-from reports.page.report import Report
+from reports.output.numbers import error_text
 from reports.page.sections.base import Section
+from reports.results.fits.line import LineFit
+from reports.results.lines import Line, lines
+from reports.results.overview import Report
 
 QUANTITIES = {
     "place_pure": ("place", "rad, or of longest link"),

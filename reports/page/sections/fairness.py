@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from reports.page.report import Report
 from reports.page.sections.base import Section
+from reports.results.overview import Report
 
 RULES = (
     (

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from reports.page.embed import embedded
+from reports.drawing.packed import embedded
+from reports.output.numbers import count, error_text
 from reports.page.heat import SHADES, amount, heat, kind, outcomes_seen, same, shade, sign
-from reports.page.numbers import count, error_text
-from reports.page.report import Report
 from reports.page.sections.base import Section
 from reports.page.thinning import fitting
+from reports.results.overview import Report
 from reports.stability.critical import command
+from reports.stability.grades import MEANINGS
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Picture
-from reports.stability.outcomes import MEANINGS
 
 ROOM = 800_000
 """Characters for all moving pictures, where other sections need room as well."""

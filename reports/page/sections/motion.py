@@ -10,20 +10,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analytic.structure import analyse
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.choice.lines import Line
-from reports.commands.solve import describe_law
-from reports.mechanism import facts
-from reports.page.drawing import displacements, drawing, drawn_links, instants, moving_points
-from reports.page.embed import packed, size_of
-from reports.page.numbers import error_text
-from reports.page.report import Report
+from reports.cli.commands.solve import describe_law
+from reports.compare.series import Array
+from reports.describe.facts import facts
+from reports.drawing.moving import displacements, drawing, drawn_links, instants, moving_points
+from reports.drawing.packed import packed, size_of
+from reports.output.numbers import error_text
 from reports.page.sections.base import Section
-from reports.page.split import Body, Parts, Split, split, worst_body
 from reports.page.thinning import BUDGET, chosen, steps_held
-from reports.series import Array
+from reports.results.error_parts import Body, Parts, Split, split, worst_body
+from reports.results.lines import Line
+from reports.results.overview import Report
 
 CURVES = 5
 """Total, drive, floor, discretisation and gap."""

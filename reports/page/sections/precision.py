@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from reports.choice.across import Candidate
-from reports.choice.cost import MEANS, Costs
-from reports.choice.lines import Line
-from reports.choice.pareto import front, front_over_all
-from reports.choice.recommend import TARGETS
-from reports.page.numbers import count
-from reports.page.report import Report
+from reports.output.numbers import count
 from reports.page.sections.base import Section
+from reports.results.candidates import Candidate
+from reports.results.cost import MEANS, Costs
+from reports.results.lines import Line
+from reports.results.overview import Report
+from reports.results.pareto import front, front_over_all
+from reports.results.recommend import TARGETS
 
 ALL = "all scenes"
 

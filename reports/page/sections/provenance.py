@@ -6,13 +6,13 @@ import json
 import shlex
 from collections.abc import Mapping, Sequence
 
-from reports.choice.held import usual, value_text
-from reports.choice.lines import Line
-from reports.choice.machines import left_out
-from reports.page.looks import Look
-from reports.page.report import Report
+from reports.output.provenance import crankcheck_version
 from reports.page.sections.base import Section
-from reports.provenance import crankcheck_version
+from reports.results.lines import Line
+from reports.results.looks import Look
+from reports.results.one_processor import left_out
+from reports.results.overview import Report
+from reports.results.settings_text import usual, value_text
 
 
 def build(report: Report) -> Section:

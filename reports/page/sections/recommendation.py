@@ -6,11 +6,11 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from reports.choice.lines import called
-from reports.choice.recommend import Recommendation
-from reports.page.numbers import count
-from reports.page.report import Report
+from reports.output.numbers import count
 from reports.page.sections.base import Section
+from reports.results.lines import called
+from reports.results.overview import Report
+from reports.results.recommend import Recommendation
 
 Row = dict[str, object]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.page.report import Report
 from reports.page.sections.base import Section
+from reports.results.overview import Report
 
 
 @dataclass(frozen=True)

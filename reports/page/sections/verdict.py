@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.choice.lines import Line, named
-from reports.choice.recommend import Recommendation
-from reports.page.looks import Look
-from reports.page.numbers import count, duration, error_text, listed
-from reports.page.report import Report
+from reports.output.numbers import count, duration, error_text, listed
 from reports.page.sections.base import Section
+from reports.results.lines import Line, named
+from reports.results.looks import Look
+from reports.results.overview import Report
+from reports.results.recommend import Recommendation
 
 ASKED = 1e-4
 """The target that the sentence of an engine speaks of."""

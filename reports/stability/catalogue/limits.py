@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from analytic.fourbar import FourBar
+from analytic.mechanism.fourbar import FourBar
 from models.hard import fourbar
 from reports.stability.case import Case, Trial
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.windows import Turning
+from analytic.free.window_chain import Turning
 from models.hard import double_parallelogram
-from models.windows import SOURCE, Chain
+from models.window_chain import SOURCE, Chain
 from reports.stability.case import Case, Trial
 
 GROUP = "redundancy"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from analytic.transform import moved, rotated, scaled
+from analytic.check.moved_scene import moved, rotated, scaled
 from models.files import load_scene
 from reports.stability.case import Case, Scale, Trial
 

@@ -13,15 +13,15 @@ from rich.console import Console
 
 from models.files import shipped
 from models.scene import Scene
-from reports.cell import Cell
 from reports.diff.runs import Found, Name, Run
-from reports.frames import cell_frame, error_frame
-from reports.pool import check_all
-from reports.provenance import provenance
-from reports.store.key import digest
+from reports.judge.cell import Cell
+from reports.judge.frames import cell_frame, error_frame
+from reports.output.provenance import provenance
+from reports.plan.key import digest
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer
-from reports.sweep.outcome import measured
+from reports.sweep.measured import measured
+from reports.workers.pool import check_all
 from sim.registry import engine
 
 Plant = Callable[[pd.DataFrame], None]

@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands.diff import Request, run_diff
+from reports.cli.commands.diff import Request, run_diff
 
 Copy = Callable[..., Path]
 Planted = Callable[..., Callable[[pd.DataFrame], None]]

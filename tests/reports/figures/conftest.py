@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from models.files import find_scene, load_scene, read_text
-from reports.cell import Cell
-from reports.page.report import Report
+from reports.judge.cell import Cell
+from reports.results.overview import Report
 from reports.store.manifest import Manifest
 from reports.store.reader import read_store
 from reports.store.writer import Writer
-from reports.sweep.outcome import measured
+from reports.sweep.measured import measured
 from sim.engine import SettingValue
 from sim.registry import engine as load
 from sim.settings import profile_of, resolved

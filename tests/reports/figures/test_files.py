@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands.figures import run_figures
+from reports.cli.commands.figures import run_figures
 from tests.reports.figures.conftest import SCENES
 
 OF_SCENES = ("work-precision", "convergence", "split", "mechanism")

@@ -17,10 +17,10 @@ from models.files import find_scene, load_scene, read_text
 from reports.figures.mechanism import draw
 from reports.figures.registry import FIGURES
 from reports.figures.style import cut, styled, width_in
-from reports.page.report import Report
+from reports.results.overview import Report
 from reports.store.manifest import Manifest
-from tests.reports.choice.made import cell, stored
 from tests.reports.figures.conftest import SCENES
+from tests.reports.results.made import cell, stored
 
 SHOWN = [(name, scene) for name in FIGURES for scene in (*SCENES, None)]
 

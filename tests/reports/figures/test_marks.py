@@ -8,11 +8,11 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 
-from reports.choice.lines import lines
+from reports.figures.error_parts import LOOKS
 from reports.figures.marks import COLOURS, label, marks
-from reports.figures.split import LOOKS
-from reports.page.report import Report
-from tests.reports.choice.made import cell, stored
+from reports.results.lines import lines
+from reports.results.overview import Report
+from tests.reports.results.made import cell, stored
 
 
 def brightness(colour: str) -> float:

@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_playwright
 from rich.console import Console
 
-from reports.commands import sweep as command
+from reports.cli.commands import sweep as command
 from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store

@@ -10,9 +10,9 @@ import numpy as np
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.scene import Scene
-from reports.page.drawing import INSTANTS, displacements, drawing, moving_points
-from reports.provenance import provenance
-from reports.series import Array
+from reports.compare.series import Array
+from reports.drawing.moving import INSTANTS, displacements, drawing, moving_points
+from reports.output.provenance import provenance
 from reports.stability.matrix import CaseFacts, Critical, Graded, Matrix, Outcome, Picture
 from sim.engine import Run
 from sim.run import run

@@ -20,12 +20,12 @@ from typer.testing import CliRunner, Result
 from models.errors import CrankcheckError, harmless
 from models.files import parse_scene, shipped
 from reports.cli import app
-from reports.commands.figures import run_figures
-from reports.page.report import Report
+from reports.cli.commands.figures import run_figures
+from reports.results.overview import Report
 from reports.store.reader import read_store
-from tests.fuzzing import COMMANDS, attempt
 from tests.reports.page.conftest import Opened
-from tests.scene_files import toml
+from tests.worlds.fuzzing import COMMANDS, attempt
+from tests.worlds.scene_files import toml
 
 NASTY = (
     "=1+cmd|' /C calc'!A0 </script><script>window.hacked = 1</script><!-- --> -- ]]> <b>&amp; \" ' "
@@ -200,7 +200,7 @@ def test_a_name_in_a_store_does_not_leave_the_folder_of_figures(
     stored = read_store(store)
     cells = stored.cells.assign(scene="../../escaped")
     monkeypatch.setattr(
-        "reports.commands.figures.read_store", lambda _: replace(stored, cells=cells)
+        "reports.cli.commands.figures.read_store", lambda _: replace(stored, cells=cells)
     )
     with pytest.raises(CrankcheckError, match=r"'\.\./\.\./escaped' of the store: not the name"):
         run_figures(store, tmp_path / "a" / "figs", Console(file=io.StringIO()))

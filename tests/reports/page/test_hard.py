@@ -9,17 +9,17 @@ from dataclasses import replace
 
 import pytest
 
+from reports.drawing.packed import embedded
+from reports.output.numbers import plain
 from reports.page import build
 from reports.page.build import page, stability_page
-from reports.page.embed import embedded
 from reports.page.heat import SHADES, SIGNS, heat, same, shade
-from reports.page.numbers import plain
 from reports.page.sections import SECTIONS
 from reports.page.sections.hard import hard
 from reports.page.thinning import fitting
 from reports.stability.critical import command
+from reports.stability.grades import MEANINGS
 from reports.stability.matrix import FILE, OUTCOMES, Matrix, Picture, read_matrix, to_json
-from reports.stability.outcomes import MEANINGS
 from reports.store.reader import Stored
 from tests.reports.page.test_page import EVIL, MEGABYTES_8, Outline
 

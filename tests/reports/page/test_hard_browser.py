@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page
 
+from reports.drawing.packed import packed
 from reports.page.build import page, stability_page
-from reports.page.embed import packed
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 from tests.reports.page.conftest import Opened

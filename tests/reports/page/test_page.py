@@ -16,10 +16,10 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands.report import format_of, run_report
+from reports.cli.commands.report import format_of, run_report
+from reports.compare.series import Array
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
-from reports.series import Array
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored
 
@@ -216,9 +216,9 @@ def test_the_command_without_a_file_names_one(
 def test_the_command_gives_text_to_the_terminal_or_to_a_file(
     small_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    summary = ModuleType("reports.figures.summary")
+    summary = ModuleType("reports.page.comment")
     summary.summary = lambda stored: f"# {len(stored.cells)} cells [red]\n"  # type: ignore[attr-defined]
-    monkeypatch.setitem(__import__("sys").modules, "reports.figures.summary", summary)
+    monkeypatch.setitem(__import__("sys").modules, "reports.page.comment", summary)
     said = StringIO()
     run_report(small_folder, None, "md", Console(file=said, width=200))
     assert said.getvalue() == "# 24 cells [red]\n"

@@ -8,15 +8,15 @@ from collections.abc import Sequence
 import pandas as pd
 import pytest
 
+from reports.output.numbers import duration
 from reports.page.build import render
-from reports.page.numbers import duration
-from reports.page.report import Report
 from reports.page.sections.precision import build as build_precision
 from reports.page.sections.recommendation import build as build_recommendation
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
 from reports.page.thinning import chosen, steps_held
-from tests.reports.choice.made import Row, cell, stored, untimed
+from reports.results.overview import Report
+from tests.reports.results.made import Row, cell, stored, untimed
 
 STEPS = (90, 180, 360, 720)
 

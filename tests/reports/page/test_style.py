@@ -8,10 +8,10 @@ import re
 import numpy as np
 import pytest
 
+from reports.compare.series import Array
 from reports.page.build import HERE
 from reports.page.heat import SHADES
-from reports.page.looks import FAMILIES, FAMILY
-from reports.series import Array
+from reports.results.looks import FAMILIES, FAMILY
 from reports.stability.matrix import OUTCOMES
 
 CSS = (HERE / "assets" / "page.css").read_text(encoding="utf-8")

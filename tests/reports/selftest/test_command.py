@@ -13,8 +13,8 @@ from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from reports.cli import app
-from reports.rules import RULES
-from reports.rules.base import Evidence, Finding
+from reports.judge.rules import RULES
+from reports.judge.rules.base import Evidence, Finding
 from reports.selftest.registry import FAULTS
 from reports.selftest.table import show
 from reports.selftest.trial import Place, Verdict, healthy

@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from reports.rules import RULES
+from reports.judge.rules import RULES
 from reports.selftest.fault import FOURBAR, SLIDER
 from reports.selftest.registry import FAULTS
 from reports.selftest.trial import Verdict, healthy, passes, tried

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from reports.rules import RULES
-from reports.rules.base import Evidence, Finding
+from reports.judge.rules import RULES
+from reports.judge.rules.base import Evidence, Finding
 from reports.selftest import trial
 from reports.selftest.fault import FOURBAR, Fault
 from reports.selftest.registry import FAULTS

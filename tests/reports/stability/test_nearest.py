@@ -7,7 +7,7 @@ import pytest
 
 from analytic.kinematics import solve
 from reports.stability.catalogue import CATALOGUE
-from reports.stability.seen import nearest
+from reports.stability.error_series import nearest
 
 
 @pytest.mark.parametrize(

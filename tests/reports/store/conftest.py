@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.commands.sweep import Request, sweep
-from reports.sweep.isolation import Limits
+from reports.cli.commands.sweep import Request, sweep
+from reports.workers.isolated import Limits
 
 SCENE = "fourbar-lecture-1"
 Sweep = Callable[..., int]
@@ -38,8 +38,8 @@ def swept() -> Iterator[Sweep]:
     patch = pytest.MonkeyPatch()
     patch.setattr("reports.sweep.parallel.Isolated", Here)
     patch.setattr("reports.sweep.running.Isolated", Here)
-    patch.setattr("reports.sweep.outcome.REPEAT_S", 1e-5)  # nobody compares these times
-    patch.setattr("reports.sweep.outcome.LEAST_TIMED", 5)
+    patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
+    patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
     nowhere = Console(file=StringIO())
 
     def run(folder: Path, *engines: str, steps: str = "90,180", timing: bool = True) -> int:

@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands import diff, report, verify
+from reports.cli.commands import diff, report, verify
 from reports.store.damage import notice
 from reports.store.examine import examine
 from reports.store.manifest import MANIFEST

@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.commands.report import run_report
+from reports.cli.commands.report import run_report
 from reports.store.reader import Stored, read_store
 
 SEED = 20261121

@@ -11,12 +11,12 @@ import pytest
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.cell import Cell
+from reports.judge.cell import Cell
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.reader import read_store, stored_costs, stored_keys
 from reports.store.schema import table
 from reports.store.writer import Writer
-from reports.sweep.outcome import Outcome, measured
+from reports.sweep.measured import Outcome, measured
 
 TEXT = 'name = "a"\nsize = 1.0\n'
 

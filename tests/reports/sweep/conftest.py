@@ -16,7 +16,7 @@ BAD_ENGINE = '''
 import os, time
 import numpy as np
 from sim.engine import Profile, Setting
-from sim.mujoco_engine import MujocoEngine
+from sim.mujoco.engine import MujocoEngine
 
 class BadEngine(MujocoEngine):
     name = "bad"

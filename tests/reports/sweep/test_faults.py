@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from reports.store.reader import read_store
-from reports.sweep.isolation import Isolated, Limits, Lost
+from reports.workers.isolated import Isolated, Limits, Lost
 
 EXPECTED = {
     "none": ("ok", ""),

@@ -1,0 +1,1 @@
+"""Where assemblies meet: found, signed, and gone through smoothly."""

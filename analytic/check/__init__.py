@@ -1,0 +1,1 @@
+"""Second opinions, which share no arithmetic with the closed forms."""

@@ -1,0 +1,129 @@
+"""The same mechanism somewhere else: turned, moved, mirrored, scaled, or run at another speed.
+
+A mechanism does not know where it stands, so errors as pure numbers must not change either.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from analytic.structure.mobility import analyse
+from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+
+
+def rotated(scene: Scene, angle_rad: float) -> Scene:
+    """The scene turned about the origin, its gravity with it."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+
+    def turn(p: Point) -> Point:
+        return (c * p[0] - s * p[1], s * p[0] + c * p[1])
+
+    def on_ground(slider: Slider) -> Slider:
+        return replace(
+            slider,
+            through_m=turn(slider.through_m),
+            direction_rad=slider.direction_rad + angle_rad,
+        )
+
+    # A link that slides on the ground turns with it: its angle is kept against the line.
+    return replace(
+        scene,
+        ground={name: turn(place) for name, place in scene.ground.items()},
+        sliders={n: on_ground(s) if s.on == GROUND else s for n, s in scene.sliders.items()},
+        driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
+        gravity_m_s2=turn(scene.gravity_m_s2),
+    )
+
+
+def moved(scene: Scene, by_m: Point) -> Scene:
+    """The scene shifted as a whole."""
+
+    def shift(p: Point) -> Point:
+        return (p[0] + by_m[0], p[1] + by_m[1])
+
+    return replace(
+        scene,
+        ground={name: shift(place) for name, place in scene.ground.items()},
+        sliders={
+            n: replace(s, through_m=shift(s.through_m)) if s.on == GROUND else s
+            for n, s in scene.sliders.items()
+        },
+    )
+
+
+def mirrored(scene: Scene) -> Scene:
+    """The scene mirrored in the x-axis; pins of two-link dyads change their branch with it."""
+
+    def flip(p: Point) -> Point:
+        return (p[0], -p[1])
+
+    def link(old: Link) -> Link:
+        points = {name: flip(place) for name, place in old.points.items()}
+        return replace(old, points=points, centre_m=flip(old.centre_m))
+
+    def slider(old: Slider) -> Slider:
+        return replace(
+            old,
+            through_m=flip(old.through_m),
+            direction_rad=-old.direction_rad,
+            angle_rad=-old.angle_rad,
+        )
+
+    sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
+    flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
+    return replace(
+        scene,
+        ground={name: flip(place) for name, place in scene.ground.items()},
+        links={name: link(old) for name, old in scene.links.items()},
+        sliders={name: slider(old) for name, old in scene.sliders.items()},
+        driver=Driver(scene.driver.link, scene.driver.law.mirrored()),
+        branch={**scene.branch, **flipped},
+        gravity_m_s2=flip(scene.gravity_m_s2),
+    )
+
+
+def scaled(scene: Scene, factor: float) -> Scene:
+    """The scene with every length times ``factor``, made of rods of the same mass per length.
+
+    Masses grow with the factor, inertias with its cube; gravity with the factor, so that the
+    motion stays similar at the same speed.
+    """
+
+    def grow(p: Point) -> Point:
+        return (p[0] * factor, p[1] * factor)
+
+    def link(old: Link) -> Link:
+        return replace(
+            old,
+            points={name: grow(place) for name, place in old.points.items()},
+            mass_kg=old.mass_kg * factor,
+            centre_m=grow(old.centre_m),
+            inertia_kg_m2=old.inertia_kg_m2 * factor**3,
+        )
+
+    def slider(old: Slider) -> Slider:
+        return replace(
+            old,
+            through_m=grow(old.through_m),
+            mass_kg=old.mass_kg * factor,
+            inertia_kg_m2=old.inertia_kg_m2 * factor**3,
+        )
+
+    return replace(
+        scene,
+        ground={name: grow(place) for name, place in scene.ground.items()},
+        links={name: link(old) for name, old in scene.links.items()},
+        sliders={name: slider(old) for name, old in scene.sliders.items()},
+        gravity_m_s2=grow(scene.gravity_m_s2),
+    )
+
+
+def sped_up(scene: Scene, factor: float) -> Scene:
+    """The scene driven ``factor`` times as fast through the same angles, in similar motion."""
+    g = scene.gravity_m_s2
+    return replace(
+        scene,
+        driver=Driver(scene.driver.link, scene.driver.law.sped_up(factor)),
+        gravity_m_s2=(g[0] * factor**2, g[1] * factor**2),
+    )

@@ -1,0 +1,182 @@
+"""The second opinion: all constraints of the mechanism at once, Phi(q, t) = 0, by Newton's method.
+
+Nothing here knows of dyads. Every body has coordinates (x, y, theta) of its frame; every pin, every
+prismatic pair and the driver gives its equations; position, velocity and acceleration follow from
+
+    Phi(q, t) = 0        Phi_q q' = -Phi_t        Phi_q q'' = gamma
+
+Source: E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, chapters 3 and 4.
+It starts from a rough guess of one position, and follows the mechanism from there in small steps of
+the driver; so it also serves groups that have no closed form.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.check.constraints import Constraints
+from models.errors import CrankcheckError
+from models.joints import local_point
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import GROUND, Point, Scene, Slider
+
+Array = NDArray[np.float64]
+
+LONGEST_STEP_RAD = 0.05
+"""The driver turns at most so far between two positions: the predictor stays on its branch."""
+MOST_ITERATIONS = 25
+EPS = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A rough position: per body (links, and ``block NAME`` for slider blocks) x, y [m], theta."""
+
+    bodies: Mapping[str, tuple[float, float, float]]
+
+
+def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
+    """The motion of a scene from its full constraint equations.
+
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism of mobility 1; its groups need no closed form.
+    time_s : Array
+        Increasing times [s], shape (T,).
+    guess : Guess
+        A rough position at the first time; it decides the branch.
+
+    Returns
+    -------
+    Motion
+        All links, points and sliders, without bounds.
+
+    Raises
+    ------
+    CrankcheckError
+        Newton's method does not converge from the guess, or the Jacobian is singular on the way.
+    """
+    system = Constraints(scene)
+    law = scene.driver.law
+    q = np.array([c for body in system.bodies for c in guess.bodies[body]])
+    positions, rates, seconds = [], [], []
+    before: float | None = None
+    for t in np.asarray(time_s, dtype=np.float64):
+        theta, omega, alpha = (float(a[0]) for a in law.at(np.array([t])))
+        start = theta if before is None else before
+        for angle in _stations(start, theta):
+            if before is not None:
+                lead = np.zeros(system.size)
+                lead[-1] = angle - before
+                q = q + _solved(system, q, lead, before)
+            q = _closed(system, q, angle)
+            before = angle
+        drive = np.zeros(system.size)
+        drive[-1] = omega
+        qd = _solved(system, q, drive, theta)
+        positions.append(q)
+        rates.append(qd)
+        seconds.append(_solved(system, q, system.gamma(q, qd, alpha), theta))
+    return _motion(system, np.asarray(time_s, dtype=np.float64), positions, rates, seconds)
+
+
+def _stations(start: float, end: float) -> Array:
+    """Driver angles from ``start`` (exclusive) to ``end`` in steps that keep the branch."""
+    count = max(1, math.ceil(abs(end - start) / LONGEST_STEP_RAD))
+    stations: Array = start + (end - start) * np.arange(1, count + 1) / count
+    return stations
+
+
+def _solved(system: Constraints, q: Array, right: Array, theta: float) -> Array:
+    """The solution of Phi_q x = right."""
+    try:
+        solution: Array = np.linalg.solve(system.jacobian(q), right).astype(np.float64)
+        return solution
+    except np.linalg.LinAlgError:
+        raise CrankcheckError(
+            f"{system.scene.name}: the constraints are singular at {math.degrees(theta):.6g} deg"
+        ) from None
+
+
+def _closed(system: Constraints, q: Array, theta: float) -> Array:
+    """Newton's method from q at driver angle theta, down to rounding."""
+    last = math.inf
+    unit = np.tile([system.scene.longest_m, system.scene.longest_m, 1.0], len(q) // 3)
+    for _ in range(MOST_ITERATIONS):
+        step = _solved(system, q, -system.phi(q, theta), theta)
+        q = q + step
+        size = float(np.max(np.abs(step) / unit))
+        if size <= EPS or (size < 1e-9 and size >= 0.5 * last):
+            return q  # the steps no longer matter, or no longer shrink: what is left is rounding
+        last = size
+    raise CrankcheckError(
+        f"{system.scene.name}: Newton's method does not converge at {math.degrees(theta):.6g} deg "
+        f"(last step {last:.3g}); give a better guess"
+    )
+
+
+def _motion(
+    system: Constraints,
+    time_s: Array,
+    positions: list[Array],
+    rates: list[Array],
+    seconds: list[Array],
+) -> Motion:
+    """The coordinates of all samples as a motion of links, points and sliders."""
+    scene = system.scene
+    q, qd, qdd = np.array(positions), np.array(rates), np.array(seconds)
+
+    def link(body: str) -> LinkMotion:
+        i = system.at[body] + 2
+        return LinkMotion(q[:, i], qd[:, i], qdd[:, i])
+
+    def point(body: str, local: Point) -> PointMotion:
+        if body == GROUND:
+            rest = np.zeros((len(q), 2))
+            return PointMotion(rest + np.array(local), rest, rest.copy())
+        i = system.at[body]
+        c, s = np.cos(q[:, i + 2]), np.sin(q[:, i + 2])
+        arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=1)
+        turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        w, g = qd[:, i + 2, None], qdd[:, i + 2, None]
+        at = slice(i, i + 2)
+        return PointMotion(
+            q[:, at] + arm, qd[:, at] + w * turned, qdd[:, at] + g * turned - w * w * arm
+        )
+
+    def slider(s: Slider) -> SliderMotion:
+        tip, guide = point(*system.tip(s)), point(s.on, s.through_m)
+        rest = np.zeros(len(q))
+        on = LinkMotion(rest, rest, rest) if s.on == GROUND else link(s.on)
+        angle = on.theta + s.direction_rad
+        along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        away = tip.position - guide.position
+        va, vb = tip.velocity - guide.velocity, tip.acceleration - guide.acceleration
+        displacement = np.sum(along * away, axis=1)
+        speed = np.sum(along * va, axis=1) + on.omega * np.sum(across * away, axis=1)
+        acceleration = (
+            np.sum(along * vb, axis=1)
+            + 2.0 * on.omega * np.sum(across * va, axis=1)
+            + on.alpha * np.sum(across * away, axis=1)
+            - on.omega**2 * displacement
+        )
+        return SliderMotion(displacement, speed, acceleration)
+
+    carriers = {
+        p: (bodies[0], local_point(scene, bodies[0], p)) for p, bodies in scene.pins.items()
+    }
+    for s in scene.sliders.values():
+        carriers.setdefault(s.point, system.tip(s))
+    return Motion(
+        time_s,
+        {name: link(name) for name in scene.links},
+        {name: point(*carrier) for name, carrier in carriers.items()},
+        {name: slider(s) for name, s in scene.sliders.items()},
+    )

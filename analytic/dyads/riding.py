@@ -1,0 +1,168 @@
+"""Prismatic pairs as lines that a body rides on, and the bodies that hang on what was found.
+
+A prismatic pair joins a guide (the body that carries the line) and a slider body (block or link).
+Either of the two may be the known one, so the pair is first written as a line of the *known* body
+(`RidingLine`), on which a pin of the unknown body rides at a constant offset.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.parts import MovingLine, Sliding, Turning
+from analytic.dyads.plane import (
+    EPS,
+    BodyKinematics,
+    PointError,
+    PointKinematics,
+    Vec,
+    direction,
+)
+from analytic.structure.mobility import Structure, sliding_body
+from models.joints import less, local_point, turned
+from models.scene import Point, Scene
+
+
+def total(*points: Point) -> Point:
+    return (math.fsum(p[0] for p in points), math.fsum(p[1] for p in points))
+
+
+def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
+    """Rounding of a place worked out by turning constant vectors by up to ``angle`` [m].
+
+    ``onto`` is what they were added to; 0 where there was nothing to add.
+    """
+    length = sum(math.hypot(*v) for v in vectors)
+    return EPS * (4.0 * (1.0 + angle) * length + math.hypot(*onto)) if length else 0.0
+
+
+def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointError:
+    """The error of a point whose place on its body is uncertain by ``slack`` [m]."""
+    assert body.error is not None
+    rate = np.abs(body.omega) + body.error.omega
+    gain = np.abs(body.alpha) + body.error.alpha + rate * rate
+    return PointError(
+        error.position + slack, error.velocity + slack * rate, error.acceleration + slack * gain
+    )
+
+
+def known_at(structure: Structure, known: frozenset[str], pin: str) -> str:
+    """A known body that carries the pin."""
+    return next(body for body in structure.pins[pin] if body in known)
+
+
+def turning_body(
+    found: Turning, back: Vec, local: Point, anchor: PointKinematics
+) -> BodyKinematics:
+    """The body whose frame stands at the angle of ``found`` less that of ``back``."""
+    aligned = back.x == 1.0 and back.y == 0.0
+    turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
+    return BodyKinematics(
+        local, anchor, turn, found.omega, found.alpha, found.error, None, found.length
+    )
+
+
+def following_body(
+    known: BodyKinematics, by: float, local: Point, anchor: PointKinematics
+) -> BodyKinematics:
+    """The body that keeps the angle ``by`` to a known body."""
+    theta = None if known.theta is None else known.theta + by
+    error = known.error
+    if error is not None and by != 0.0:
+        error = replace(error, theta=error.theta + 4 * EPS * (1.0 + abs(by)))
+    turn = known.turn.turned(direction(by))
+    return BodyKinematics(local, anchor, turn, known.omega, known.alpha, error, theta, known.length)
+
+
+@dataclass(frozen=True)
+class RidingLine:
+    """A prismatic pair as a line of its known body.
+
+    The line goes through ``base`` at ``angle`` in the known body's frame; the slider's
+    displacement is ``sign`` times the coordinate on this line. The unknown body keeps the angle
+    ``follow`` to the known one, and its point ``rider`` (in its own frame) is the one on the line.
+    ``slack`` bounds the rounding of ``base`` where that was worked out [m].
+    """
+
+    known: str
+    base: Point
+    angle: float
+    sign: int
+    follow: float
+    rider: Point
+    slack: float = 0.0
+
+    @staticmethod
+    def of(scene: Scene, name: str, known: frozenset[str]) -> RidingLine:
+        """The pair of slider ``name``, of which one body is known."""
+        slider = scene.sliders[name]
+        body = sliding_body(slider)
+        pin = local_point(scene, body, slider.point)
+        if slider.on in known:
+            follow = slider.direction_rad + slider.angle_rad
+            return RidingLine(slider.on, slider.through_m, slider.direction_rad, 1, follow, pin)
+        follow = -slider.direction_rad - slider.angle_rad
+        return RidingLine(body, pin, -slider.angle_rad, -1, follow, slider.through_m)
+
+    def through(self, local: Point) -> tuple[RidingLine, float]:
+        """The parallel line of another point of the unknown body, and that point's lead on it."""
+        away = less(local, self.rider)
+        lead, aside = turned(away, self.follow - self.angle)
+        base = total(self.base, turned((0.0, aside), self.angle))
+        slack = rounding_of(abs(self.follow) + 2.0 * abs(self.angle), away, onto=base)
+        return replace(self, base=base, rider=local, slack=slack), lead
+
+    def line(self, chunk: Chunk) -> MovingLine:
+        """The line in motion."""
+        body = chunk.bodies[self.known]
+        along = body.unit(self.angle)
+        error = body.error
+        if error is not None:
+            error = replace(error, theta=error.theta + 4 * EPS)
+        point = body.point(self.base)
+        if self.slack and error is not None and point.error is not None:
+            point = replace(point, error=_loosened(point.error, self.slack, body))
+        return MovingLine(point, along, body.omega, body.alpha, error)
+
+    def displacement(self, found: Sliding, lead: float) -> Sliding:
+        """The slider's own displacement from the coordinate of a point that leads it."""
+        own = without_lead(found, lead, self.slack)
+        if self.sign > 0:
+            return own
+        return replace(own, s=-own.s, speed=-own.speed, acceleration=-own.acceleration)
+
+
+def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
+    """The displacement behind a point that leads it; ``slack`` bounds the rounding of the lead."""
+    error = found.error
+    if error is not None and slack:
+        rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + slack
+        error = replace(error, displacement=error.displacement + rounding)
+    return replace(found, s=found.s - lead, error=error)
+
+
+def riding_point(line: MovingLine, found: Sliding) -> PointKinematics:
+    """The motion of the point that slides on a moving line."""
+    s, speed = found.s, found.speed
+    p = line.at(s)
+    v = line.velocity(s) + line.along * speed
+    a = line.acceleration(s, speed) + line.along * found.acceleration
+    if found.error is None:
+        return PointKinematics(p, v, a, None)
+    assert line.error is not None
+    e = found.error
+    place, drift, shove = line.errors(s, speed, e.displacement, e.speed)
+    sizes = line.sizes(s, speed)
+    error = PointError(
+        place + e.displacement + 6 * EPS * sizes[0],
+        drift + e.speed + np.abs(speed) * line.error.theta + 6 * EPS * (sizes[1] + np.abs(speed)),
+        shove
+        + e.acceleration
+        + np.abs(found.acceleration) * line.error.theta
+        + 8 * EPS * (sizes[2] + np.abs(found.acceleration)),
+    )
+    return PointKinematics(p, v, a, error)

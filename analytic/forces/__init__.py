@@ -1,0 +1,1 @@
+"""What the motion asks of the joints."""

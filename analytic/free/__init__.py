@@ -1,0 +1,1 @@
+"""Motions that masses and forces make, and no driver."""

@@ -1,0 +1,1 @@
+"""Mobility and Assur groups."""

@@ -1,0 +1,241 @@
+"""Structure of a mechanism: mobility, and its driver and Assur groups in solving order.
+
+Mobility by Kutzbach-Gruebler, W = 3 n - 2 p5 - p4, with n moving bodies (links and slider blocks),
+p5 pairs of one freedom (pins, prismatic pairs) and p4 pairs of two (none: a point on a line is a
+block with a pin and a prismatic pair). Source: I. I. Artobolevskii, Theory of Mechanisms; the
+class II groups are those with two links and three pairs.
+
+A link that is pinned at two or more points to bodies that move without it is redundant: it takes
+2 k - 3 freedoms from the count, k its pins, and none from the mechanism, if its length fits.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from analytic.structure.groups import Bridge, Group, Pairs, decompose
+from models.errors import StructureError
+from models.joints import block_name
+from models.scene import GROUND, Scene, Slider
+
+MOST_LOOKS = 200_000
+"""Pairs that are looked at, over all sets of links, to name a group without closed form: about
+0.2 s, however many links there are."""
+SHOWN = 8
+"""Links that are named of those left over."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Bodies, pairs, mobility and groups of a scene.
+
+    ``order`` holds the groups and the redundant links, each after what it hangs on.
+    """
+
+    bodies: tuple[str, ...]
+    pins: Mapping[str, tuple[str, ...]]
+    prismatics: Mapping[str, tuple[str, str]]
+    order: tuple[Group | Bridge, ...]
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The Assur groups in solving order."""
+        return tuple(part for part in self.order if isinstance(part, Group))
+
+    @property
+    def redundant(self) -> tuple[Bridge, ...]:
+        """The links that the mechanism would move the same without."""
+        return tuple(part for part in self.order if isinstance(part, Bridge))
+
+    @property
+    def count(self) -> int:
+        """The mobility by count, W: with redundant links it is less than the real one."""
+        return 3 * len(self.bodies) - 2 * self.pairs
+
+    @property
+    def mobility(self) -> int:
+        """The real mobility, that of the mechanism without what its redundant links add."""
+        return self.count + sum(bridge.excess for bridge in self.redundant)
+
+    @property
+    def words(self) -> str:
+        """The mobility for people, and what the count makes of it where that is something else."""
+        if not self.redundant:
+            return f"mobility {self.mobility}"
+        spare = ", ".join(bridge.link for bridge in self.redundant)
+        return f"mobility {self.mobility} ({self.count} by count; redundant: {spare})"
+
+    @property
+    def pairs(self) -> int:
+        """p5: the number of pairs of one freedom."""
+        return _count_pairs(self.pins, self.prismatics)
+
+
+def sliding_body(slider: Slider) -> str:
+    """The body that a slider is: its link, or a block of its own, with mass or without."""
+    return slider.link or block_name(slider)
+
+
+def analyse(scene: Scene) -> Structure:
+    """Mobility and Assur groups of a scene, in solving order.
+
+    Raises
+    ------
+    StructureError
+        Mobility other than 1; links that hang on nothing, or in pairs on one pin; a group that is
+        not a dyad (the message names its links); a branch for something that has one assembly only.
+    """
+    blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
+    bodies = (*scene.links, *blocks)
+    pins = _pins(scene)
+    prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
+    order, left = decompose(bodies, scene.driver.link, Pairs(pins, prismatics))
+    found = Structure(bodies, pins, prismatics, order)
+    if left or found.mobility != 1:
+        raise StructureError(f"{scene.name}: {_fault(found, left)}")
+    _check_held(scene, found.groups)
+    _check_branches(scene, found.groups)
+    return found
+
+
+def _fault(found: Structure, left: list[str]) -> str:
+    """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
+    if found.mobility == 1:
+        known = {GROUND, *found.bodies} - set(left)
+        pairs = Pairs(found.pins, found.prismatics)
+        outer = {body: pairs.outer(body, known) for body in left}
+        return _no_closed_form(left, outer, found.pins, found.prismatics)
+    n, p5 = len(found.bodies), found.pairs
+    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {found.count}"
+    if found.redundant:
+        spare = ", ".join(bridge.link for bridge in found.redundant)
+        count += f", but {found.mobility} where redundant links ({spare}) are not counted"
+    return f"{count}; one driver needs mobility 1. {_what_to_do(found.mobility)}"
+
+
+def _what_to_do(mobility: int) -> str:
+    if mobility > 1:
+        return "Pin a loose link, or remove one; bodies are pinned where they name the same point."
+    return "Remove a link or a pin that holds the mechanism rigid."
+
+
+def _pins(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """The points that join at least two bodies, slider blocks included."""
+    bodies = {point: list(names) for point, names in scene.pins.items()}
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            bodies.setdefault(slider.point, []).append(block_name(slider))
+    return {point: tuple(names) for point, names in bodies.items() if len(names) > 1}
+
+
+def _count_pairs(
+    pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
+) -> int:
+    """A pin that joins k bodies is k - 1 pairs."""
+    return sum(len(names) - 1 for names in pins.values()) + len(prismatics)
+
+
+def _no_closed_form(
+    left: list[str],
+    outer: Mapping[str, list[tuple[str, str]]],
+    pins: Mapping[str, tuple[str, ...]],
+    prismatics: Mapping[str, tuple[str, str]],
+) -> str:
+    """Which links are in the way, and why."""
+    for body in left:
+        if len(outer[body]) > 1:
+            names = ", ".join(name for _, name in outer[body])
+            return (
+                f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
+                "before it, so it is rigid and another link is loose: mobility 1 is only a count"
+            )
+    parts = _parts(left, pins, prismatics)
+    most = MOST_LOOKS // (len(left) + len(pins) + len(prismatics))
+    for group in itertools.islice(_sets(parts), most):
+        size = len(group)
+        inside, outside = _pairs_of(set(group), left, pins, prismatics)
+        if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
+            return (
+                f"links {_named(group)} form an Assur group of {size} links and "
+                f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
+                "dyads (RRR, RRP, RPR, PRP, RPP) have"
+            )
+    return f"{_named(left)} do not hang on the driver and the ground by dyads; check their pins"
+
+
+def _named(links: Sequence[str]) -> str:
+    """Links by name, as many as are read, and how many more there are."""
+    more = f" and {len(links) - SHOWN} more" if len(links) > SHOWN else ""
+    return ", ".join(links[:SHOWN]) + more
+
+
+def _parts(
+    left: list[str],
+    pins: Mapping[str, tuple[str, ...]],
+    prismatics: Mapping[str, tuple[str, str]],
+) -> list[list[str]]:
+    """The links left over, apart where no pair without a known body joins them: a group is one."""
+    unknown = set(left)
+    part = {body: [body] for body in left}
+    for names in (*pins.values(), *prismatics.values()):
+        if not unknown.issuperset(names):
+            continue
+        first = part[names[0]]
+        for name in names[1:]:
+            other = part[name]
+            if other is not first:
+                first.extend(other)
+                part.update(dict.fromkeys(other, first))
+    place = {body: k for k, body in enumerate(left)}
+    return [
+        sorted(own, key=place.__getitem__) for own in {id(p): p for p in part.values()}.values()
+    ]
+
+
+def _sets(parts: list[list[str]]) -> Iterator[tuple[str, ...]]:
+    """The sets of links that may form a group of class III or higher, the smallest first."""
+    for size in range(4, max(map(len, parts)) + 1, 2):
+        for part in parts:
+            yield from itertools.combinations(part, size)
+
+
+def _pairs_of(
+    group: set[str],
+    left: list[str],
+    pins: Mapping[str, tuple[str, ...]],
+    prismatics: Mapping[str, tuple[str, str]],
+) -> tuple[int, int]:
+    """The pairs between members of the group, and whether it hangs on others that are left."""
+    others = set(left) - group
+    inside = outside = 0
+    for names in pins.values():
+        unknown = [name for name in names if name in group]
+        if unknown and set(names) <= group | others:
+            inside += len(unknown) - 1
+    for a, b in prismatics.values():
+        inside += {a, b} <= group
+        outside += len({a, b} & group) == 1 and len({a, b} & others) == 1
+    return inside, outside
+
+
+def _check_held(scene: Scene, groups: tuple[Group, ...]) -> None:
+    """Refuse two bodies that only one pin holds: the count takes them for held at two."""
+    for group in groups:
+        if group.kind[0] == group.kind[2] == "R" and group.outer1 == group.outer2:
+            raise StructureError(
+                f"{scene.name}: {group.first} and {group.second} both hang on pin {group.outer1}, "
+                "and turn about it whatever the driver does; pin one of them at another point"
+            )
+
+
+def _check_branches(scene: Scene, groups: tuple[Group, ...]) -> None:
+    """Refuse a branch that chooses nothing."""
+    choices = [group.branch_key for group in groups if group.assemblies == 2]
+    for key in scene.branch:
+        if key not in choices:
+            have = f"it has {', '.join(choices)}" if choices else "this scene has none"
+            raise StructureError(
+                f"{scene.name}: branch.{key} chooses between no two assemblies; {have}"
+            )

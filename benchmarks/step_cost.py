@@ -1,0 +1,126 @@
+"""Measure what the models of `reports.tune.cost` need: ``python -m benchmarks.step_cost``.
+
+Every shipped scene at constant speed is timed in both engines, with settings that differ in what
+they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some
+minutes on a machine that does nothing else.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.files import load_scene, shipped
+from models.laws import ConstantSpeed
+from models.scene import Scene
+from reports.judge.cell import Cell
+from reports.sweep.measured import timed
+from reports.tune.cost import EVALUATIONS, PYMUNK_PASS, mujoco_counts, pymunk_counts
+from reports.tune.timing import GUESS_US
+from reports.workers.isolated import Isolated, Limits, Lost
+from sim.engine import SettingValue
+
+Array = NDArray[np.float64]
+ROUNDS = 12
+STEPS_PER_TURN = 720.0
+ITERATIONS = (2, 10, 50, 150)
+Point = tuple[Scene, str, Mapping[str, SettingValue]]
+
+
+def points() -> list[Point]:
+    """What is timed: scene, engine, settings over those of profile tuned."""
+    scenes = [scene for name in shipped() if _steady(scene := load_scene(name))]
+    found: list[Point] = []
+    for scene in scenes:
+        found += [(scene, "mujoco", {"integrator": name}) for name in EVALUATIONS]
+        found += [(scene, "mujoco", {"iterations": number}) for number in (1, 100)]
+        found += [
+            (scene, "pymunk", {"iterations": number, "lines": lines})
+            for number in ITERATIONS
+            for lines in ("groove", "exact")
+        ]
+    return found
+
+
+def _steady(scene: Scene) -> bool:
+    """A scene of constant speed: no part of a step's time is the drive's."""
+    return isinstance(scene.driver.law, ConstantSpeed)
+
+
+def measure(what: Sequence[Point], rounds: int = ROUNDS) -> list[float]:
+    """The least time of each point in all rounds [microseconds per step]; NaN where it is lost."""
+    isolated: Isolated[tuple[float, ...]] = Isolated(Limits())
+    least = [float("nan")] * len(what)
+    try:
+        for _ in range(rounds):
+            for index, (scene, engine, settings) in enumerate(what):
+                dt_s = scene.driver.law.period_s / STEPS_PER_TURN
+                cell = Cell(scene, engine, "tuned", dt_s, 1, converge=False, settings=settings)
+                found = isolated.call(timed, cell, GUESS_US)
+                if not isinstance(found, Lost):
+                    least[index] = float(np.fmin(least[index], min(found)))
+    finally:
+        isolated.close()
+    return least
+
+
+def fit(counts: Sequence[Sequence[float]], us: Sequence[float]) -> list[float]:
+    """What each count takes [microseconds], for the least relative error."""
+    rows = np.asarray(counts, dtype=np.float64) / np.asarray(us)[:, None]
+    return [float(x) for x in np.linalg.lstsq(rows, np.ones(len(rows)), rcond=None)[0]]
+
+
+def mujoco(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
+    """The constants of MuJoCo as text."""
+    known = [(p, t) for p, t in zip(what, us, strict=True) if p[1] == "mujoco" and t == t]
+    euler = {p[0].name: t for p, t in known if p[2].get("integrator") == "Euler"}
+    scenes = {p[0].name: p[0] for p, _ in known}
+    ratio = {
+        name: statistics.median(
+            t / euler[p[0].name] for p, t in known if p[2].get("integrator") == name
+        )
+        for name in EVALUATIONS
+    }
+    yield f"EVALUATIONS = { ({k: round(v, 2) for k, v in ratio.items()}) }"
+    rows = [(p[0], t / ratio[str(p[2]["integrator"])]) for p, t in known if "integrator" in p[2]]
+    counts = {name: mujoco_counts(scene) for name, scene in scenes.items()}
+    found = fit([counts[scene.name] for scene, _ in rows], [t for _, t in rows])
+    yield "MUJOCO_STEP, MUJOCO_BODY, MUJOCO_LOOP = " + ", ".join(f"{x:.3f}" for x in found)
+    model = [float(np.dot(counts[scene.name], found)) / t for scene, t in rows]
+    yield _off(model)
+    tuned = {p[0].name: t for p, t in known if p[2].get("integrator") == "RK4"}
+    for number in (1, 100):
+        share = [t / tuned[p[0].name] for p, t in known if p[2].get("iterations") == number]
+        yield f"# a limit of {number} iterations over one of 2: {statistics.median(share):.3f}"
+
+
+def pymunk(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
+    """The constants of pymunk as text."""
+    rows, times = [], []
+    for (scene, engine, settings), t in zip(what, us, strict=True):
+        if engine == "pymunk" and t == t:
+            step, body, kinds = pymunk_counts(scene, settings["lines"] == "exact")
+            passes = [float(settings["iterations"]) * kinds[name] for name in PYMUNK_PASS]
+            rows.append([step, body, kinds["PinJoint"], *passes])
+            times.append(t)
+    found = fit(rows, times)
+    yield "PYMUNK_STEP, PYMUNK_BODY, PYMUNK_RAIL = " + ", ".join(f"{x:.3f}" for x in found[:3])
+    each = {name: round(us_pass, 5) for name, us_pass in zip(PYMUNK_PASS, found[3:], strict=True)}
+    yield f"PYMUNK_PASS = {each}"
+    yield _off([float(np.dot(row, found)) / t for row, t in zip(rows, times, strict=True)])
+
+
+def _off(ratios: Sequence[float]) -> str:
+    """How far a model is off."""
+    off = np.abs(np.asarray(ratios) - 1.0)
+    return f"# off by {np.median(off):.1%} (median), {np.max(off):.1%} (most)"
+
+
+if __name__ == "__main__":
+    asked = points()
+    taken = measure(asked)
+    for line in (*mujoco(asked, taken), *pymunk(asked, taken)):
+        print(line)

@@ -1,0 +1,187 @@
+"""Chains of windows left free: how well the engines hold the benchmark A02, and at what cost.
+
+`python benchmarks/window_chain.py` prints two tables. The first holds N = 40 windows for 20 s
+(problem A02, see `models.window_chain`) to the closed form: energy drift over what a turn
+exchanges, error of B0 up to several times, the largest gap of a pin, and whether and where the rods
+ceased to be parallel. The second has the time per step for chains of 1 to 200 windows, and the
+exponent of N. About three minutes on two processors. It judges nothing and exits with 0.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import statistics
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+if __name__ == "__main__":  # run as a file: the packages are beside this folder
+    sys.path[0] = str(Path(__file__).resolve().parents[1])
+
+# Not above: it imports logging, for which Python would take the file beside this one.
+from concurrent.futures import ProcessPoolExecutor
+
+from analytic.free.window_chain import Turning
+from models.window_chain import Chain
+from reports.compare.free_chain import Held, hold
+from reports.output.provenance import processor
+from sim.engine import SettingValue
+from sim.registry import engine
+from sim.run import time_run
+
+COUNT, DURATION_S, LOGGED_S = 40, 20.0, 0.01
+SEEN_S = (1.0, 2.0, 5.0, 10.0, 20.0)
+COUNTS = (1, 2, 5, 10, 20, 40, 100, 200)
+FITTED = 20
+"""The exponent is fitted over chains of so many windows and more: shorter ones cost by the call."""
+PASSES, STEPS = 4, 100
+"""Passes over all chains, odd and even ones compared; steps that are timed."""
+BEFORE_FLAT_S = 0.06
+"""Timed steps begin so long before the rods first lie flat, and go on through it."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Settings of an engine, and the step [s]."""
+
+    engine: str
+    profile: str
+    dt_s: float = 1e-3
+    settings: Mapping[str, SettingValue] = field(default_factory=dict)
+
+    @property
+    def words(self) -> str:
+        changed = "".join(f" {name} {value:g}" for name, value in self.settings.items())
+        return f"{self.engine} {self.profile}{changed}"
+
+
+PLAIN = tuple(Case(e, p) for e in ("mujoco", "pymunk") for p in ("tuned", "as-shipped"))
+MORE = (
+    Case("mujoco", "tuned", 2e-3),
+    Case("mujoco", "tuned", 5e-4),
+    Case("pymunk", "tuned", 2e-3, {"iterations": 1000}),
+    Case("pymunk", "as-shipped", 2e-4),
+)
+"""What else was tried to have the chain held, or held better."""
+
+
+def main() -> int:
+    """Print both tables."""
+    accuracy()
+    timings()
+    versions = ", ".join(f"{name} {engine(name).version()}" for name in ("mujoco", "pymunk"))
+    versions += f", numpy {np.__version__}, Python {platform.python_version()}"
+    busy = f"; load {os.getloadavg()[0]:.1f} at the end" if hasattr(os, "getloadavg") else ""
+    print(f"\n{versions}, {processor()}, {os.cpu_count()} processors{busy}")
+    return 0
+
+
+def accuracy() -> None:
+    """The chain of the benchmark in all cases, two at a time: nothing here is timed."""
+    turning = Turning(Chain(COUNT))
+    print(
+        f"N = {COUNT} windows, free from upright, {DURATION_S:g} s, "
+        f"{DURATION_S / turning.period_s:.1f} turns of {turning.period_s:.4f} s; "
+        f"a turn exchanges {turning.exchanged_j:.1f} J\n"
+    )
+    until = "".join(f"{f'{t:g} s':>9}" for t in SEEN_S)
+    print(f"{'':37}{'':8}{'energy':>9}{'at end':>9}{'   error of B0 [m] up to':45}{'pin gap':>9}")
+    print(f"{'settings':37}{'dt':8}{'drift':>9}{'J':>9}{until}{'m':>9}  rods")
+    with ProcessPoolExecutor(2) as pool:
+        for case, found in zip((*PLAIN, *MORE), pool.map(held, (*PLAIN, *MORE)), strict=True):
+            errors = "".join(f"{found.place_until(t):9.1e}" for t in SEEN_S)
+            print(
+                f"{case.words:37}{case.dt_s:<8g}{found.energy_drift:9.1e}"
+                f"{found.energy_j[-1]:9.2g}{errors}{np.max(found.gap_m):9.1e}  {ended(found)}",
+                flush=True,
+            )
+
+
+def held(case: Case) -> Held:
+    """One case of the benchmark."""
+    return hold(
+        Chain(COUNT),
+        case.engine,
+        case.profile,
+        dt_s=case.dt_s,
+        duration_s=DURATION_S,
+        every=round(LOGGED_S / case.dt_s),
+        settings=case.settings,
+    )
+
+
+def ended(found: Held) -> str:
+    """How the motion ended, in words."""
+    words = [] if found.run.status == "ok" else [f"{found.run.status}: {found.run.reason}"]
+    if found.left is None:
+        words.append(f"parallel to {np.max(found.lean_rad):.0e} rad")
+    else:
+        angle = math.degrees(math.remainder(found.left.driver_rad, math.tau))
+        words.append(f"part at {found.left.time_s:.2f} s, {angle:.0f} deg")
+    return "; ".join(words)
+
+
+def timings() -> None:
+    """Microseconds per step over the number of windows, and the exponent."""
+    dt_s = PLAIN[0].dt_s
+    print(
+        f"\n{STEPS} bare steps of {dt_s:g} s through the first flat position, us per step: the "
+        f"least of {PASSES} passes; serial, warm, collector off\n"
+    )
+    print(
+        f"{'windows N':22}"
+        + "".join(f"{n:9}" for n in COUNTS)
+        + f"   N^p, N >= {FITTED}    odd/even"
+    )
+    passes = [
+        {case.words: [timed(case, n) for n in COUNTS] for case in PLAIN} for _ in range(PASSES)
+    ]
+    for case in PLAIN:
+        rows = np.array([one[case.words] for one in passes])
+        best = rows.min(axis=0)
+        power, doubt = exponent(best)
+        noise = statistics.median((rows[::2].min(axis=0) / rows[1::2].min(axis=0)).tolist())
+        print(
+            f"{case.words:22}"
+            + "".join(f"{us:9.1f}" for us in best)
+            + f"   {power:5.2f} +- {doubt:4.2f}{noise:13.3f}"
+        )
+
+
+def timed(case: Case, count: int) -> float:
+    """Microseconds per step of a chain that is about to lie flat."""
+    turning = Turning(Chain(count))
+    times = np.linspace(0.0, turning.period_s / 2.0, 20_001)
+    flat = float(np.interp(0.0, -turning.at(times)[0], times))
+    start = turning.motion(np.array([flat - BEFORE_FLAT_S])).state(0)
+    timing = time_run(
+        Chain(count).scene(),
+        start,
+        case.engine,
+        case.profile,
+        dt_s=case.dt_s,
+        steps=STEPS,
+        repeats=1 if count >= 100 else 3,
+        drive="free",
+        settings=case.settings,
+    )
+    return timing.best.us_per_step
+
+
+def exponent(us: np.ndarray) -> tuple[float, float]:
+    """The slope of log(time) over log(N) for the longer chains, and its standard error."""
+    used = np.array(COUNTS) >= FITTED
+    x, y = np.log(np.array(COUNTS)[used]), np.log(us[used])
+    slope, level = np.polyfit(x, y, 1)
+    off = y - slope * x - level
+    spread = math.sqrt(float(off @ off) / (len(x) - 2))
+    return float(slope), spread / math.sqrt(float(((x - x.mean()) ** 2).sum()))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,1 +1,0 @@
-"""Choosing settings: what an error costs, and the cheapest that reaches a target on every scene."""

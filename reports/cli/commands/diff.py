@@ -1,0 +1,79 @@
+"""`crankcheck diff`: two stored runs, and what became of every cell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.diff.changes import FACTOR, compare
+from reports.diff.junit import junit
+from reports.diff.markdown import markdown
+from reports.diff.reading import read_run
+from reports.diff.terminal import show
+from reports.output.notice import tell
+from reports.output.write import check_different, check_file, write
+
+FORMATS = ("text", "md")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `diff` was asked for, as given.
+
+    ``old`` and ``new`` are folders of `sweep -o` or of `verify -o`, in any combination: a profile
+    is the variant of its name. ``format`` is what is printed, or what goes to ``output``, which
+    is Markdown in any case.
+    """
+
+    old: Path
+    new: Path
+    factor: float = FACTOR
+    strict: bool = False
+    old_version: str | None = None
+    new_version: str | None = None
+    format: str = "text"
+    output: Path | None = None
+    junit: Path | None = None
+
+
+def run_diff(request: Request, console: Console) -> int:
+    """Do it; returns the exit code.
+
+    0: nothing is worse. 1: some error grew past the factor, or a cell that ended well does not
+    any more; with ``strict`` also where a cell of the old run is missing, or its scene changed.
+    Without it those are told and are no fault: a run that failed is a row with its status, so a
+    cell is missing only where it was not asked for. Times of steps are shown and never count.
+
+    Raises
+    ------
+    CrankcheckError
+        A folder that holds no run, two runs with nothing in common, an option that makes no sense;
+        a damaged run that may have lost a cell which the other one has.
+    """
+    if request.format not in FORMATS:
+        raise CrankcheckError(f"--format {request.format!r}: unknown; use {' or '.join(FORMATS)}")
+    files = [("-o", request.output), ("--junit", request.junit)]
+    named = [(option, path) for option, path in files if path is not None]
+    for option, path in named:
+        check_file(path, option)
+    check_different(named)
+    old = read_run(request.old, request.old_version, "--old-version")
+    new = read_run(request.new, request.new_version, "--new-version")
+    for run in (old, new) if request.old != request.new else (old,):
+        tell(run.notice)
+    diff = compare(old, new, request.factor)
+    page = markdown(diff, request.strict)
+    try:
+        if request.output:
+            write(request.output, page)
+        if request.junit:
+            write(request.junit, junit(diff, request.strict))
+    finally:  # a full disk costs the file, and not the verdict with it
+        if request.format == "md" and not request.output:
+            console.print(page, end="", markup=False, highlight=False, soft_wrap=True)
+        else:
+            show(console, diff, request.strict)
+    return diff.code(request.strict)

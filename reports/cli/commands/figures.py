@@ -1,0 +1,100 @@
+"""`crankcheck figures`: the diagrams of a store for a paper, as SVG and PDF."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from pathlib import Path
+
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.progress import track
+
+from models.errors import CrankcheckError
+from models.schema import NAME
+from reports.figures.registry import FIGURES
+from reports.figures.saving import FORMATS, saved
+from reports.figures.style import styled
+from reports.output.notice import tell
+from reports.output.numbers import count
+from reports.output.write import check_folder, write
+from reports.results.overview import Report
+from reports.store.reader import read_store
+
+Drawn = Callable[[], Figure | None]
+
+
+def run_figures(
+    folder: Path,
+    output: Path,
+    console: Console,
+    scenes: Sequence[str] = (),
+    only: Sequence[str] = (),
+) -> int:
+    """Draw the store in ``folder`` into ``output``; returns the exit code, 0.
+
+    ``scenes`` and ``only`` (names of figures) choose, all where they are empty. Figures over all
+    scenes are drawn where no scene is chosen, and where there are several.
+
+    Raises
+    ------
+    CrankcheckError
+        No store there, no such scene or figure, or a folder that can not be written.
+    """
+    names = _chosen(only, FIGURES, "--only", "figure")
+    check_folder(output, "-o")
+    stored = read_store(folder)
+    tell(stored.notice)
+    report = Report(stored)
+    figures = _planned(report, names, scenes)
+    check_folder(output, "-o", [f"{name}.{kind}" for name in figures for kind in FORMATS])
+    empty = []
+    quiet = not console.is_terminal
+    for name in track(figures, "drawing", console=console, transient=True, disable=quiet):
+        with styled():
+            figure = figures[name]()
+        if figure is None:
+            empty.append(name)
+            continue
+        for kind in FORMATS:
+            write(output / f"{name}.{kind}", saved(figure, kind, f"crankcheck: {name}"))
+    drawn = count(len(figures) - len(empty), "figure")
+    kinds = " and ".join(f".{kind}" for kind in FORMATS)
+    lines = [f"{output}: {drawn}, each as {kinds}", *(f"  {x}: nothing to draw" for x in empty)]
+    console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+    return 0
+
+
+def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dict[str, Drawn]:
+    """What is drawn into which file, by the file's name without its ending."""
+    chosen = _chosen(scenes, report.scenes, "--scene", "scene")
+    if strange := next((scene for scene in chosen if not re.fullmatch(NAME, scene)), None):
+        raise CrankcheckError(
+            f"scene {strange!r} of the store: not the name of a scene, and so not of a file "
+            "either; the store was changed by hand: run `crankcheck sweep` again"
+        )
+    found: dict[str, Drawn] = {}
+    for name in names:
+        of, over_all = FIGURES[name].of, FIGURES[name].over_all
+        if over_all is not None and not scenes and (of is None or len(chosen) > 1):
+            found[name] = partial(over_all, report)
+        if of is not None:
+            found |= {f"{name}-{scene}": partial(of, report, scene) for scene in chosen}
+    if not found:
+        raise CrankcheckError(
+            f"--only {', '.join(names)}: drawn over all scenes, not of one; leave out --scene"
+        )
+    return found
+
+
+def _chosen(asked: Sequence[str], known: Iterable[str], option: str, noun: str) -> list[str]:
+    """The names that were asked for, each once; all where none was."""
+    every = list(known)
+    for name in asked:
+        if name not in every:
+            near = difflib.get_close_matches(name, every, n=2, cutoff=0.4)
+            hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(every)}"
+            raise CrankcheckError(f"{option} {name}: no such {noun} here; {hint}")
+    return list(dict.fromkeys(asked)) or every

@@ -1,0 +1,197 @@
+"""`crankcheck history`: the same verification with several versions of an engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from reports.cli.commands import verify
+from reports.diff.reading import scene_digests
+from reports.history.cache import alone, cache_folder
+from reports.history.document import page, table_text
+from reports.history.environments import NotMeasuredError, Wanted, ready, uv_here, wanted
+from reports.history.measured import Outcome, read, told_version
+from reports.history.table import show
+from reports.history.verification import kept, key_of, measure, place
+from reports.judge.cell import Cell
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, write
+from reports.workers.programs import run_child
+from sim.registry import ENGINES, engine
+
+FILES = ("history.csv", "history.md")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `history` was asked for, as given; as of `verify` where the names are the same."""
+
+    engine: str
+    versions: Sequence[str]
+    scenes: Sequence[str] = ()
+    profiles: Sequence[str] = ()
+    dt_s: float | None = None
+    steps_per_turn: float | None = None
+    turns: float = 2.0
+    jobs: int = 0
+    cache: Path | None = None
+    again: bool = False
+    folder: Path | None = None
+
+
+def run_history(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
+
+    Raises
+    ------
+    CrankcheckError
+        Anything about the request that can be told before installing.
+    """
+    if request.engine not in ENGINES:
+        engine(request.engine)  # raises, with the near names
+    versions = wanted(request.engine, request.versions)
+    if not versions:
+        raise CrankcheckError(f"history {request.engine}: name versions, such as 3.6.0 3.7.0")
+    cells = verify.plan(_verification(request))
+    cache = cache_folder(request.cache)
+    _check_outputs(request, versions)
+    uv = uv_here()
+    # The files of a result hold the digests of the scenes' texts, by which they are compared later.
+    key, outcomes = key_of([*cells, scene_digests(request.scenes)]), []
+    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("", total=2 * len(versions))
+        for one in versions:
+
+            def tell(what: str, steps: int = 0, one: Wanted = one) -> None:
+                bar.update(task, advance=steps, description=f"{one.engine} {one.version}: {what}")
+
+            outcomes.append(_outcome(request, one, place(cache, one, key), cache, uv, tell))
+            bar.update(task, completed=2 * len(outcomes))
+    footer = _footer(request, cells, outcomes)
+    try:
+        _write(request, outcomes, footer)
+    finally:
+        show(console, outcomes, footer)
+    missing = [outcome for outcome in outcomes if not outcome.cells]
+    for outcome in missing:
+        text = f"crankcheck: {request.engine} {outcome.version}: {outcome.reason}"
+        progress.print(text, markup=False, soft_wrap=True)
+    return 2 if missing else 0
+
+
+def _verification(request: Request) -> verify.Request:
+    """The verification that each version is put to."""
+    return verify.Request(
+        scenes=request.scenes,
+        engines=(request.engine,),
+        profiles=request.profiles,
+        dt_s=request.dt_s,
+        steps_per_turn=request.steps_per_turn,
+        turns=request.turns,
+        tolerance=(),
+        drive="prescribed",
+        converge=True,
+        jobs=request.jobs,
+        junit=None,
+        csv=None,
+        json=None,
+        folder=None,
+    )
+
+
+def _arguments(request: Request) -> list[str]:
+    """The same verification as arguments of the command line; the engine goes before them."""
+    found = [f"--turns={request.turns!r}", f"--jobs={request.jobs}"]
+    found += [f"--profile={name}" for name in request.profiles]
+    if request.dt_s is not None:
+        found.append(f"--dt={request.dt_s!r}")
+    if request.steps_per_turn is not None:
+        found.append(f"--steps-per-turn={request.steps_per_turn!r}")
+    return [*found, "--", *request.scenes]
+
+
+def _outcome(
+    request: Request,
+    one: Wanted,
+    folder: Path,
+    cache: Path,
+    uv: str | None,
+    tell: Callable[..., None],
+) -> Outcome:
+    """The result of one version in ``folder``, kept from before or made now; or the reason why
+    there is none."""
+    with (
+        _in_cache(cache),
+        alone(cache / "locks" / f"{one.name}.lock", lambda: tell("waiting for another crankcheck")),
+    ):
+        there = kept(folder) and not request.again
+        try:
+            if not there:
+                tell("installing")
+                python = ready(cache, one, uv, run_child)
+                tell("verifying", 1)
+                measure(folder, one, python, _arguments(request))
+        except NotMeasuredError as error:
+            return Outcome(one, reason=str(error))
+        told = told_version(folder, one.engine)
+        return Outcome(one, read(folder), folder=folder, kept=there, calls_itself=told)
+
+
+@contextmanager
+def _in_cache(cache: Path) -> Iterator[None]:
+    """What the system refuses in the cache is the user's to mend."""
+    try:
+        yield
+    except OSError as error:
+        raise CrankcheckError(
+            f"--cache {cache}: {error.strerror or error}; free some space there, or choose "
+            "another place"
+        ) from None
+
+
+def _check_outputs(request: Request, versions: Sequence[Wanted]) -> None:
+    """Refuse outputs that can not be written, before anything is installed."""
+    if request.folder is None:
+        return
+    check_folder(request.folder, "-o", FILES)
+    for one in versions:
+        check_folder(request.folder / one.name, "-o", verify.IN_FOLDER)
+
+
+def _write(request: Request, outcomes: Sequence[Outcome], footer: str) -> None:
+    """The verification of each version in a folder of its own, and the history of all."""
+    if request.folder is None:
+        return
+    for outcome in outcomes:
+        for path in sorted(outcome.folder.iterdir()) if outcome.folder else ():
+            write(request.folder / outcome.one.name / path.name, path.read_bytes())
+    write(request.folder / FILES[0], table_text(outcomes))
+    write(request.folder / FILES[1], page(outcomes, footer))
+
+
+def _footer(request: Request, cells: Sequence[Cell], outcomes: Sequence[Outcome]) -> str:
+    """Units, settings and versions; the result's place where no -o was given."""
+    first = cells[0]
+    alike = {round(cell.steps_per_turn, 3) for cell in cells}
+    step = f"{first.steps_per_turn:.4g} steps a turn"
+    if len(alike) > 1:
+        step = f"dt {first.dt_s:.4g} s"
+    measured = [outcome for outcome in outcomes if outcome.folder]
+    names = " ".join(outcome.version for outcome in measured) or "none"
+    facts = provenance({request.engine: names})
+    lines = [
+        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
+        "peak speed.",
+        f"{step}, {first.turns:.4g} turns; settings are those of this crankcheck's profiles in "
+        "every version.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    if request.folder is None and measured:
+        lines.append("Results: " + ", ".join(str(outcome.folder) for outcome in measured))
+    return "\n".join(lines)

@@ -1,0 +1,68 @@
+"""`crankcheck scenes`, `crankcheck engines`, `crankcheck export`: what there is, and its model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
+from models.errors import harmless
+from models.files import load_scene, shipped
+from models.mjcf import build
+from models.mjcf_options import exact
+from reports.cli.commands.solve import describe_law
+from reports.output.write import check_file, write
+from sim.registry import available, engine
+
+
+def scenes(console: Console) -> None:
+    """The shipped scenes: structure, driver and source."""
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    for head in ("scene", "groups", "driver", "source"):
+        table.add_column(head, overflow="fold", no_wrap=head == "scene")
+    for name in shipped():
+        scene = load_scene(name)
+        groups = " + ".join(group.kind for group in analyse(scene).groups)
+        table.add_row(name, groups, describe_law(scene), Text(scene.source))
+    console.print(table, highlight=False)
+
+
+def engines(console: Console, settings: bool) -> None:
+    """The engines: version, or the command that installs them; profiles, also with settings."""
+    for one in available():
+        state = one.version or f"not installed: {one.install}"
+        console.print(Text(f"{one.name}  {state}", "bold" if one.version else "yellow"))
+        if one.version is None:
+            continue
+        for profile in engine(one.name).profiles.values():
+            grid = Table.grid(padding=(0, 2, 0, 0))
+            grid.add_column(no_wrap=True, min_width=12)
+            grid.add_column(overflow="fold")
+            grid.add_row(f"  {profile.name}", Text(profile.summary))
+            if settings:
+                for name, setting in profile.settings.items():
+                    grid.add_row("", Text(f"{name} = {setting.value}: {setting.reason}", "dim"))
+            console.print(grid)
+
+
+def export(name: str, output: Path | None, close: tuple[str, ...], console: Console) -> None:
+    """The MJCF of a scene, assembled at its start, into a file or to the terminal.
+
+    Loops are closed at the pins of ``close``, the others where `models.tree` says.
+    """
+    if output is not None:
+        check_file(output, "-o", (".xml",))
+    scene = load_scene(name)
+    start = solve(scene, np.zeros(1)).state()
+    text = build(scene, start, replace(exact(scene), close=close))
+    if output is None:
+        console.file.write(text)
+        return
+    write(output, text)
+    console.print(harmless(f"{output}: MJCF of {scene.name}"), highlight=False, markup=False)

@@ -1,0 +1,111 @@
+"""`crankcheck selftest`: plant faults, see which rule catches each, show, write."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+from rich.console import Console
+from rich.progress import Progress
+
+from reports.judge.cell import Checked
+from reports.output.provenance import provenance
+from reports.output.write import check_different, check_file, check_folder, write
+from reports.plan.chosen import chosen_engines
+from reports.selftest.registry import chosen_faults
+from reports.selftest.table import place_row, show
+from reports.selftest.trial import PROFILE, STEPS, Verdict, healthy, passes, sites, tried_all
+from sim.registry import engine
+
+IN_FOLDER = ("selftest.csv", "selftest.json")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `selftest` was asked for, as given."""
+
+    engines: Sequence[str] = ()
+    faults: Sequence[str] = ()
+    jobs: int = 0
+    csv: Path | None = None
+    json: Path | None = None
+    folder: Path | None = None
+
+
+def selftest(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes.
+
+    Raises
+    ------
+    CrankcheckError
+        An unknown engine or fault, or an output that can not be written.
+    """
+    engines = chosen_engines(request.engines)
+    faults = chosen_faults(request.faults, engines)
+    _check_outputs(request)
+    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("planting", total=len(faults))
+        names = [fault.name for fault in faults]
+        verdicts = tried_all(names, engines, request.jobs, lambda _: bar.advance(task))
+    sound = [healthy(scene, name) for scene, name in sites(faults, engines)]
+    facts = provenance({name: engine(name).version() for name in engines})
+    try:
+        _write(request, verdicts, sound, facts)
+    finally:  # a full disk costs the file, and not the verdict with it
+        show(console, sound, verdicts, engines, facts)
+    return int(not all(one.caught for one in verdicts))
+
+
+def _check_outputs(request: Request) -> None:
+    """Refuse outputs that can not be written, before the run."""
+    named = {"--csv": request.csv, "--json": request.json}
+    files = [(option, path) for option, path in named.items() if path is not None]
+    for option, path in files:
+        check_file(path, option)
+    if request.folder is not None:
+        check_folder(request.folder, "-o", IN_FOLDER)
+        files += [("-o", request.folder / name) for name in IN_FOLDER]
+    check_different(files)
+
+
+def _write(
+    request: Request,
+    verdicts: Sequence[Verdict],
+    sound: Sequence[Checked],
+    facts: Mapping[str, str],
+) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    rows = [place_row(one, place) for one in verdicts for place in one.places]
+    texts = (
+        pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"),
+        _json(verdicts, sound, rows, facts),
+    )
+    for name, text, path in zip(IN_FOLDER, texts, (request.csv, request.json), strict=True):
+        targets = [path] if path else []
+        targets += [request.folder / name] if request.folder else []
+        for target in targets:
+            write(target, text)
+
+
+def _json(
+    verdicts: Sequence[Verdict],
+    sound: Sequence[Checked],
+    rows: Sequence[Mapping[str, object]],
+    facts: Mapping[str, str],
+) -> str:
+    """Facts, settings, the runs without a fault, and every fault in every place."""
+    content = {
+        "provenance": dict(facts),
+        "settings": {"profile": PROFILE, "steps_per_turn": STEPS, "turns": 1},
+        "caught": sum(one.caught for one in verdicts),
+        "escaped": [one.name for one in verdicts if not one.caught],
+        "without_a_fault": [
+            {"scene": one.cell.scene.name, "engine": one.cell.engine, "passes": passes(one)}
+            for one in sound
+        ],
+        "places": list(rows),
+    }
+    return json.dumps(content, indent=1) + "\n"

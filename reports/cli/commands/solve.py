@@ -1,0 +1,198 @@
+"""`crankcheck solve`: the reference alone, at one driver angle or over time."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from rich.console import Console
+
+from analytic.kinematics import solve, solve_driven
+from analytic.structure.mobility import Structure, analyse
+from models.errors import CrankcheckError, harmless
+from models.files import load_scene
+from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.facts import facts
+from reports.describe.frame import cleaned, motion_frame
+from reports.describe.tables import certainty, motion_tables, position_tables
+from reports.output.provenance import crankcheck_version
+from reports.output.write import check_file, clean, write
+from reports.plan.singular import continued_note, singular_note
+
+ENDINGS = (".csv", ".parquet", ".xlsx")
+ON_SCREEN = 12
+IN_A_FILE = 360
+MOST_SAMPLES = 1_000_000
+MOST_DEG = 1e6
+"""As in a scene file: an angle that is larger has lost the digits that are within a turn."""
+ENDLESS = 10**15
+"""Steps beyond which a float does not count them."""
+SHEET_ROWS = 1_048_575
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `solve` was asked for, as given."""
+
+    scene: str
+    at_deg: float | None
+    turns: float | None
+    steps_per_turn: int | None
+    output: Path | None
+
+
+def run_solve(request: Request, console: Console) -> None:
+    """Show or write the reference. Raises CrankcheckError for what can not be asked."""
+    if request.at_deg is not None and (request.turns or request.steps_per_turn):
+        raise CrankcheckError(
+            "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
+            "motion; give one of them"
+        )
+    if request.output is not None:
+        check_file(request.output, "-o", ENDINGS)
+    scene = load_scene(request.scene)
+    structure = analyse(scene)
+    motion = _over(scene, request) if request.at_deg is None else _at(scene, request.at_deg)
+    if request.output is not None:
+        _write(request.output, scene, motion)
+        told = harmless(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
+        console.print(told, highlight=False, markup=False)
+        return
+    console.print(heading(scene, structure), highlight=False, markup=False)
+    if request.at_deg is not None:
+        for table in position_tables(cleaned(motion)):
+            console.print(table, "")
+        console.print(certainty(motion), style="dim", highlight=False)
+    else:
+        for table in motion_tables(scene, cleaned(motion), console.width):
+            console.print(table, "")
+        console.print(
+            "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
+        )
+    for note in filter(None, (continued_note(motion), singular_note(scene, motion))):
+        console.print(note, style="yellow", highlight=False, markup=False)
+
+
+def heading(scene: Scene, structure: Structure) -> str:
+    """What the mechanism is, and what the theory says of it as a whole."""
+    groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
+    lines = [
+        f"{scene.name}: {scene.source}",
+        f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
+        f"groups in solving order: {groups}",
+        *facts(scene, structure),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def describe_law(scene: Scene) -> str:
+    """The driver's law in a few words."""
+    law = scene.driver.law
+    if isinstance(law, ConstantSpeed):
+        return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
+    if isinstance(law, FromRest):
+        return f"from rest to {law.speed_rad_s:g} rad/s in {law.rise_s:g} s"
+    if isinstance(law, Oscillating):
+        centre, swing = math.degrees(law.centre_rad), math.degrees(law.amplitude_rad)
+        return f"swings {centre:g} +- {abs(swing):g} deg at {law.frequency_rad_s:g} rad/s"
+    return type(law).__name__
+
+
+def _at(scene: Scene, at_deg: float) -> Motion:
+    """The mechanism with its driver at an angle, moving as its law moves it there."""
+    if not abs(at_deg) <= MOST_DEG:
+        raise CrankcheckError(
+            f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
+        )
+    theta = math.radians(at_deg)
+    omega, alpha = _rates(scene, theta, at_deg)
+    return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
+
+
+def _rates(scene: Scene, theta: float, at_deg: float) -> tuple[float, float]:
+    """Speed and acceleration of the driver when its law takes it through an angle.
+
+    An oscillating law is taken on its way of increasing angle; a start from rest after its rise.
+    """
+    law = scene.driver.law
+    if isinstance(law, Oscillating):
+        swing = theta - law.centre_rad
+        rest = law.amplitude_rad**2 - swing**2
+        # Rounding of the degrees must not put the end of the swing out of the law's range.
+        if rest < -1e-12 * law.amplitude_rad**2:
+            ends = sorted(math.degrees(law.centre_rad + s * law.amplitude_rad) for s in (-1.0, 1.0))
+            raise CrankcheckError(
+                f"--at-deg {at_deg:g}: the driver of {scene.name} swings from {ends[0]:.6g} to "
+                f"{ends[1]:.6g} deg; give an angle between"
+            )
+        frequency = abs(law.frequency_rad_s)
+        return frequency * math.sqrt(max(rest, 0.0)), -(frequency**2) * swing
+    if isinstance(law, ConstantSpeed | FromRest):
+        return law.speed_rad_s, 0.0
+    raise CrankcheckError(f"--at-deg: {scene.name} has a law without a speed at an angle")
+
+
+def _over(scene: Scene, request: Request) -> Motion:
+    """The motion over whole turns, the last sample included."""
+    turns = 1.0 if request.turns is None else request.turns
+    steps = request.steps_per_turn
+    if steps is None:
+        steps = ON_SCREEN if request.output is None else IN_A_FILE
+    if not (math.isfinite(turns) and turns > 0.0):
+        raise CrankcheckError(f"--turns {turns:g}: give a number above 0; 1 is one period")
+    if steps < 1:
+        raise CrankcheckError(f"--steps-per-turn {steps}: give at least 1")
+    most = MOST_SAMPLES
+    if request.output is not None and request.output.suffix.lower() == ".xlsx":
+        most = SHEET_ROWS
+    steps = min(steps, ENDLESS)
+    last = turns * steps * (1 - 1e-12)  # may be infinite
+    if not last <= most - 1:
+        raise CrankcheckError(
+            f"--turns {turns:g} --steps-per-turn {steps}: {last + 1:.7g} samples; at most {most}: "
+            "take fewer turns, or fewer steps in a turn"
+        )
+    samples = math.ceil(last) + 1
+    step_s = scene.driver.law.period_s / steps
+    return solve(scene, step_s * np.arange(samples, dtype=np.float64))
+
+
+def _write(path: Path, scene: Scene, motion: Motion) -> None:
+    """The motion as a file of the kind that the ending says."""
+    frame = motion_frame(motion)
+    ending = path.suffix.lower()
+    if ending == ".csv":
+        write(path, frame.to_csv(index=False, lineterminator="\n"))
+        return
+    if ending == ".parquet":
+        # It brings the comparison, which nothing else here needs.
+        from reports.judge.frames import parquet
+
+        write(path, parquet(frame))
+        return
+    buffer = io.BytesIO()
+    _workbook(
+        buffer,
+        frame,
+        {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()},
+    )
+    write(path, buffer.getvalue())
+
+
+def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str]) -> None:
+    """A workbook: the motion, and where it comes from."""
+    with pd.ExcelWriter(buffer, engine="openpyxl") as book:
+        shown = frame.rename(columns=clean)
+        shown.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
+        origin = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})
+        origin.to_excel(book, sheet_name="source", index=False)
+        for row in book.sheets["source"].iter_rows():
+            for cell in row:
+                cell.data_type = "s"  # a text that begins with "=" is no formula

@@ -1,0 +1,147 @@
+"""`crankcheck stability`: hard cases, graded by rules, with the value up to which each is held."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.output.numbers import count
+from reports.output.provenance import provenance
+from reports.output.write import check_folder, write
+from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
+from reports.stability.case import Case
+from reports.stability.catalogue import CATALOGUE
+from reports.stability.critical import command
+from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
+from reports.stability.running import Line, run_lines, run_one
+from reports.stability.table import show, show_run
+from reports.workers.isolated import Limits, checked_limits
+from reports.workers.pool import processors
+from reports.workers.progress import progress_bar
+from sim.registry import engine
+
+TABLE, PAGE = "stability.csv", "stability.html"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for; ``at`` is one value of one case."""
+
+    cases: Sequence[str] = ()
+    engines: Sequence[str] = ()
+    profiles: Sequence[str] = ()
+    at: float | None = None
+    folder: Path | None = None
+    jobs: int = 0
+    limit_s: float = 120.0
+    memory_gb: float = 4.0
+
+
+def stability(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0, or for one value 1 where it is not held.
+
+    Raises
+    ------
+    CrankcheckError
+        An unknown case, engine or profile, a value that has no reference, or a folder that can
+        not be written.
+    """
+    cases = _cases(request.cases)
+    engines = chosen_engines(request.engines)
+    profiles = [name for name, _ in chosen_profiles(request.profiles or PROFILES, engines)]
+    limits = checked_limits(request.limit_s, request.memory_gb)
+    if request.at is not None:
+        return _single(cases, request, engines, profiles, limits, console)
+    if request.folder is not None:
+        check_folder(request.folder, "-o", (FILE, TABLE, PAGE))
+        _keep_others(request.folder, {case.name for case in cases})
+    lines = [
+        Line(case.name, engine_, profile)
+        for case, engine_, profile in itertools.product(cases, engines, profiles)
+    ]
+    with progress_bar(progress, "lines", len(lines)) as advance:
+        held = run_lines(lines, request.jobs or processors(), limits, lambda _: advance())
+    matrix = Matrix(
+        facts=_facts(engines),
+        cases=tuple(case.facts() for case in cases),
+        runs=tuple(run for one in held for run in one.runs),
+        critical=tuple(one.critical for one in held),
+        pictures=tuple(picture for one in held for picture in one.pictures),
+    )
+    try:
+        if request.folder is not None:
+            _write(request.folder, matrix)
+    finally:  # a full disk costs the file, and not the result with it
+        show(console, matrix)
+    if request.folder is not None:
+        names = ", ".join((FILE, TABLE, PAGE))
+        console.print(f"{request.folder}: {names}", markup=False, highlight=False)
+    return 0
+
+
+def _cases(names: Sequence[str]) -> list[Case]:
+    """The named cases, or all."""
+    for name in names:
+        if name not in CATALOGUE:
+            near = difflib.get_close_matches(name, CATALOGUE, n=3, cutoff=0.4)
+            hint = f"did you mean {' or '.join(near)}?" if near else f"use {', '.join(CATALOGUE)}"
+            raise CrankcheckError(f"case {name!r}: unknown; {hint}")
+    return [CATALOGUE[name] for name in dict.fromkeys(names or CATALOGUE)]
+
+
+def _keep_others(folder: Path, wanted: set[str]) -> None:
+    """Refuse to put a few cases in the place of a matrix that holds others as well."""
+    try:
+        stored = {case.name for case in read_matrix(folder).cases}
+    except CrankcheckError:
+        return  # there is none, or none that can be read
+    if others := stored - wanted:
+        raise CrankcheckError(
+            f"-o {folder}: holds a matrix with {count(len(others), 'case')} not run now "
+            f"({', '.join(sorted(others)[:3])}); name another folder, or run these cases as well"
+        )
+
+
+def _single(
+    cases: Sequence[Case],
+    request: Request,
+    engines: Sequence[str],
+    profiles: Sequence[str],
+    limits: Limits,
+    console: Console,
+) -> int:
+    """One value of one case, in full."""
+    value = request.at
+    assert value is not None
+    if len(cases) != 1:
+        raise CrankcheckError(f"--at {value:g}: a value of one case; found {len(cases)}, name one")
+    if request.folder is not None:
+        raise CrankcheckError("--at and -o: one value is shown and not stored; leave one of them")
+    case, code = cases[0], 0
+    case.refuse(value)
+    for name, profile in itertools.product(engines, profiles):
+        found = run_one(Line(case.name, name, profile), value, limits)
+        show_run(console, case.facts(), found)
+        code = max(code, int(found.outcome not in case.good))
+    return code
+
+
+def _facts(engines: Sequence[str]) -> Mapping[str, str]:
+    return provenance({name: engine(name).version() for name in engines})
+
+
+def _write(folder: Path, matrix: Matrix) -> None:
+    """The matrix as JSON, its runs as a table, and its page."""
+    from reports.page.build import stability_page
+
+    write(folder / FILE, to_json(matrix))
+    rows = [vars(run) | {"command": command(run)} for run in matrix.runs]
+    write(folder / TABLE, pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"))
+    write(folder / PAGE, stability_page(matrix))

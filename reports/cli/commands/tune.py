@@ -1,0 +1,219 @@
+"""`crankcheck tune`: search an engine's settings for the cheapest that reach a target error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from models.errors import CrankcheckError
+from models.files import find_scene, read_text
+from reports.judge.three_steps import AT_ROUNDING
+from reports.output.provenance import crankcheck_version, provenance
+from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.key import MEASURE, digest
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import LEAST_STEPS_PER_TURN, positive
+from reports.tune.attempt import MOST_STEPS, Attempt, Bench, Goal, LostError, Row
+from reports.tune.cost import Settings
+from reports.tune.knobs import Space, space_of
+from reports.tune.search import Plan, attempts, best_of, nearest_of, plainer, search
+from reports.tune.storage import check_storage, study_in
+from reports.tune.table import Side, footer, show
+from reports.tune.timing import times
+from reports.workers.isolated import Limits
+from reports.workers.progress import progress_bar
+from reports.workers.signals import Stopped
+from sim.registry import engine
+from sim.settings import profile_of, resolved
+
+PROFILE = "tuned"
+"""The profile that is searched around, and compared with."""
+MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
+RUN_S = 20.0
+"""The longest time for a run [s]."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `tune` was asked for, as given."""
+
+    scenes: Sequence[str]
+    engine: str
+    target: float
+    budget: int = 60
+    seed: int = 0
+    turns: float = 2.0
+    output: Path | None = None
+    limit_s: float = RUN_S
+    timing: bool = True
+
+
+def run_tune(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 when settings reach the target, 1 when none do.
+
+    Raises
+    ------
+    CrankcheckError
+        Anything about the request that can be told before the search.
+    """
+    goal = _goal(request)
+    base = resolved(profile_of(engine(goal.engine), goal.profile), None)
+    space = space_of(goal.engine).around(base)
+    if request.output is not None:
+        check_storage(request.output)
+    limits = Limits(request.limit_s)
+    bench = Bench(goal, [space.work(scene) for scene in goal.scenes], limits)
+    try:
+        bench.refuse_unsupported(base)
+        found = _searched(request, bench, space, base, progress)
+        best, first = best_of(found), _of(found, base)
+        tried: list[Attempt] = []
+        if best is not None:
+            best, tried = plainer(space, first, best, bench.attempt)
+        columns = {
+            f"profile {goal.profile}": first,
+            "found": best or nearest_of(found),
+        }
+        sides = [Side(title, one, _rows(bench, one)) for title, one in columns.items()]
+    finally:
+        bench.close()
+    if request.timing and (taken := times(goal, list(columns.values()), limits)):
+        sides = [replace(side, taken=one) for side, one in zip(sides, taken, strict=True)]
+    show(console, goal, space, sides)
+    if best is not None:
+        _snippet(console, goal, best)
+    else:
+        console.print(Text(_unreached(goal, columns["found"]), "bold red"))
+    around = len(goal.scenes) + sum(len(side.rows) for side in sides)
+    facts = provenance({goal.engine: engine(goal.engine).version()})
+    how = _how(request, found, tried, around)
+    console.print(Text(footer(goal, how, facts), "dim"), highlight=False)
+    return 0 if best else 1
+
+
+def _how(request: Request, found: Sequence[Attempt], tried: Sequence[Attempt], around: int) -> str:
+    """How many trials and runs it took; ``around`` are the runs before and after the search."""
+    after = sum(one.runs for one in tried)
+    late = sum(one.timed_out for one in (*found, *tried))
+    lost = (
+        f" The clock ended {late} of what was tried (--limit-s {request.limit_s:g}), which is not "
+        "kept: where runs are quicker, a search may find otherwise."
+    )
+    return (
+        f"Seed {request.seed}: {len(found)} trials, of which {sum(a.reached for a in found)} reach "
+        f"the target; {sum(one.runs for one in found) + after + around} runs in all, {after} of "
+        "them to set back what gains nothing."
+    ) + (lost if late else "")
+
+
+def _goal(request: Request) -> Goal:
+    """What is asked for, checked."""
+    target, budget, seed = request.target, request.budget, request.seed
+    if not AT_ROUNDING <= target < COARSEST:
+        raise CrankcheckError(
+            f"--target {target:g}: give an error of place from {AT_ROUNDING:g}, which is rounding, "
+            f"to under {COARSEST:g}, such as 1e-6"
+        )
+    if not 1 <= budget <= MOST_BUDGET:
+        raise CrankcheckError(f"--budget {budget}: give a number of trials, 1 to {MOST_BUDGET}")
+    if not 0 <= seed <= MOST_SEED:
+        raise CrankcheckError(f"--seed {seed}: give a whole number, 0 to {MOST_SEED}")
+    positive("--limit-s", request.limit_s, "seconds for a run, such as 20")
+    if not request.scenes:
+        raise CrankcheckError("tune: name a scene or several, such as fourbar-lecture-1")
+    positive("--turns", request.turns, "turns; 1 is one period of the driver")
+    name = chosen_engines([request.engine])[0]
+    goal = Goal(tuple(chosen_scenes(request.scenes)), name, PROFILE, target, request.turns)
+    if goal.most < goal.least:
+        raise CrankcheckError(
+            f"--turns {request.turns:g}: a run of a search has {MOST_STEPS} steps at most; take "
+            f"{MOST_STEPS / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
+        )
+    for scene in goal.scenes:
+        refuse_singular(scene, goal.turns * scene.driver.law.period_s)
+    return goal
+
+
+def _searched(
+    request: Request, bench: Bench, space: Space, base: Settings, progress: Console
+) -> list[Attempt]:
+    """All trials; where they are cut short, what is kept is said."""
+    with study_in(request.output, _asked(request, bench.goal, space, base)) as study:
+        there = min(len(attempts(study)), request.budget)
+        try:
+            with progress_bar(progress, "trials", request.budget - there) as advance:
+                plan = Plan(space, base, bench.goal.target, request.budget, request.seed)
+                return search(study, plan, bench.attempt, advance)
+        except Stopped:
+            if request.output is not None:
+                progress.print(
+                    f"{len(attempts(study))} of {request.budget} trials are kept in "
+                    f"{request.output}; the same command goes on from there",
+                    markup=False,
+                    highlight=False,
+                    soft_wrap=True,
+                )
+            raise
+
+
+def _asked(request: Request, goal: Goal, space: Space, base: Settings) -> dict[str, object]:
+    """All that the results of the trials depend on, as plain values."""
+    texts = [read_text(find_scene(name)) for name in request.scenes]
+    return {
+        "scene": [scene.name for scene in goal.scenes],
+        "scene text": list(dict.fromkeys(digest(text) for text in texts)),
+        "engine": goal.engine,
+        "engine version": engine(goal.engine).version(),
+        "crankcheck version": crankcheck_version(),
+        "Optuna version": version("optuna"),
+        "target": goal.target,
+        "turns": goal.turns,
+        "seed": request.seed,
+        "limit_s": request.limit_s,
+        "profile": dict(base),
+        "knobs": {knob.name: list(knob.values) for knob in space.knobs},
+        "starts": [dict(start) for start in space.starts],
+        "model of cost": [space.work(scene)(base) for scene in goal.scenes],
+        "measure": MEASURE,
+    }
+
+
+def _of(found: Sequence[Attempt], settings: Settings) -> Attempt:
+    """What came of some settings that were tried."""
+    return next(one for one in found if dict(one.settings) == dict(settings))
+
+
+def _rows(bench: Bench, one: Attempt) -> list[Row]:
+    """The rows of an attempt at its step, one per scene; none where one is lost."""
+    try:
+        return [bench.row(scene, one.settings, one.tried) for scene in bench.goal.scenes]
+    except LostError:
+        return []
+
+
+def _snippet(console: Console, goal: Goal, best: Attempt) -> None:
+    """The settings to copy, at the speed of the first scene."""
+    from reports.results.snippets import snippet
+
+    period_s = goal.scenes[0].driver.law.period_s
+    text = snippet(goal.engine, best.settings, float(best.tried), period_s)
+    console.print()
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _unreached(goal: Goal, nearest: Attempt) -> str:
+    """What came nearest."""
+    if nearest.reason:
+        return f"NOTHING REACHES {goal.target:g}; {nearest.reason}"
+    if math.isinf(nearest.error):
+        return f"NOTHING REACHES {goal.target:g}: no run came to its end"
+    return (
+        f"NOTHING REACHES {goal.target:g}: nearest is {nearest.error:.2e} in {nearest.scene} with "
+        f"{nearest.tried} steps per turn; take a larger target, or a larger --budget"
+    )

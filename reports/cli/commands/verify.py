@@ -1,0 +1,232 @@
+"""`crankcheck verify`: run, compare, judge, show, write."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+from rich.console import Console
+from rich.progress import Progress
+
+from models.errors import CrankcheckError
+from reports.diff.changes import FACTOR, Diff, compare
+from reports.diff.junit import joined
+from reports.diff.reading import read_run, scene_digests
+from reports.diff.runs import Run, planned_run, run_of
+from reports.diff.terminal import show as show_diff
+from reports.judge.cell import Cell, Checked
+from reports.judge.frames import cell_frame, error_frame, parquet
+from reports.judge.rows import cell_row
+from reports.judge.tolerance import parse
+from reports.output.json_numbers import finite
+from reports.output.notice import tell
+from reports.output.provenance import provenance
+from reports.output.write import check_different, check_file, check_folder, write
+from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
+from reports.plan.singular import passage_note, refuse_singular
+from reports.plan.steps import counted
+from reports.verify.junit import junit
+from reports.verify.table import show
+from reports.workers.pool import check_all
+from sim.engine import Drive
+from sim.registry import engine
+
+IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What `verify` was asked for, as given; ``baseline`` is the folder of an earlier run, whose
+    errors may grow by ``factor``."""
+
+    scenes: Sequence[str]
+    engines: Sequence[str]
+    profiles: Sequence[str]
+    dt_s: float | None
+    steps_per_turn: float | None
+    turns: float
+    tolerance: Sequence[str]
+    drive: str
+    converge: bool
+    jobs: int
+    junit: Path | None
+    csv: Path | None
+    json: Path | None
+    folder: Path | None
+    baseline: Path | None = None
+    factor: float = FACTOR
+
+
+@dataclass(frozen=True)
+class Results:
+    """What there is to write: cells, where they come from, the digests of the texts of their
+    scenes, and what changed since the baseline."""
+
+    checked: Sequence[Checked]
+    facts: Mapping[str, str]
+    digests: Mapping[str, str]
+    diff: Diff | None = None
+
+
+def verify(request: Request, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2 not
+    to be run.
+
+    Raises
+    ------
+    CrankcheckError
+        Anything about the request that can be told before running.
+    """
+    cells = plan(request)
+    _check_outputs(request)
+    digests = scene_digests(request.scenes)
+    for note in passages(cells):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
+    base = _baseline(request, cells, digests)
+    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("verifying", total=len(cells))
+        checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
+    facts = provenance({name: engine(name).version() for name in _engines(cells)})
+    diff = compare(base, run_of(checked, facts, digests), request.factor) if base else None
+    try:
+        _write(request, Results(checked, facts, digests, diff))
+    finally:  # a full disk costs the file, and not the verdict with it
+        show(console, checked, facts)
+        if diff:
+            console.print()
+            show_diff(console, diff)
+    return _code(checked, diff, progress)
+
+
+def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> int:
+    """The exit code; names the gated cells that could not be run."""
+    gated = [one for one in checked if one.cell.gated]
+    missing = [one for one in gated if one.verdict == "unsupported"]
+    for one in missing:
+        progress.print(f"crankcheck: {one.cell.label}: {one.reason}", markup=False, soft_wrap=True)
+    if missing:
+        return 2
+    out = any(one.verdict == "out" for one in gated)
+    return int(out or (diff is not None and diff.code() == 1))
+
+
+def plan(request: Request) -> list[Cell]:
+    """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
+    tolerance = parse(request.tolerance)
+    if request.dt_s is not None and request.steps_per_turn is not None:
+        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
+    if request.drive not in ("prescribed", "servo"):
+        raise CrankcheckError(f"--drive {request.drive!r}: unknown; use prescribed or servo")
+    scenes = chosen_scenes(request.scenes)
+    engines = chosen_engines(request.engines)
+    profiles = chosen_profiles(request.profiles, engines)
+    steps = {
+        scene.name: counted(scene, request.dt_s, request.steps_per_turn, request.turns)
+        for scene in scenes
+    }
+    for scene in scenes:
+        dt_s, count = steps[scene.name]
+        refuse_singular(scene, dt_s * count)
+    return [
+        Cell(
+            scene=scene,
+            engine=name,
+            profile=profile,
+            dt_s=dt_s,
+            steps=count,
+            gated=gated,
+            drive=cast(Drive, request.drive),
+            tolerance=tolerance,
+            converge=request.converge,
+        )
+        for scene in scenes
+        for dt_s, count in [steps[scene.name]]
+        for profile, gated in profiles
+        for name in engines
+    ]
+
+
+def passages(cells: Sequence[Cell]) -> list[str]:
+    """What is to be said of change points, once for every scene and duration of the cells."""
+    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in cells}
+    notes = (passage_note(scene, duration_s) for (_, duration_s), scene in runs.items())
+    return [note for note in dict.fromkeys(notes) if note]
+
+
+def _check_outputs(request: Request) -> None:
+    """Refuse outputs that can not be written, before the run."""
+    named = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
+    files = [(option, path) for option, path in named.items() if path is not None]
+    for option, path in files:
+        check_file(path, option)
+    if request.folder is not None:
+        check_folder(request.folder, "-o", IN_FOLDER)
+        files += [("-o", request.folder / name) for name in IN_FOLDER]
+    check_different(files)
+
+
+def _engines(cells: Sequence[Cell]) -> list[str]:
+    return list(dict.fromkeys(cell.engine for cell in cells))
+
+
+def _baseline(request: Request, cells: Sequence[Cell], digests: Mapping[str, str]) -> Run | None:
+    """The cells of the baseline that are to be run now, read before anything is written over it.
+
+    Raises
+    ------
+    CrankcheckError
+        No stored run, or nothing to compare with.
+    """
+    if request.baseline is None:
+        return None
+    base = read_run(request.baseline)
+    tell(base.notice)
+    planned = planned_run(cells, digests)
+    compare(base, planned, request.factor)  # raises, where nothing is to be compared
+    return base.only(planned.cells)
+
+
+def _write(request: Request, results: Results) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    folder = request.folder
+    *texts, table = IN_FOLDER
+    for name, path in zip(texts, (request.csv, request.json, request.junit), strict=True):
+        targets = [path] if path else []
+        targets += [folder / name] if folder else []
+        for target in targets:
+            write(target, _content(name, results))
+    if folder:
+        write(folder / table, parquet(error_frame(results.checked)))
+
+
+def _content(name: str, results: Results) -> str:
+    """The text of one output."""
+    if name.endswith(".csv"):
+        return cell_frame(results.checked).to_csv(index=False, lineterminator="\n")
+    if name.endswith(".xml"):
+        text = junit(results.checked, results.facts)
+        return joined(text, results.diff) if results.diff else text
+    return _json(results)
+
+
+def _json(results: Results) -> str:
+    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
+    cells = [
+        cell_row(one)
+        | {
+            "settings": dict(one.settings),
+            "not_reported": list(one.errors.not_reported) if one.errors else [],
+            "notes": list(one.errors.notes) if one.errors else [],
+            "findings": [vars(finding) for finding in one.findings],
+        }
+        for one in results.checked
+    ]
+    content = {
+        "provenance": dict(results.facts),
+        "scenes": dict(results.digests),
+        "cells": cells,
+    }
+    return json.dumps(finite(content), indent=1) + "\n"

@@ -1,0 +1,274 @@
+"""Compare a run with the reference: total, geometric, drive and closure errors, rates and all.
+
+Total error: the reference at the commanded time. Geometric error: the reference at the crank angle
+that the engine logged, so that a crank which lags shows in the drive and not in the geometry.
+Velocities and accelerations come twice: as the engine reports them, against the reference at the
+instants they belong to; and by differencing the logged positions, against the reference
+differenced in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.forces.jolts import jolts, mass_ratio
+from analytic.kinematics import solve, solve_driven
+from models.errors import ReachError
+from models.joints import joints
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.branch import departure
+from reports.compare.change_points import WINDOW_RAD, conditioning, near
+from reports.compare.completeness import incomplete
+from reports.compare.drive_rounding import summed
+from reports.compare.errors import Error, Errors, Kind, Quantity, Source
+from reports.compare.series import Array, angle_error, length, rate, second_rate, size
+from reports.compare.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
+from sim.engine import Run
+
+SETTLING = 40
+"""Samples in which an engine that starts with closed pins comes to its steady error: rates of these
+are rows of their own, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
+EPSILON = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class _Instants:
+    """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
+    window of a change point, each (T,)."""
+
+    time_s: Array
+    driver_rad: Array
+    passed: NDArray[np.bool_]
+
+    def __getitem__(self, part: slice | NDArray[np.bool_]) -> _Instants:
+        return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
+
+
+def compare(scene: Scene, run: Run) -> Errors | None:
+    """The errors of a run, or None where it logged nothing.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that was run.
+    run : Run
+        Samples that are not finite, and bodies or pins of the scene that the log lacks, give
+        errors that are not finite.
+
+    Returns
+    -------
+    Errors or None
+        One row per quantity, body, source and kind.
+    """
+    motion = run.motion
+    if motion is None or motion.time_s.size == 0:
+        return None
+    reference = solve(scene, motion.time_s)
+    at = _instants(scene, motion.time_s, reference)
+    placed = list(tracks(scene, motion, reference, 0))
+    geometric, notes = _geometric(scene, motion, at)
+    reported, not_reported = _reported(scene, run, motion, reference)
+    jolt = jolts(scene, reference)
+    return Errors(
+        rows=(
+            _drive(scene, motion, at),
+            *(_row(track, at) for track in placed),
+            *geometric,
+            *(_row(track, at) for track in _gaps(scene, run, at)),
+            *reported,
+            *_differenced(scene, placed, at),
+        ),
+        not_reported=not_reported,
+        notes=notes,
+        curvature=curvature(scene, reference),
+        conditioning=conditioning(reference, at.driver_rad),
+        step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+        missing=(*lacking(motion, reference), *_without_gap(scene, run)),
+        incomplete=incomplete(run),
+        uncertain=_uncertain(scene, motion, reference),
+        departure=departure(scene, run, placed, at.driver_rad),
+        summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
+        jolt=float(jolt[0]),
+        worst_jolt=float(np.max(jolt)),
+        mass_ratio=mass_ratio(scene),
+        starts_in_passage=bool(np.any(at.passed[: _settled(at)])),
+    )
+
+
+def places(scene: Scene, run: Run) -> list[Error]:
+    """Drive error, total errors of place and gaps alone, without the reference's bound; none of a
+    run that logged nothing."""
+    motion = run.motion
+    if motion is None or motion.time_s.size == 0:
+        return []
+    reference = solve(scene, motion.time_s, bound=False)
+    at = _instants(scene, motion.time_s, reference)
+    found = (*tracks(scene, motion, reference, 0), *_gaps(scene, run, at))
+    return [_drive(scene, motion, at), *(_row(track, at) for track in found)]
+
+
+def _instants(scene: Scene, time_s: Array, reference: Motion) -> _Instants:
+    driver_rad = scene.driver.law.at(time_s)[0]
+    return _Instants(time_s, driver_rad, near(reference.crossings, driver_rad, WINDOW_RAD))
+
+
+def _settled(at: _Instants) -> int:
+    """The number of samples that are the start."""
+    return min(SETTLING, at.time_s.size // 4)
+
+
+def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = "total") -> Error:
+    """A track as numbers."""
+    measured = size(length(track.error))
+    return Error(
+        quantity=track.quantity,
+        body_kind=track.body_kind,
+        body=track.body,
+        source=source,
+        kind=kind,
+        unit=track.unit,
+        scale=track.scale,
+        maximum=measured.maximum,
+        rms=measured.rms,
+        final=measured.final,
+        time_of_maximum_s=float(at.time_s[measured.index]),
+        driver_at_maximum_rad=float(at.driver_rad[measured.index]),
+        bound=float(np.max(track.bound, initial=0.0)),
+        samples=int(track.error.shape[0]),
+    )
+
+
+def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
+    """A rate as rows of its parts: the first samples, those at change points, and the rest."""
+    first = np.arange(at.time_s.size) < _settled(at)
+    parts: tuple[tuple[Kind, NDArray[np.bool_]], ...] = (
+        ("start", first),
+        ("total", ~first & ~at.passed),
+        ("passage", ~first & at.passed),
+    )
+    for kind, part in parts:
+        if np.any(part):
+            cut = replace(track, error=track.error[part], bound=track.bound[part])
+            yield _row(cut, at[part], source, kind)
+
+
+def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
+    """How far the driver is from where it was told to be."""
+    name = scene.driver.link
+    magnitude = float(np.max(np.abs(at.driver_rad)))
+    error = angle_error(_crank(scene, motion), at.driver_rad)
+    bound = 2 * EPSILON * np.abs(at.driver_rad)
+    return _row(Track("drive", "driver", name, error, bound, magnitude, 1.0, "rad"), at)
+
+
+def _crank(scene: Scene, motion: Motion) -> Array:
+    """The logged angle of the driver [rad], NaN where there is none."""
+    crank = motion.links.get(scene.driver.link)
+    return fitting(None if crank is None else crank.theta, motion.time_s)
+
+
+def _geometric(scene: Scene, motion: Motion, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
+    """Errors against the reference at the logged crank angle, or a note that says why not."""
+    theta = _crank(scene, motion)
+    if not np.all(np.isfinite(theta)):
+        return [], ("no geometric error: the logged crank angle is not finite",)
+    still = np.zeros_like(theta)
+    try:
+        reference = solve_driven(scene, theta, still, still, motion.time_s, bound=False)
+    except ReachError as error:
+        return [], (f"no geometric error: the logged crank left its range ({error})",)
+    found = tracks(scene, motion, reference, 0)
+    return [_row(track, at, kind="geometric") for track in found], ()
+
+
+def _gaps(scene: Scene, run: Run, at: _Instants) -> Iterable[Track]:
+    """How far the bodies that share a pin or slider have come apart; NaN where the run is silent
+    about one that the scene has."""
+    none = np.zeros_like(at.time_s)
+    for name in dict.fromkeys((*_shared(scene), *run.gaps)):
+        kind: Literal["slider", "point"] = "slider" if name in scene.sliders else "point"
+        gap = fitting(run.gaps.get(name), none)
+        yield Track("gap", kind, name, gap, none, 0.0, scene.longest_m, "m")
+
+
+def _shared(scene: Scene) -> tuple[str, ...]:
+    """The pins that two bodies or more share, and the sliders."""
+    return (*(pin.point for pin in joints(scene).pins), *scene.sliders)
+
+
+def _without_gap(scene: Scene, run: Run) -> list[str]:
+    return [f"gap of {name}" for name in dict.fromkeys(_shared(scene)) if name not in run.gaps]
+
+
+def _reported(
+    scene: Scene, run: Run, motion: Motion, reference: Motion
+) -> tuple[list[Error], tuple[str, ...]]:
+    """Velocities and accelerations as the engine gives them, and the bodies without."""
+    rows: list[Error] = []
+    missing: list[str] = []
+    for order, instants in ((1, run.velocity_time_s), (2, run.acceleration_time_s)):
+        time_s = motion.time_s if instants is None else instants
+        known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
+        at = _instants(scene, time_s, known)
+        found = list(tracks(scene, motion, known, 1 if order == 1 else 2))
+        # Silence is no fault of an engine that reports no accelerations, if it is silent of all.
+        silent = order == 2 and not run.reports_accelerations
+        if silent and all(np.all(np.isnan(track.error)) for track in found):
+            missing += [f"{track.quantity} of {track.body_kind} {track.body}" for track in found]
+            continue
+        for track in found:
+            rows += _rate_rows(track, at, "reported")
+    return rows, tuple(missing)
+
+
+def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[Error]:
+    """Velocities and accelerations from the logged positions, by central differences."""
+    if at.time_s.size < 3:
+        return
+    step_s = float(at.time_s[1] - at.time_s[0])
+    speed = scene.driver.law.peak_speed_rad_s
+    inner = at[1:-1]
+    for track in placed:
+        # The logged numbers are rounded too: that is part of what a difference is uncertain by.
+        unsure = (track.bound + EPSILON * track.magnitude)[1:-1]
+        for order, series, bound in (
+            (1, rate(track.error, step_s), unsure / step_s),
+            (2, second_rate(track.error, step_s), 4 * unsure / step_s**2),
+        ):
+            differenced = replace(
+                track,
+                quantity=QUANTITIES[track.body_kind][order],
+                error=series,
+                bound=bound,
+                scale=track.scale * speed**order,
+                unit=track.unit + ("", "/s", "/s^2")[order],
+            )
+            yield from _rate_rows(differenced, inner, "differenced")
+
+
+def _uncertain(
+    scene: Scene, motion: Motion, reference: Motion
+) -> dict[tuple[Quantity, str], float]:
+    """The largest bound of the reference per quantity and body, as a pure number."""
+    return {
+        (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale
+        for order in ORDERS
+        for track in tracks(scene, motion, reference, order)
+    }
+
+
+def curvature(scene: Scene, reference: Motion) -> float:
+    """The largest pure acceleration of the reference, at least 1, where it is a number."""
+    square = scene.driver.law.peak_speed_rad_s**2
+    turning = [link.alpha / square for link in reference.links.values()]
+    moving = [
+        point.acceleration / (scene.longest_m * square) for point in reference.points.values()
+    ]
+    sizes = np.concatenate([length(series) for series in turning + moving])
+    return float(np.max(sizes, where=np.isfinite(sizes), initial=1.0))

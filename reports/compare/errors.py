@@ -1,0 +1,119 @@
+"""What a comparison found: one `Error` per quantity and body, and the reference's own facts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
+Source = Literal["reported", "differenced"]
+Kind = Literal["total", "geometric", "start", "passage"]
+BodyKind = Literal["driver", "link", "slider", "point"]
+
+
+@dataclass(frozen=True)
+class Error:
+    """One error series in numbers, in ``unit``.
+
+    ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
+    driver's speed (times that length) for velocities, its square for accelerations. Rates of the
+    first steps, in which an engine takes up its pins, are of kind ``start``, those of later ones
+    near a change point of kind ``passage`` (`reports.compare.change_points`). ``bound`` is the
+    largest error of the reference itself [unit].
+    """
+
+    quantity: Quantity
+    body_kind: BodyKind
+    body: str
+    source: Source
+    kind: Kind
+    unit: str
+    scale: float
+    maximum: float
+    rms: float
+    final: float
+    time_of_maximum_s: float
+    driver_at_maximum_rad: float
+    bound: float
+    samples: int
+
+    @property
+    def pure(self) -> float:
+        """The maximum as a pure number."""
+        return self.maximum / self.scale
+
+    @property
+    def pure_bound(self) -> float:
+        """The reference's own error as a pure number."""
+        return self.bound / self.scale
+
+    @property
+    def tolerance(self) -> str:
+        """The name of the tolerance that a total error is held to."""
+        return self.quantity + ("-differenced" if self.source == "differenced" else "")
+
+    @property
+    def finite(self) -> bool:
+        return math.isfinite(self.maximum)
+
+
+@dataclass(frozen=True)
+class Departure:
+    """Where a run went over to the other assembly: link, time [s] and commanded driver angle."""
+
+    link: str
+    time_s: float
+    driver_rad: float
+
+
+@dataclass(frozen=True)
+class Errors:
+    """All errors of one run.
+
+    ``curvature`` is the largest pure acceleration of the reference (at least 1) and
+    ``conditioning`` its smallest sine of a transmission angle, away from the change points that it
+    goes through: both say how hard the scene is. ``step_rad`` is the driver's peak speed times the
+    time between two steps. ``missing`` names what the scene has and the log has not; ``incomplete``
+    says what the time stamps lack of those that were commanded, and is empty where they are whole.
+    ``uncertain`` is what the reference may be wrong by, per quantity and body over the whole run,
+    as a pure number: the same for every engine, whatever it reports. ``departure`` is None where
+    the run stayed on its branch. ``summed_rad`` is the most that rounding makes of the driver's
+    angle in an engine that adds it up step by step: it is what grows with the number of steps
+    (`reports.compare.drive_rounding`). ``jolt`` is how much an engine may make up for at its start,
+    over a step, as a pure number, ``worst_jolt`` the most of it over the run, and ``mass_ratio``
+    the mass of the heaviest body over that of the lightest (`analytic.forces.jolts`).
+    ``starts_in_passage`` says that one of the first samples is near a change point.
+    """
+
+    rows: tuple[Error, ...]
+    not_reported: tuple[str, ...]
+    notes: tuple[str, ...]
+    curvature: float
+    conditioning: float
+    step_rad: float
+    missing: tuple[str, ...] = ()
+    incomplete: str = ""
+    uncertain: Mapping[tuple[Quantity, str], float] = field(default_factory=dict)
+    departure: Departure | None = None
+    summed_rad: float = 0.0
+    jolt: float = 0.0
+    worst_jolt: float = 0.0
+    mass_ratio: float = 1.0
+    starts_in_passage: bool = False
+
+    def worst(
+        self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"
+    ) -> Error | None:
+        """The largest error of a quantity as a pure number (not finite counts as largest)."""
+        return largest(
+            row
+            for row in self.rows
+            if (row.quantity, row.source, row.kind) == (quantity, source, kind)
+        )
+
+
+def largest(rows: Iterable[Error]) -> Error | None:
+    """The row with the largest pure error; one that is not finite is larger than any."""
+    return max(rows, key=lambda row: row.pure if row.finite else math.inf, default=None)

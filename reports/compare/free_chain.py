@@ -1,0 +1,142 @@
+"""A chain of windows, left free in an engine and held to its closed form
+(`analytic.free.window_chain`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.free.window_chain import Turning
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.window_chain import Chain
+from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
+from reports.compare.errors import Departure
+from reports.compare.series import Array
+from sim.engine import Engine, Run, SettingValue
+from sim.run import run
+
+
+@dataclass(frozen=True)
+class Held:
+    """How an engine held a chain, at the logged samples, shape (T,).
+
+    ``place_m`` is the distance of B0 from where it should be [m]; ``energy_j`` the energy, at the
+    instants of the velocities, less that of the start in the closed form [J]; ``lean_rad`` the
+    largest angle between two rockers, or of a coupler to the ground line [rad], all 0 in truth;
+    ``gap_m`` the largest gap of a pin [m].
+    """
+
+    chain: Chain
+    run: Run
+    time_s: Array
+    place_m: Array
+    energy_j: Array
+    lean_rad: Array
+    gap_m: Array
+
+    @property
+    def energy_drift(self) -> float:
+        """The largest change of the energy, over the 2 m g l P that rises and falls in a turn.
+
+        Of a chain without weight, over the energy of the start.
+        """
+        turning = Turning(self.chain)
+        scale = turning.exchanged_j or _start_j(turning)
+        return float(np.max(np.abs(self.energy_j))) / scale
+
+    @property
+    def left(self) -> Departure | None:
+        """Where a rod began to leave the others, if one came to stand at an angle to them while
+        the pins were closed; the rod, and the angle of the first rocker there."""
+        closed = self.gap_m < CLOSED * self.chain.length_m
+        away = np.flatnonzero(closed & ~(self.lean_rad < AWAY_RAD))
+        if not away.size or self.run.motion is None:
+            return None
+        here = np.flatnonzero(self.lean_rad[: away[0]] < HERE_RAD)
+        index = int(here[-1]) if here.size else 0
+        angle = self.run.motion.links["rocker0"].theta[index]
+        rod = _leaning(self.chain, self.run.motion, int(away[0]))
+        return Departure(rod, float(self.time_s[index]), float(angle))
+
+    def place_until(self, time_s: float) -> float:
+        """The largest error of B0 up to a time [m]; NaN if the run ended before it."""
+        if self.time_s[-1] < time_s - 1e-9:
+            return float("nan")
+        return float(np.max(self.place_m[self.time_s <= time_s + 1e-9]))
+
+
+def hold(
+    chain: Chain,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    duration_s: float,
+    every: int = 1,
+    settings: Mapping[str, SettingValue] | None = None,
+) -> Held:
+    """Run a chain from upright, free, for ``duration_s`` in steps of ``dt_s``, and compare.
+
+    Logged is every ``every``-th step. Raises CrankcheckError, as `sim.run.run` does, and for a run
+    that did not start.
+    """
+    start = Turning(chain).motion(np.array([0.0])).state(0)
+    steps = max(round(duration_s / dt_s / every), 1) * every
+    found = run(
+        chain.scene(),
+        start,
+        engine,
+        profile,
+        dt_s=dt_s,
+        steps=steps,
+        every=every,
+        drive="free",
+        settings=settings,
+    )
+    return compared(chain, found)
+
+
+def compared(chain: Chain, found: Run) -> Held:
+    """The comparison of a free run of the chain. Raises CrankcheckError for one without a log."""
+    if found.motion is None or found.energy is None:
+        why = found.reason or f"it was run under the drive {found.drive}"
+        raise CrankcheckError(f"{found.scene} in {found.engine}: no free motion to compare: {why}")
+    motion, turning = found.motion, Turning(chain)
+    theta, _, _ = turning.at(motion.time_s)
+    arm = chain.length_m * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    with np.errstate(all="ignore"):  # what has come apart may overflow
+        return Held(
+            chain,
+            found,
+            motion.time_s,
+            np.hypot(*(motion.points["B0"].position - arm).T),
+            found.energy.total_j - _start_j(turning),
+            _lean(chain, motion),
+            np.max(list(found.gaps.values()), axis=0),
+        )
+
+
+def _start_j(turning: Turning) -> float:
+    """The energy of the start [J]."""
+    theta, omega, _ = turning.at(np.array([0.0]))
+    return float(turning.energy(theta, omega)[0])
+
+
+def _leaning(chain: Chain, motion: Motion, index: int) -> str:
+    """The rod that stands at the largest angle to those that it is parallel to in truth."""
+    angles = {name: float(motion.links[name].theta[index]) for name in chain.rockers()}
+    middle = float(np.median(list(angles.values())))
+    off = {name: abs(angle - middle) for name, angle in angles.items()}
+    off |= {name: abs(float(motion.links[name].theta[index])) for name in chain.couplers()}
+    return max(off, key=lambda name: off[name])
+
+
+def _lean(chain: Chain, motion: Motion) -> Array:
+    """The largest angle between rods that are parallel in truth [rad], (T,)."""
+    rockers = np.stack([motion.links[name].theta for name in chain.rockers()])
+    couplers = [np.abs(motion.links[name].theta) for name in chain.couplers()]
+    spread: Array = np.max([np.ptp(rockers, axis=0), *couplers], axis=0)
+    return spread

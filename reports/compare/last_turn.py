@@ -1,0 +1,91 @@
+"""The last turn of a run at a few instants: how it moved, and what it was off by, with sign.
+
+What a drawing and a curve of error over crank angle need, at a hundredth of the whole log. Series
+by name: ``time_s``, ``driver_rad`` (commanded), ``drive`` [rad], ``gap`` (the largest of all pins
+and sliders) [m]; per link ``theta.LINK``, ``angle.LINK`` and ``geometric.angle.LINK`` [rad]; per
+slider ``displacement.NAME`` and ``geometric.displacement.NAME`` [m]; per point ``x.P``, ``y.P``
+[m]. Names with ``geometric.`` are against the reference at the logged crank angle, the others
+against it at the commanded time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+import numpy as np
+
+from analytic.kinematics import solve, solve_driven
+from models.errors import CrankcheckError
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import Scene
+from reports.compare.series import Array, angle_error
+from reports.compare.tracks import tracks
+from sim.engine import Run
+
+SAMPLES_PER_TURN = 90
+"""Divides the usual numbers of steps in a turn, so that cells of a line share their instants."""
+Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
+
+
+def trace(scene: Scene, run: Run) -> dict[str, Array]:
+    """The series of a run that logged something; empty where it logged nothing that is finite."""
+    if run.motion is None or run.motion.time_s.size < 2:
+        return {}
+    kept = _instants(scene, run)
+    motion = _picked(run.motion, kept)
+    time_s = motion.time_s
+    driver = scene.driver.law.at(time_s)[0]
+    crank = motion.links[scene.driver.link].theta
+    found = {
+        "time_s": time_s,
+        "driver_rad": driver,
+        "drive": angle_error(crank, driver),
+        "gap": np.max([np.abs(gap[kept]) for gap in run.gaps.values()], axis=0, initial=0.0),
+    }
+    found |= _errors(scene, motion, solve(scene, time_s, bound=False), "")
+    try:
+        still = np.zeros_like(crank)
+        at_crank = solve_driven(scene, crank, still, still, time_s, bound=False)
+        found |= _errors(scene, motion, at_crank, "geometric.")
+    except (CrankcheckError, ValueError):
+        pass  # the logged crank left its range, or is not finite: the total error says it
+    for name, link in motion.links.items():
+        found[f"theta.{name}"] = link.theta
+    for name, point in motion.points.items():
+        found[f"x.{name}"], found[f"y.{name}"] = point.position.T
+    return {name: np.ascontiguousarray(series) for name, series in found.items()}
+
+
+def _instants(scene: Scene, run: Run) -> np.ndarray:
+    """Which samples are kept: the last turn, at equal parts of it as near as the steps allow."""
+    assert run.motion is not None
+    times = run.motion.time_s
+    step_s = run.dt_s * run.every
+    per_turn = scene.driver.law.period_s / step_s
+    span = min(round(per_turn), times.size - 1)
+    parts = min(max(round(SAMPLES_PER_TURN * span / per_turn), 1), span)
+    return np.round(times.size - 1 - span + np.linspace(0, span, parts + 1)).astype(np.intp)
+
+
+def _picked(motion: Motion, kept: np.ndarray) -> Motion:
+    """The motion at some of its samples."""
+
+    def pick(body: Body) -> Body:
+        return type(body)(**{name: series[kept] for name, series in vars(body).items()})
+
+    return Motion(
+        time_s=motion.time_s[kept],
+        links={name: pick(body) for name, body in motion.links.items()},
+        points={name: pick(body) for name, body in motion.points.items()},
+        sliders={name: pick(body) for name, body in motion.sliders.items()},
+    )
+
+
+def _errors(scene: Scene, motion: Motion, reference: Motion, prefix: str) -> Mapping[str, Array]:
+    """The errors of links and sliders, which have a sign."""
+    return {
+        f"{prefix}{track.quantity}.{track.body}": track.error
+        for track in tracks(scene, motion, reference, 0)
+        if track.body_kind != "point"
+    }

@@ -1,0 +1,1 @@
+"""A mechanism and its motion in words and tables."""

@@ -1,0 +1,98 @@
+"""A motion as tables on the terminal: one position in full, or links and sliders over time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from rich.table import Table
+
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.series import Array
+
+WIDE = 100
+Columns = list[tuple[str, Array]]
+
+
+def digits(value: float) -> str:
+    """Eight significant digits, zeros at the end included; a dash for what is not determined."""
+    return "-" if math.isnan(value) else f"{value + 0.0:#.8g}"
+
+
+def position_tables(motion: Motion) -> list[Table]:
+    """Links, points and sliders at one position."""
+    links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
+    for name, link in motion.links.items():
+        theta = float(link.theta[0])
+        numbers = (math.degrees(theta), theta, float(link.omega[0]), float(link.alpha[0]))
+        links.add_row(name, *map(digits, numbers))
+    places = _table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
+    rates = _table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
+    for name, point in motion.points.items():
+        v, a = point.velocity[0], point.acceleration[0]
+        row = [*point.position[0], *v, np.hypot(*v)]
+        places.add_row(name, *(digits(float(value)) for value in row))
+        rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
+    tables = [links, places, rates]
+    if motion.sliders:
+        sliders = _table("slider", ("displacement m", "speed m/s", "acceleration m/s^2"))
+        for name, slider in motion.sliders.items():
+            row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
+            sliders.add_row(name, *(digits(float(value)) for value in row))
+        tables.append(sliders)
+    return tables
+
+
+def certainty(motion: Motion) -> str:
+    """What the reference may be wrong by, in a line."""
+    if motion.bound is None:
+        return ""
+    links = motion.bound.links.values()
+    theta = max(float(np.max(link.theta)) for link in links)
+    omega = max(float(np.max(link.omega)) for link in links)
+    alpha = max(float(np.max(link.alpha)) for link in links)
+    return (
+        f"Certain to {theta:.1e} rad, {omega:.1e} rad/s, {alpha:.1e} rad/s^2 "
+        "(rounding, over the conditioning of the dyads)."
+    )
+
+
+def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
+    """Links and sliders over time, as many bodies to a table as the terminal has room for."""
+    together = 2 if width >= WIDE else 1
+    bodies: list[tuple[str, Columns]] = [
+        (name, [("theta\nrad", m.theta), ("omega\nrad/s", m.omega), ("alpha\nrad/s^2", m.alpha)])
+        for name, m in motion.links.items()
+        if name != scene.driver.link
+    ]
+    for name, s in motion.sliders.items():
+        rates = [("speed\nm/s", s.speed), ("accel.\nm/s^2", s.acceleration)]
+        bodies.append((f"slider {name}", [("place\nm", s.displacement), *rates]))
+    driver = np.degrees(motion.links[scene.driver.link].theta)
+    tables = []
+    for first in range(0, len(bodies), together):
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        columns: Columns = [
+            ("\ntime\ns", motion.time_s),
+            (f"{scene.driver.link}\ntheta\ndeg", driver),
+        ]
+        for name, series in bodies[first : first + together]:
+            owners = (name, "", "")
+            columns += [(f"{o}\n{head}", v) for o, (head, v) in zip(owners, series, strict=True)]
+        for title, _ in columns:
+            table.add_column(title, justify="right", no_wrap=True)
+        for index in range(motion.time_s.size):
+            numbers = (float(series[index]) for _, series in columns)
+            table.add_row(*("-" if math.isnan(x) else f"{x:.7g}" for x in numbers))
+        tables.append(table)
+    return tables
+
+
+def _table(head: str, columns: Sequence[str]) -> Table:
+    table = Table(box=None, padding=(0, 1, 0, 0), title_justify="left")
+    table.add_column(head, no_wrap=True)
+    for column in columns:
+        table.add_column(column.replace(" ", "\n"), justify="right", no_wrap=True)
+    return table

@@ -1,0 +1,137 @@
+"""A mechanism to be drawn by the page: its shape, how the reference moves, and how far an engine is
+off it.
+
+The page draws ``reference + factor * displacement``; so the two are kept apart, each with its own
+scale, and an error of 1e-9 can be magnified a millionfold. Nothing here knows of cells or sections:
+any motion of a scene can be drawn with it. The drawing itself is ``assets/mechanism.js``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.laws import Oscillating
+from models.motion import Motion
+from models.scene import GROUND, Scene
+from reports.compare.series import Array, angle_error
+from reports.drawing.packed import packed
+
+Trace = Mapping[str, Array]
+INSTANTS = 91
+"""Over one period, both ends included, where no trace says which."""
+FARTHEST = 20.0
+"""Displacements are cut off at so many lengths of the longest link: a run that has come apart is
+far out of the picture, and its first errors are to be seen."""
+
+
+def instants(scene: Scene, turns: float = 1.0) -> Array:
+    """The last period of a run of some turns [s], shape (91,)."""
+    period = scene.driver.law.period_s
+    return np.linspace((turns - 1.0) * period, turns * period, INSTANTS)
+
+
+def drawn_links(scene: Scene) -> list[str]:
+    """The links whose angle a drawing needs: those that carry a guide."""
+    return list(dict.fromkeys(s.on for s in scene.sliders.values() if s.on != GROUND))
+
+
+def moving_points(scene: Scene) -> list[str]:
+    """The points that displacements are of, in their order."""
+    return [name for name in scene.pins if name not in scene.ground] + [
+        s.point for s in scene.sliders.values() if s.point not in scene.pins
+    ]
+
+
+def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[str, object]:
+    """The shape of a scene and the motion of the reference at some times [s], to be embedded.
+
+    Series by point (x, then y), by guide-bearing link (angle) and by slider (displacement).
+    ``truth`` takes the place of the driven reference, where something else is true.
+    """
+    motion = solve(scene, time_s, bound=False) if truth is None else truth
+    driver = motion.links[scene.driver.link].theta
+    points = {name: motion.points[name].position for name in moving_points(scene)}
+    links = drawn_links(scene)
+    places = np.concatenate([point.position for point in motion.points.values()])
+    return {
+        "name": scene.name,
+        "longest_m": scene.longest_m,
+        "driver": scene.driver.link,
+        "links": [{"name": x.name, "points": list(x.points)} for x in scene.links.values()],
+        "ground": {name: list(place) for name, place in scene.ground.items()},
+        "points": list(points),
+        "guides": links,
+        "sliders": [_slider(scene, name, motion) for name in scene.sliders],
+        "box": [*places.min(axis=0), *places.max(axis=0)],
+        "turning": not isinstance(scene.driver.law, Oscillating),
+        "crank_deg": np.degrees(_first_turn(driver)),
+        "places": packed(_rows(points.values(), len(time_s))),
+        "angles": packed(_stacked([motion.links[name].theta for name in links], len(time_s))),
+    }
+
+
+def displacements(
+    scene: Scene, trace: Trace, time_s: Array, truth: Motion | None = None
+) -> dict[str, object] | None:
+    """How far a traced run is off the reference, or off ``truth`` at the times of the trace, at the
+    instants of a drawing.
+
+    The rows are those of the drawing's places and angles: x and y by point [m], then angles of the
+    guide-bearing links [rad]. None for a trace without times, or of another motion.
+    """
+    own = trace.get("time_s")
+    if own is None or any(f"x.{name}" not in trace for name in moving_points(scene)):
+        return None
+    motion = solve(scene, own, bound=False) if truth is None else truth
+    off = [
+        np.column_stack([trace[f"x.{name}"], trace[f"y.{name}"]]) - motion.points[name].position
+        for name in moving_points(scene)
+    ]
+    turned = [
+        angle_error(trace[f"theta.{name}"], motion.links[name].theta) for name in drawn_links(scene)
+    ]
+    rows = np.vstack([_rows(off, len(own)), _stacked(turned, len(own))])
+    period = scene.driver.law.period_s
+    shift = period * round((time_s[0] - own[0]) / period)
+    rows = np.array([_at(time_s, own + shift, row, period) for row in rows])
+    reach = FARTHEST * scene.longest_m
+    return packed(np.clip(rows, -reach, reach))
+
+
+def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
+    """A slider: whose point on which guide, the guide's angle there, and how far it runs."""
+    slider = scene.sliders[name]
+    travel = motion.sliders[name].displacement
+    return {
+        "point": slider.point,
+        "on": slider.on,
+        "angle": slider.direction_rad,
+        "reach": [float(travel.min()), float(travel.max())],
+        "along": packed(travel),
+    }
+
+
+def _first_turn(angle_rad: Array) -> Array:
+    """Angles that start in the first turn: whole turns are taken off."""
+    return np.asarray(angle_rad - math.tau * math.floor(float(angle_rad[0]) / math.tau + 1e-9))
+
+
+def _rows(vectors: Iterable[Array], samples: int) -> Array:
+    """Vectors (T, 2) as rows: x and y of each."""
+    found = [vector.T for vector in vectors]
+    return np.vstack(found) if found else np.zeros((0, samples))
+
+
+def _stacked(series: list[Array], samples: int) -> Array:
+    return np.vstack(series) if series else np.zeros((0, samples))
+
+
+def _at(time_s: Array, own_s: Array, row: Array, period_s: float) -> Array:
+    """A row at other times: as it is where they are the same, else by straight lines between."""
+    if len(own_s) == len(time_s) and np.allclose(own_s, time_s, rtol=0.0, atol=1e-9 * period_s):
+        return row
+    return np.interp(time_s, own_s, row, left=math.nan, right=math.nan)

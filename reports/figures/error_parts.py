@@ -1,0 +1,123 @@
+"""The error over the crank angle, split into what a user can turn.
+
+A panel for each variant, at one step. The parts are those of `reports.results.error_parts`, with
+sign: drive, model floor and discretisation add up to the total; the gap of the pins stands beside
+them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
+
+from reports.compare.series import Array
+from reports.figures.grids import grid
+from reports.figures.marks import label
+from reports.figures.style import INK, TINY, power_of_ten
+from reports.results.error_parts import Parts, Split, split, worst_body
+from reports.results.fits.words import short
+from reports.results.lines import Line, named
+from reports.results.origin import notes
+from reports.results.overview import Report
+from reports.results.points import ends
+
+STEPS = 720
+"""Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""
+Look = dict[str, Any]
+LOOKS: dict[str, tuple[str, Look]] = {
+    "total": ("total", {"color": "#cccccc", "linewidth": 3.0}),
+    "drive": ("drive: crank not where it is told to be", {"color": "#2f7d4c", "dashes": (1, 1)}),
+    "floor": ("model floor: left at a step of zero", {"color": "#c04a1d", "dashes": (4, 1.5)}),
+    "discretisation": ("discretisation: falls with the step", {"color": INK}),
+    "geometric": ("floor and discretisation, not told apart", {"color": INK, "dashes": (7, 1.5)}),
+    "gap": ("closure: gap of the pins / L", {"color": "#4a90c9", "dashes": (5, 1.2, 1, 1.2)}),
+}
+"""Legend and line of each part, in the order in which they are drawn."""
+
+
+def draw(report: Report, scene: str) -> Figure | None:
+    """The panels of a scene; None where there is nothing to split."""
+    lines, known = report.lines_of(scene), report.scenes[scene]
+    body = None if known is None else worst_body(lines, report.stored.trace, known.longest_m)
+    if known is None or body is None:
+        return None
+    found = [_cell(line, split(line, report.stored.trace, body, known.longest_m)) for line in lines]
+    unit = "rad" if body.scale == 1.0 else "L"
+    titles = [label(named(line)) for line in lines]
+    steps = {one.steps_per_turn for one in found if one is not None}
+    at = " and ".join(f"{n:g}" for n in sorted(steps))
+    title = f"Error over the crank angle: {scene}, {body.name}, {at} steps per turn"
+    labels = (f"angle of {known.driver.link} [deg]", f"error of {body.name} [unit in the panel]")
+    drawn = {name for one in found if one is not None for name, _ in curves(one.parts)}
+    entries = [(Line2D([], [], **LOOKS[n][1]), LOOKS[n][0]) for n in LOOKS if n in drawn]
+    figure, axes = grid(titles, title, labels, entries, notes(report, lines), apart=True)
+    for line, one, panel in zip(lines, found, axes, strict=True):
+        if one is None:
+            panel.set(xticks=[], yticks=[])
+            panel.text(0.5, 0.5, ends(line) or "no trace", ha="center", transform=panel.transAxes)
+        else:
+            _panel(panel, one, unit)
+    return figure
+
+
+@dataclass(frozen=True)
+class Cell:
+    """The cell of a line that is shown, what there is to say of its floor, and the power of ten
+    that its errors are drawn in."""
+
+    steps_per_turn: float
+    parts: Parts
+    floor: str
+
+    @property
+    def scale(self) -> float:
+        largest = max(float(np.max(np.abs(curve))) for _, curve in curves(self.parts))
+        return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
+
+
+def curves(parts: Parts) -> Iterator[tuple[str, Array]]:
+    """The parts that there are, by the names of `LOOKS`; what is told apart is not drawn whole."""
+    for name in LOOKS:
+        curve = getattr(parts, name)
+        if curve is not None and not (name == "geometric" and parts.floor is not None):
+            yield name, curve
+
+
+def _cell(line: Line, found: Split) -> Cell | None:
+    """The cell that ended well with the number of steps nearest to `STEPS`; None without one."""
+    rows = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(found.cells))]
+    if rows.empty:
+        return None
+    away = [abs(math.log(n / STEPS)) for n in rows["steps_per_turn"]]
+    row = rows.iloc[int(np.argmin(away))]
+    if math.isnan(found.floor):
+        floor = "floor not told apart"
+    else:
+        floor = f"floor {short(found.floor)}" if found.seen else "no floor seen"
+    return Cell(float(row["steps_per_turn"]), found.cells[str(row["key"])], floor)
+
+
+def _panel(axes: Axes, cell: Cell, unit: str) -> None:
+    """The curves of a cell over the angle of the driver, from its first turn on."""
+    driver = cell.parts.driver_rad
+    turn = np.degrees(driver - math.tau * math.floor(driver[0] / math.tau + 1e-9))
+    for name, curve in curves(cell.parts):
+        axes.plot(turn, curve / cell.scale, **LOOKS[name][1])
+    axes.set_xlim(float(turn.min()), float(turn.max()))
+    axes.xaxis.set_major_locator(MultipleLocator(90.0) if np.ptp(turn) > 180 else MaxNLocator(4))
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle % 360:g}"))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.16 * (high - low))  # room for the words
+    paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
+    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
+    axes.text(0.03, 0.96, f"[{power_of_ten(cell.scale)} {unit}]", ha="left", **words)
+    axes.text(0.97, 0.96, cell.floor, ha="right", **words)

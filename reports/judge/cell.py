@@ -1,0 +1,184 @@
+"""One cell of a verification: scene x engine x profile x step; run it, compare it, judge it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Literal
+
+import numpy as np
+
+from analytic.forces.jolts import mass_ratio
+from analytic.kinematics import solve
+from models.errors import CrankcheckError, EngineError
+from models.motion import State
+from models.scene import Scene
+from reports.compare.compare import compare
+from reports.compare.errors import Departure, Errors
+from reports.judge.halving import followed
+from reports.judge.rules import judge
+from reports.judge.rules.base import Evidence, Finding
+from reports.judge.three_steps import Convergence
+from reports.judge.tolerance import Limit, limits
+from sim.engine import Drive, Run, SettingValue
+from sim.run import run
+
+Runner = Callable[..., Run]
+"""What runs a cell: it takes what `sim.run.run` takes."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
+    shown and judged, and does not count for the exit code. ``settings`` override the profile."""
+
+    scene: Scene
+    engine: str
+    profile: str
+    dt_s: float
+    steps: int
+    gated: bool = True
+    drive: Drive = "prescribed"
+    tolerance: Mapping[str, float] = field(default_factory=dict)
+    converge: bool = True
+    settings: Mapping[str, SettingValue] = field(default_factory=dict)
+
+    @property
+    def turns(self) -> float:
+        return self.steps * self.dt_s / self.scene.driver.law.period_s
+
+    @property
+    def steps_per_turn(self) -> float:
+        return self.scene.driver.law.period_s / self.dt_s
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene.name}, {self.engine}, {self.profile}"
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A cell with what came of it, and the time that it took [s]; the trajectories are gone."""
+
+    cell: Cell
+    version: str
+    status: str
+    reason: str
+    stopped_at_s: float
+    settings: Mapping[str, SettingValue]
+    errors: Errors | None
+    limits: Mapping[str, Limit]
+    convergence: Convergence | None
+    findings: tuple[Finding, ...]
+    warnings: tuple[str, ...] = ()
+    wall_s: float = 0.0
+
+    @property
+    def failures(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self.findings if finding.level == "fail")
+
+    @property
+    def advice(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self.findings if finding.level == "advice")
+
+    @property
+    def verdict(self) -> Literal["within", "out", "unsupported"]:
+        if self.status == "unsupported":
+            return "unsupported"
+        return "out" if self.failures else "within"
+
+
+def check(cell: Cell) -> Checked:
+    """Run a cell at its step (and at half and a quarter of it), compare and judge it."""
+    return examined(cell)[0]
+
+
+def examined(cell: Cell, runner: Runner | None = None) -> tuple[Checked, Run | None]:
+    """As `check`, and the run at the full step, None where there is none.
+
+    ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
+    """
+    began = time.perf_counter()
+    found, done = _examined(cell, runner or run)
+    return replace(found, wall_s=time.perf_counter() - began), done
+
+
+def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
+    """As `examined`, but for the time."""
+    try:
+        state = solve(cell.scene, np.zeros(1)).state()
+        done = _run(cell, runner, state, 1)
+    except EngineError as error:
+        return unfinished(cell, "unsupported", str(error)), None
+    except CrankcheckError as error:
+        return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
+    try:
+        errors = compare(cell.scene, done)
+    except CrankcheckError as error:
+        why = f"the run has no reference to compare with: {error}"
+        return unfinished(cell, "crashed", why), done
+    status, reason = done.status, done.reason
+    if status == "ok" and errors and errors.departure:
+        status, reason = "branch-changed", _left(errors.departure)
+    in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
+    seen = None
+    if cell.converge and errors:
+        rerun = partial(_run, cell, runner, state)
+        seen = followed(cell.scene, cell.dt_s, errors, cell.tolerance, rerun)
+    evidence = Evidence(
+        status=status,
+        reason=reason,
+        stopped_at_s=done.stopped_at_s,
+        errors=errors,
+        limits=in_force,
+        convergence=seen,
+        gated=cell.gated,
+        profile=cell.profile,
+        mass_ratio=mass_ratio(cell.scene),
+    )
+    checked = Checked(
+        cell=cell,
+        version=done.version,
+        status=status,
+        reason=reason,
+        stopped_at_s=done.stopped_at_s,
+        settings=dict(done.settings),
+        errors=errors,
+        limits=in_force,
+        convergence=seen,
+        findings=judge(evidence),
+        warnings=done.warnings,
+    )
+    return checked, done
+
+
+def _left(departure: Departure) -> str:
+    """A departure in words."""
+    return (
+        f"{departure.link} left its branch at driver {math.degrees(departure.driver_rad):.1f} deg, "
+        f"t = {departure.time_s:.4g} s, and moves on in the other assembly of the closed loop"
+    )
+
+
+def unfinished(cell: Cell, status: str, reason: str) -> Checked:
+    """A cell that has no run: a row with a reason."""
+    findings = judge(Evidence(status, reason, 0.0, None, {}))
+    return Checked(cell, "", status, reason, 0.0, {}, None, {}, None, findings)
+
+
+def _run(cell: Cell, runner: Runner, state: State, finer: int) -> Run:
+    """The cell with its step cut into ``finer`` parts, logged at the same instants."""
+    return runner(
+        cell.scene,
+        state,
+        cell.engine,
+        cell.profile,
+        dt_s=cell.dt_s / finer,
+        steps=cell.steps * finer,
+        every=finer,
+        drive=cell.drive,
+        settings=cell.settings,
+    )

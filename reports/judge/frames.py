@@ -1,0 +1,28 @@
+"""Results as tidy pandas frames: every error in long form, and one row per cell."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+
+import pandas as pd
+
+from reports.judge.cell import Checked
+from reports.judge.rows import cell_row, error_rows
+
+
+def error_frame(checked: Iterable[Checked]) -> pd.DataFrame:
+    """One row per scene, engine, profile, step, quantity, body, source and kind."""
+    return pd.DataFrame([row for one in checked for row in error_rows(one)])
+
+
+def cell_frame(checked: Sequence[Checked]) -> pd.DataFrame:
+    """One row per cell, failures included with their status and reason."""
+    return pd.DataFrame([cell_row(one) for one in checked])
+
+
+def parquet(frame: pd.DataFrame) -> bytes:
+    """The content of a Parquet file that holds the frame, without its index."""
+    buffer = io.BytesIO()
+    frame.to_parquet(buffer, index=False)
+    return buffer.getvalue()

@@ -1,0 +1,119 @@
+"""What an error does when the step is halved: two finer runs of a cell, and what they show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.compare.compare import places
+from reports.compare.completeness import incomplete
+from reports.compare.errors import Error, Errors, Quantity, largest
+from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
+from reports.judge.tolerance import limits
+from sim.engine import Run
+
+PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
+CLOSED: tuple[Quantity, ...] = (*PLACES, "gap")
+HALVINGS = 2
+EXACT_DRIVE = 1e-9
+"""A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
+to it what their sums may be off by (`reports.compare.drive_rounding`)."""
+BEHIND_DRIVE = 5.0
+"""How far behind the rounding of the crank that of the other links may be."""
+
+
+def followed(
+    scene: Scene,
+    dt_s: float,
+    errors: Errors,
+    tolerance: Mapping[str, float],
+    rerun: Callable[[int], Run],
+) -> Convergence | None:
+    """The largest error of place at ``dt_s``, its half and its quarter.
+
+    The quantity that is worst at the full step is followed, at the same instants throughout.
+
+    Parameters
+    ----------
+    rerun : Callable[[int], Run]
+        The run with its step cut into so many parts, logged at the instants of the full step.
+    """
+    worst = worst_place(errors)
+    if worst is None:
+        return None
+    parts = [2**halving for halving in range(HALVINGS + 1)]
+    finer = [_finer(scene, dt_s, p, rerun) for p in parts[1:]]
+    same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
+    every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
+    drive = largest(row for row in every_row if row.quantity == "drive")
+    rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * errors.summed_rad)
+    return convergence(
+        [dt_s / p for p in parts],
+        [worst.pure, *(row.pure if row else math.nan for row in same)],
+        "rad" if worst.unit == "rad" else "of the longest link",
+        rounding,
+        faults=[fault for _, fault in finer if fault],
+        over=[
+            text
+            for p, (rows, _) in zip(parts[1:], finer, strict=True)
+            if (text := _over(scene, dt_s, errors, tolerance, p, rows, rounding))
+        ],
+    )
+
+
+def _finer(
+    scene: Scene, dt_s: float, parts: int, rerun: Callable[[int], Run]
+) -> tuple[list[Error], str]:
+    """Errors of place and gaps of a finer run, and how it did not end well: "" where it did."""
+    at = f"at dt {dt_s / parts:.3g} s"
+    try:
+        done = rerun(parts)
+        rows = places(scene, done)
+    except CrankcheckError as error:
+        return [], f"{at} there is nothing to compare: {error}"
+    if done.status != "ok":
+        return rows, f"{at} {done.status} at t = {done.stopped_at_s:.4g} s: {done.reason}"
+    short = incomplete(done)
+    return rows, f"{at} {short}" if short else ""
+
+
+def _over(
+    scene: Scene,
+    dt_s: float,
+    errors: Errors,
+    tolerance: Mapping[str, float],
+    parts: int,
+    rows: list[Error],
+    rounding: float,
+) -> str:
+    """Which errors of a finer run are over the limits of its step, the worst of each quantity.
+
+    What is over its limit at the full step fails its own rule, and is not told again.
+    """
+    before = limits(scene, errors, tolerance)
+    finer = replace(errors, step_rad=errors.step_rad / parts, summed_rad=errors.summed_rad * parts)
+    in_force = limits(scene, finer, tolerance)
+    texts = []
+    for name in CLOSED:
+        full, fine = errors.worst(name), largest(row for row in rows if row.quantity == name)
+        if full is None or fine is None or not full.pure <= before[name].number:
+            continue
+        limit = in_force[name].number
+        if not fine.pure <= max(limit, rounding):
+            texts.append(f"{name} of {fine.body} {fine.pure:.2g}, limit {limit:.2g}")
+    return f"at dt {dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
+
+
+def _rounding(drive: Error | None, exact: float) -> float:
+    """The error of place that rounding explains: a prescribed crank is off by nothing else, and by
+    no more than ``exact``."""
+    seen = drive.pure if drive is not None and drive.pure <= exact else 0.0
+    return max(AT_ROUNDING, BEHIND_DRIVE * seen)
+
+
+def worst_place(errors: Errors) -> Error | None:
+    """The largest total error of angle, displacement or position, as pure numbers."""
+    return largest(row for row in errors.rows if row.quantity in PLACES and row.kind == "total")

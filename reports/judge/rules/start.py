@@ -1,0 +1,50 @@
+"""CC116: the rates of the first samples are within what taking up the pins explains."""
+
+from __future__ import annotations
+
+import math
+
+from reports.compare.errors import Error, Errors
+from reports.judge.rules.base import SCALES, Evidence, Finding, Level, place
+from reports.judge.start_allowance import allowance
+from reports.judge.tolerance import in_passage
+
+
+class StartWithin:
+    id = "CC116"
+    title = "start"
+    explanation = (
+        "An engine may take some samples to take up its pins; its rates may jump meanwhile by "
+        "half a step's acceleration, and no further."
+    )
+    cure = (
+        "Start the engine with the velocities of the instant that its own belong to, or shorten "
+        "the step."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        errors = evidence.errors
+        rows = [row for row in errors.rows if row.kind == "start"] if errors else []
+        if errors is None or not rows:
+            return None
+        limits = {
+            row.tolerance: _settled(row.tolerance, evidence, errors)
+            + allowance(row.tolerance, errors)
+            for row in rows
+        }
+
+        def share(row: Error) -> float:
+            part = row.pure / limits[row.tolerance]
+            return math.inf if math.isnan(part) else part
+
+        worst = max(rows, key=share)
+        limit = limits[worst.tolerance]
+        level: Level = "pass" if worst.pure <= limit else "fail"
+        text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {SCALES[worst.unit]}"
+        return Finding(self.id, level, text, worst.pure, limit)
+
+
+def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:
+    """The limit that later samples are held to, near a change point if the start is."""
+    limit = evidence.limits[tolerance]
+    return (in_passage(tolerance, limit, errors) if errors.starts_in_passage else limit).number

@@ -1,0 +1,49 @@
+"""What an engine may be off by in its first samples, while it takes up its pins.
+
+An impulse engine starts with velocities that belong half a step away from where its joints want
+them. The first solution makes up for that at once, by the jolt times the step
+(`analytic.forces.jolts`); from step to step it goes on as an error of place of jolt * step^2
+(`reports.judge.tolerance`). The jump is over with the next sample, or rings off where iterations
+leave a part of it. Differenced over two steps it is half as large; differenced twice, it is an
+acceleration of the jolt itself, at every step.
+
+Measured for profile tuned at 90 to 1440 steps a turn on every shipped scene, and on a thousand
+random ones (tests/reports/judge/test_random.py), as multiples of ``step * jolt``, ``step * jolt /
+2`` and ``jolt``: pymunk up to 1.1 where its iterations come to an end, and up to 1.6 where they
+leave a fifth of an error from one step to the next, which rings. MuJoCo under 0.05.
+
+A soft constraint starts with its spring at rest: until that has given way, the accelerations are
+off by the part that the impedance leaves open, (1 - 0.9999) of the acceleration with which the
+bodies would part if the loop were open. That is about the curvature where their masses are alike;
+a light body that holds a heavy one would part with it by the ratio of their masses faster.
+
+The caps are what anyone would call wrong, whatever the theory grants: a tenth of the driver's speed
+within a step.
+"""
+
+from __future__ import annotations
+
+from reports.compare.errors import Errors
+
+ROOM = 2.0
+"""What ringing may add: 1.6 of the jolt was seen where iterations left a fifth of an error from
+step to step, and 1.1 where they left next to none."""
+OPEN = 1e-4
+"""What MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
+CAP = 0.1
+"""The most that the velocities may jump by, over the driver's speed."""
+
+
+def allowance(tolerance: str, errors: Errors) -> float:
+    """What the first samples may be off by on top of the limit ``tolerance``, as a pure number."""
+    jump = min(ROOM * errors.jolt * errors.step_rad, CAP)
+    if tolerance == "velocity":
+        return jump
+    if tolerance == "velocity-differenced":
+        return jump / 2.0
+    if tolerance == "acceleration-differenced":
+        return jump / errors.step_rad
+    if tolerance == "acceleration":
+        parting = errors.curvature * errors.mass_ratio / max(errors.conditioning, 1e-12)
+        return min(OPEN * parting, CAP)
+    return 0.0

@@ -1,0 +1,219 @@
+"""Tolerances: one per quantity, for every engine alike, as pure numbers, each with its reason.
+
+A default is a budget that follows from the step and from the scene, as the theory of the error
+says::
+
+    min(cap, (coefficient * step^order + summed) * curvature^power / conditioning
+             + share * curvature * step^s)  +  floor  +  rounding / step^k
+
+``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
+the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
+``share`` what a soft constraint may leave open of an acceleration (s = 0), and so of a velocity (s
+= 1), at every step; k is how often the quantity was differenced. ``summed`` is what rounding may
+make of the driver's angle by the end of the run [rad] (`reports.compare.drive_rounding`), which the
+mechanism passes on as it does the driver's motion: the one part that grows with the number of
+steps.
+
+For places and gaps ``curvature / conditioning`` is at least twice the largest ``jolt``, half of
+a + omega^2 r at a distance r from the centre of a body: that much, times step^2, an engine that
+solves for impulses sets bodies off to close its joints (`reports.judge.start_allowance`).
+
+A change point that the motion goes through is left out of ``conditioning``, with half a radian of
+the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
+own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
+
+``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
+budget grows without end, and an engine on the other branch must not pass.
+
+The coefficients are measured, at 90 to 1440 steps a turn on every shipped scene, and leave the
+worst engine of profile tuned a factor of two. A number given by the scene or on the command line
+is taken as it stands.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.compare.errors import Errors
+
+ROUNDING = 1e-11
+"""A pure error that rounding over a run of thousands of steps explains by itself."""
+OPEN_SHARE = 1e-3
+"""Ten times what MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """A default limit (see the module), and why it is what it is."""
+
+    reason: str
+    cap: float = math.inf
+    coefficient: float = 0.0
+    order: int = 2
+    power: float = 0.0
+    conditioned: bool = False
+    closes: bool = False
+    share: float = 0.0
+    share_order: int = 0
+    floor: float = 0.0
+    differenced: int = 0
+    rate: int = 0
+
+    def limit(self, errors: Errors) -> float:
+        """The limit for a run with this step and this scene."""
+        step, curvature = errors.step_rad, errors.curvature
+        bend = curvature**self.power
+        if self.conditioned:
+            bend /= max(errors.conditioning, 1e-12)
+        if self.closes:
+            bend = max(bend, 2.0 * errors.worst_jolt)
+        budget = (self.coefficient * step**self.order + errors.summed_rad) * bend
+        budget += self.share * curvature * step**self.share_order
+        budget = min(float(budget), self.cap)
+        return float(budget + self.floor + ROUNDING / step**self.differenced)
+
+    def passing(self, errors: Errors) -> float:
+        """The limit of a rate near a change point, where places are made good within a step."""
+        made_good = PLACE.limit(errors) / errors.step_rad**self.rate
+        return max(self.limit(errors), made_good)
+
+
+PLACE = Tolerance(
+    "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
+    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
+    "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
+    cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
+    coefficient=1.0,
+    power=1.0,
+    conditioned=True,
+    closes=True,
+)
+VELOCITY = Tolerance(
+    "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
+    "with the share of an acceleration that soft constraints keep open, over a step.",
+    cap=5e-2,  # a twentieth of the driver's speed; twice the worst at 90 steps a turn
+    coefficient=3.0,
+    power=1.5,
+    conditioned=True,
+    share=OPEN_SHARE,
+    share_order=1,
+    rate=1,
+)
+ACCELERATION = Tolerance(
+    "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
+    "engines with soft constraints keep a share of it open at every step.",
+    cap=0.5,  # twice the worst at 90 steps a turn, where second differences are coarse
+    coefficient=10.0,
+    power=2.0,
+    conditioned=True,
+    share=OPEN_SHARE,
+    rate=2,
+)
+DEFAULTS: dict[str, Tolerance] = {
+    "drive": Tolerance(
+        "Prescribed means prescribed: what rounding makes of an angle that is added up step by "
+        "step, and room for a flywheel that the mechanism slows by a part in 1e12.",
+        floor=1e-9,
+    ),
+    "angle": PLACE,
+    "displacement": PLACE,
+    "position": PLACE,
+    "gap": replace(
+        PLACE,
+        reason="The arc of a step, step^2/2 times the curvature, is all that may be open, or the "
+        "jolt that closes it, where that is more.",
+        conditioned=False,
+    ),
+    "velocity": VELOCITY,
+    "velocity-differenced": replace(
+        VELOCITY,
+        reason="Second order, with the third derivative of the motion, about curvature^1.5.",
+        share=0.0,
+        differenced=1,
+    ),
+    "acceleration": ACCELERATION,
+    "acceleration-differenced": replace(
+        ACCELERATION,
+        reason="Second order, with the fourth derivative of the motion, about curvature^2.",
+        share=0.0,
+        differenced=2,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The limit in force for one quantity, and where it comes from."""
+
+    number: float
+    origin: str
+
+
+def limits(scene: Scene, errors: Errors, overrides: Mapping[str, float]) -> dict[str, Limit]:
+    """The limit per tolerance name: command line before scene before default."""
+    chosen = {}
+    for name, default in DEFAULTS.items():
+        if name in overrides:
+            chosen[name] = Limit(overrides[name], "--tol")
+        elif name in scene.tolerance:
+            chosen[name] = Limit(scene.tolerance[name], "scene")
+        else:
+            chosen[name] = Limit(default.limit(errors), "default")
+    return chosen
+
+
+def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
+    """The limit for a rate near a change point; one that was given stands there too."""
+    if limit.origin != "default":
+        return limit
+    return Limit(DEFAULTS[name].passing(errors), "default near a change point")
+
+
+def parse(texts: Iterable[str]) -> dict[str, float]:
+    """`angle=1e-4` and the like, also several in one text with commas between.
+
+    Raises
+    ------
+    CrankcheckError
+        A text that is not NAME=NUMBER, a name that is no quantity, a number that is not positive.
+    """
+    found: dict[str, float] = {}
+    for text in (part.strip() for whole in texts for part in whole.split(",")):
+        name, equals, number = text.partition("=")
+        if not equals:
+            raise CrankcheckError(f"--tol {text!r}: no `=` in it; write it like --tol angle=1e-4")
+        found[_known(name.strip(), f"--tol {text!r}")] = _positive(number, text)
+    return found
+
+
+def check_names(scene: Scene) -> None:
+    """Refuse a scene whose [tolerance] names something that is no quantity."""
+    for name in scene.tolerance:
+        _known(name, f"scene {scene.name}, [tolerance] {name}")
+
+
+def _known(name: str, place: str) -> str:
+    """The name, or a CrankcheckError that suggests the near ones."""
+    if name in DEFAULTS:
+        return name
+    near = difflib.get_close_matches(name, DEFAULTS, n=2)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"use one of {', '.join(DEFAULTS)}"
+    raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
+
+
+def _positive(number: str, text: str) -> float:
+    """A finite number above 0."""
+    try:
+        value = float(number)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0.0):
+        raise CrankcheckError(
+            f"--tol {text!r}: {number.strip()!r} is not a number above 0; write it like angle=1e-4"
+        )
+    return value

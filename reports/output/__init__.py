@@ -1,0 +1,1 @@
+"""How anything leaves: console, Markdown, numbers, JSON, files, provenance."""

@@ -1,0 +1,236 @@
+"""A store as Markdown for a comment on a pull request: verdict, what to set, orders and floors,
+failures, and where it all comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from reports.figures.marks import label
+from reports.judge.rules import RULES
+from reports.output.markdown import code, fitted, folded, plain, table
+from reports.output.numbers import count, listed
+from reports.page.sections.verdict import level, verdict
+from reports.results.cost import MEANS, Costs
+from reports.results.fits.words import short
+from reports.results.lines import named
+from reports.results.origin import made, settings_of, study, versions
+from reports.results.overview import Report
+from reports.results.recommend import Recommendation
+from reports.results.snippets import LANGUAGE
+from reports.results.table import noise_line, short_target
+from reports.store.reader import Stored
+
+ROOM = {
+    "damage": 4_000,
+    "outside": 6_000,
+    "set": 8_000,
+    "snippets": 12_000,
+    "times": 3_000,
+    "fits": 12_000,
+    "failures": 8_000,
+    "settings": 6_000,
+}
+"""Bytes of each part: with heads and footer all stay below the 65,536 of a comment on GitHub."""
+HEADS = (
+    "error up to:",
+    "engine",
+    "settings",
+    "steps per turn:",
+    "µs per step:",
+    "ms per turn:",
+    "largest error:",
+    "on scene",
+)
+HEADLINES = {"within": "within tolerance", "out": "OUT OF TOLERANCE", "none": "no verdict"}
+
+
+def summary(stored: Stored) -> str:
+    """The text, below 60,000 bytes however large the store."""
+    report = Report(stored)
+    gated = report.cells[report.cells["gated"]]
+    parts = [
+        f"## crankcheck: {HEADLINES[level(gated)]}",
+        f"**{plain(verdict(gated))}** {_ended(report)}",
+        *_damaged(report),
+        *_outside(report),
+        "### What to set",
+        _recommended(report),
+        *_snippets(report),
+        *_times(report),
+        "### What the error does as the step shrinks",
+        _fits(report),
+        *_failures(report),
+        _footer(report),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _ended(report: Report) -> str:
+    """How many runs ended well."""
+    number, bad = len(report.cells), int((report.cells["status"] != "ok").sum())
+    rest = f"{bad} did not end well" if bad else "none failed to end well"
+    return f"Of all {count(number, 'cell')}, whatever the settings, {rest}."
+
+
+def _damaged(report: Report) -> Iterator[str]:
+    """What can not be read of the store."""
+    kept, left = fitted(report.stored.notice, ROOM["damage"])
+    if kept:
+        yield "### State of the store"
+        yield code("\n".join([*kept, *([f"and {left} more"] if left else [])]), "text")
+
+
+def _outside(report: Report) -> Iterator[str]:
+    """The gated cells that are out of tolerance, with the rules that they fail."""
+    cells = report.cells[report.cells["gated"] & (report.cells["verdict"] != "within")]
+    if cells.empty:
+        return
+    rows = [
+        (
+            row["scene"],
+            f"{row['engine']} {row['variant']}",
+            f"{row['steps_per_turn']:g}",
+            row["status"],
+            ", ".join(_rule(name) for name in str(row["failed_rules"]).split()),
+        )
+        for _, row in cells.iterrows()
+    ]
+    yield "### Out of tolerance"
+    yield table(("scene", "variant", "steps per turn:", "ended", "fails"), rows, ROOM["outside"])
+
+
+def _rule(name: str) -> str:
+    """A rule by its number and title."""
+    return f"{name} {RULES[name].title}" if name in RULES else name
+
+
+def _recommended(report: Report) -> str:
+    """The cheapest settings per target and engine."""
+    rows = [_recommendation(one) for one in report.recommendations]
+    scenes = count(len(report.scenes), "scene")
+    words = (
+        f"The cheapest that keep the error of place [rad, or of the longest link] on {scenes} "
+        "within a target; times are geometric means."
+    )
+    remarks = dict.fromkeys(_remark(one) for one in report.recommendations)
+    kept, left = fitted([f"- {plain(text)}" for text in remarks if text], ROOM["set"] // 2)
+    more = [f"- and {left} more"] if left else []
+    grid = table(HEADS, rows, ROOM["set"] // 2)
+    return "\n\n".join(filter(None, [words, grid, "\n".join([*kept, *more])]))
+
+
+def _recommendation(one: Recommendation) -> tuple[str, ...]:
+    """A row."""
+    target = short_target(one.target)
+    if one.variant is None:
+        return (target, one.engine, "none", *[""] * 5)
+    times = (f"{one.us_per_step:.2f}", f"{1e3 * one.s_per_turn:.3g}")
+    steps, error = f"{one.steps_per_turn:g}", short(one.worst_error)
+    name = label((one.engine, one.variant, one.drive)).removeprefix(f"{one.engine} ")
+    return (target, one.engine, name, steps, *times, error, str(one.worst_scene))
+
+
+def _remark(one: Recommendation) -> str:
+    """What is to be said of a recommendation; empty where there is nothing."""
+    which = f"{one.engine}, {short_target(one.target)}"
+    if one.reason:
+        return f"{which}: none; {one.reason}"
+    if not one.caution:
+        return ""
+    other = one.steadier
+    instead = (
+        f"; {other.nearest} at {other.steps_per_turn:g} holds at finer ones too" if other else ""
+    )
+    return f"{which}: holds at this step, {one.caution}{instead}"
+
+
+def _snippets(report: Report) -> Iterator[str]:
+    """Text to be copied, each behind a click; once where it is for several targets."""
+    groups: dict[tuple[str, str, str, float], list[Recommendation]] = {}
+    for one in report.recommendations:
+        if one.variant is not None:
+            same = (one.engine, one.variant, one.drive, one.steps_per_turn)
+            groups.setdefault(same, []).append(one)
+    told = []
+    for (engine, variant, _, steps), group in groups.items():
+        tightest = min(group, key=lambda one: one.target)
+        targets = listed([short_target(one.target) for one in group])
+        title = f"{engine} {variant}, {steps:g} steps per turn (error up to {targets})"
+        told.append(folded(title, code(tightest.snippet(), LANGUAGE.get(engine, ""))))
+    kept, left = fitted(told, ROOM["snippets"])
+    yield from kept
+    if left:
+        yield f"and {left} more to be copied from the page of `crankcheck report`"
+
+
+def _times(report: Report) -> Iterator[str]:
+    """What a step of each variant costs, and a turn that comes to each target."""
+    if not report.timed:
+        return
+    targets = list(report.costs[0].s_to)
+    heads = ("variant", "µs per step:", "median repeat:")
+    ends = [f"ms per turn to {short_target(target)}:" for target in targets]
+    grid = table((*heads, *ends), [_time(each) for each in report.costs], ROOM["times"], "variants")
+    yield folded("Time to reach an error", f"{grid}\n\n{plain(MEANS)}")
+
+
+def _time(costs: Costs) -> list[str]:
+    """A row; where something is not so on all scenes, on how many it is."""
+    name, part = label((costs.engine, costs.variant, costs.drive)), costs.part(costs.timed)
+    steps = [
+        f"{us:.2f}" if costs.timed else "" for us in (costs.us_per_step, costs.us_per_step_median)
+    ]
+    if costs.timed and part:
+        steps[0] += f" ({part})"
+    turns = [
+        costs.part(costs.reached[target]) or (f"{1e3 * s:.3g}" if math.isfinite(s) else "")
+        for target, s in costs.s_to.items()
+    ]
+    return [name, *steps, *turns]
+
+
+def _fits(report: Report) -> str:
+    """Order or floor in words, a row for each scene and variant."""
+    rows = [
+        (line.scene, label(named(line)), line.words, *_finest(line.fit.runs, line.period_s))
+        for line in report.lines
+    ]
+    heads = ("scene", "variant", "error of place", "finest error:", "at steps per turn:")
+    title = f"{count(len(rows), 'line')}: scene by scene and variant by variant"
+    return folded(title, table(heads, rows, ROOM["fits"]))
+
+
+def _finest(runs: tuple[tuple[float, float], ...], period_s: float) -> tuple[str, str]:
+    """The error at the finest step that ended well, and its steps per turn."""
+    if not runs:
+        return "", ""
+    dt_s, error = runs[0]
+    return short(error), f"{period_s / dt_s:.4g}"
+
+
+def _failures(report: Report) -> Iterator[str]:
+    """What did not end well, a row for each line and way of ending."""
+    rows, number = [], 0
+    for line in report.lines:
+        bad = line.cells[line.cells["status"] != "ok"]
+        for status, cells in bad.groupby("status", sort=False):
+            steps = ", ".join(f"{n:g}" for n in cells["steps_per_turn"])
+            reason = str(cells["reason"].iloc[0])
+            number += len(cells)
+            rows.append((line.scene, label(named(line)), status, steps, reason))
+    if rows:
+        heads = ("scene", "variant", "ended", "at steps per turn", "first reason")
+        body = table(heads, rows, ROOM["failures"])
+        yield "### What did not end well"
+        yield folded(f"{count(number, 'run')} of {count(len(report.cells), 'cell')}", body)
+
+
+def _footer(report: Report) -> str:
+    """Versions, processor, study, noise, and all settings."""
+    lines = report.lines
+    texts = [f"{versions(report, lines)}.", f"{made(report, report.timed)}.", f"{study(lines)}."]
+    texts += [noise_line(report.stored)]
+    told = settings_of(report, lines)
+    settings = table(("variant", "settings"), told.items(), ROOM["settings"])
+    return "\n\n".join(["  \n".join(map(plain, texts)), folded("Settings", settings)])

@@ -1,0 +1,81 @@
+"""Check the names that a user gives, before anything runs."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.errors import CrankcheckError
+from models.files import load_scene, shipped
+from models.scene import Scene
+from reports.judge.tolerance import check_names
+from sim.registry import ENGINES, engine
+
+LOOKS = 721
+"""Positions of the first look at a period; the run itself looks at every sample."""
+PROFILES = ("tuned", "as-shipped")
+
+
+def chosen_scenes(names: Sequence[str]) -> list[Scene]:
+    """The named scenes, each once; all shipped ones where none is named.
+
+    Raises
+    ------
+    CrankcheckError
+        An unknown name, a faulty file, two different scenes of one name.
+    """
+    scenes: dict[str, Scene] = {}
+    for name in names or shipped():
+        scene = load_scene(name)
+        check_names(scene)
+        _check_motion(scene)
+        if scenes.setdefault(scene.name, scene) != scene:
+            raise CrankcheckError(
+                f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
+            )
+    return list(scenes.values())
+
+
+def _check_motion(scene: Scene) -> None:
+    """Refuse a scene that has no closed form, or can not follow its driver through a period.
+
+    Raises
+    ------
+    CrankcheckError
+        A StructureError or ReachError of the reference, which names group or range.
+    """
+    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    solve(scene, turn, points=(), sliders=(), bound=False)
+
+
+def chosen_engines(names: Sequence[str]) -> list[str]:
+    """The named engines, installed all of them; all there are where none is named."""
+    found = list(dict.fromkeys(names or ENGINES))
+    for name in found:
+        engine(name).version()
+    return found
+
+
+def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
+    """Profiles with whether they are gated: those named are; by default `tuned` alone is.
+
+    Raises
+    ------
+    CrankcheckError
+        A profile that one of the engines lacks; the message suggests the near ones.
+    """
+    for name in names:
+        for each in engines:
+            known = list(engine(each).profiles)
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=2, cutoff=0.4) or known
+                raise CrankcheckError(
+                    f"profile {name!r}: {each} has none of that name; "
+                    f"did you mean {' or '.join(near)}?"
+                )
+    if names:
+        return [(name, True) for name in dict.fromkeys(names)]
+    return [(PROFILES[0], True), (PROFILES[1], False)]

@@ -1,0 +1,119 @@
+"""The cells of a study, each with the key that names its result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from models.errors import CrankcheckError
+from models.files import scene_texts
+from reports.judge.cell import Cell
+from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.key import cell_key, digest, line_key
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import counted
+from reports.plan.study import Study, Variant
+from sim.engine import SettingValue
+from sim.registry import engine
+from sim.settings import profile_of, resolved
+
+
+@dataclass(frozen=True)
+class Task:
+    """A cell with its names: ``key`` of its own, ``line`` of the cells that differ in step only.
+
+    ``settings`` is the complete set that the engine is asked for.
+    """
+
+    cell: Cell
+    key: str
+    line: str
+    variant: str
+    version: str
+    scene_digest: str
+    settings: Mapping[str, SettingValue]
+
+    @property
+    def label(self) -> str:
+        cell = self.cell
+        return f"{cell.scene.name}, {cell.engine} {self.variant}, {cell.steps_per_turn:g} a turn"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The tasks of a study, each key once, and the text of every scene by its name."""
+
+    tasks: tuple[Task, ...]
+    texts: Mapping[str, str]
+
+
+def grid(study: Study) -> Grid:
+    """Lay out a study.
+
+    Raises
+    ------
+    CrankcheckError
+        A scene, engine, profile, setting or step that can not be run.
+    """
+    scenes = chosen_scenes(study.scenes)
+    texts = scene_texts(study.scenes)
+    variants = [one for variant in study.variants for one in variant.each()]
+    versions = {
+        name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
+    }
+    complete = [(v, _complete(v)) for v in variants]
+    _refuse_twins(complete)
+    tasks: dict[str, Task] = {}
+    for scene in scenes:
+        name = digest(texts[scene.name])
+        steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
+        refuse_singular(scene, max(dt_s * count for dt_s, count in steps))
+        for variant, settings in complete:
+            for dt_s, count in steps:
+                cell = Cell(
+                    scene=scene,
+                    engine=variant.engine,
+                    profile=variant.profile,
+                    dt_s=dt_s,
+                    steps=count,
+                    gated=variant.profile == "tuned" and not variant.settings,
+                    drive=study.drive,
+                    converge=False,
+                    settings=variant.chosen,
+                )
+                version = versions[variant.engine]
+                line = line_key(cell, study.turns, name, version, settings)
+                key = cell_key(line, cell)
+                tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
+    return Grid(tuple(tasks.values()), texts)
+
+
+def _complete(variant: Variant) -> dict[str, SettingValue]:
+    """All settings of a variant.
+
+    Raises
+    ------
+    CrankcheckError
+        A setting that the engine lacks, a value that it does not take, or a name that readers would
+        take for another profile.
+    """
+    chosen = engine(variant.engine)
+    settings = resolved(profile_of(chosen, variant.profile), variant.chosen)
+    chosen.check(settings)
+    if variant.name in chosen.profiles and (variant.name != variant.profile or variant.chosen):
+        raise CrankcheckError(
+            f"variant {variant.name!r} of {variant.engine}: that is the name of a profile, and "
+            "these are other settings; give it another name"
+        )
+    return settings
+
+
+def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]) -> None:
+    """Refuse two variants of an engine that share a name and differ in settings."""
+    seen: dict[tuple[str, str], Mapping[str, SettingValue]] = {}
+    for variant, settings in complete:
+        if seen.setdefault((variant.engine, variant.name), settings) != settings:
+            raise CrankcheckError(
+                f"variant {variant.name!r}: two of {variant.engine} have that name, and other "
+                "settings; give each a name of its own"
+            )

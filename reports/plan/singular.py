@@ -1,0 +1,132 @@
+"""Singular positions: where the driver's angle no longer determines the motion.
+
+A change point is none for the reference, which goes through it on the smooth branch, and says so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.kinematics import repeats_after, solve, solve_driven
+from models.errors import CrankcheckError
+from models.motion import Crossing, Motion
+from models.scene import Scene
+from reports.compare.change_points import near
+from reports.compare.series import Array
+
+Mask = NDArray[np.bool_]
+
+SINGULAR = 1e-6
+"""A sine of a transmission angle below which velocities are lost: rounding is over its square."""
+GRID = 721
+ZOOMS = 5
+FINER = 65
+"""Looks at a range, and at the neighbourhood of every smallest sine in each zoom."""
+SHOWN = 4
+SAME_RAD = 1e-3
+"""A singular position nearer than this to a change point of its dyad is that change point."""
+
+
+def refuse_singular(scene: Scene, duration_s: float) -> None:
+    """Refuse a run through a position in which the motion is not determined, change points apart.
+
+    The sine of a dyad falls and rises like the letter V there, mostly between two samples: its
+    smallest values over the driver's range are looked for, and refined.
+
+    Raises
+    ------
+    CrankcheckError
+        Scene, driver angle and dyad. Also a ReachError, for an angle that cannot be reached.
+    """
+    low, high = _range(scene, duration_s)
+    theta = np.linspace(low, high, 1 + (GRID - 1) * max(1, round((high - low) / math.tau)))
+    motion = _steady(scene, theta)
+    for key in motion.conditioning:
+        places = theta[_valleys(np.abs(motion.conditioning[key]))]
+        smallest = np.full_like(places, np.inf)
+        width = (high - low) / (theta.size - 1)
+        for _ in range(ZOOMS if places.size else 0):
+            near = np.clip(places[:, None] + np.linspace(-width, width, FINER), low, high)
+            sines = np.abs(_steady(scene, near.ravel()).conditioning[key]).reshape(near.shape)
+            best = np.arange(len(near)), np.argmin(sines, axis=1)
+            places, smallest = near[best], sines[best]
+            width *= 2.0 / (FINER - 1)
+        lost = places[(smallest < SINGULAR) & ~_is_passed(motion.crossings, key, places)]
+        if lost.size:
+            raise CrankcheckError(
+                f"{scene.name}: at driver {math.degrees(float(lost[0])):.6g} deg the dyad of {key} "
+                "is singular: the motion is not determined there, and no engine can be held to "
+                "it; choose lengths, or a range of the driver, away from it"
+            )
+
+
+def passage_note(scene: Scene, duration_s: float) -> str:
+    """The change points that a run goes through, for its reader; "" where there is none."""
+    time_s = np.linspace(0.0, duration_s, GRID)
+    found = solve(scene, time_s, links=(), points=(), sliders=(), bound=False).crossings
+    if not found:
+        return ""
+    return f"{scene.name}: passes {_places(found)}; the reference continues the smooth branch"
+
+
+def continued_note(motion: Motion) -> str:
+    """The change points on the way of a reference from its start; "" where there is none."""
+    return f"continued smoothly through {_places(motion.crossings)}" if motion.crossings else ""
+
+
+def singular_note(scene: Scene, motion: Motion) -> str:
+    """Which samples of a reference are singular, for the reader of a table; "" where none is."""
+    theta = motion.links[scene.driver.link].theta
+    places = [
+        f"{angle:.6g} deg ({key})"
+        for key, sine in motion.conditioning.items()
+        for angle in np.degrees(
+            theta[(np.abs(sine) < SINGULAR) & ~_is_passed(motion.crossings, key, theta)]
+        )
+    ]
+    if not places:
+        return ""
+    more = f" and {len(places) - SHOWN} more" if len(places) > SHOWN else ""
+    return f"singular at {', '.join(places[:SHOWN])}{more}: rates are not determined there"
+
+
+def _range(scene: Scene, duration_s: float) -> tuple[float, float]:
+    """The driver angles of a run, at most until the mechanism repeats [rad]."""
+    theta = scene.driver.law.at(np.linspace(0.0, duration_s, GRID))[0]
+    low = float(np.min(theta))
+    return low, min(float(np.max(theta)), low + repeats_after(scene))
+
+
+def _steady(scene: Scene, theta: Array) -> Motion:
+    """How the mechanism is conditioned at driver angles, at unit speed."""
+    one, zero = np.ones_like(theta), np.zeros_like(theta)
+    return solve_driven(scene, theta, one, zero, links=(), points=(), sliders=(), bound=False)
+
+
+def _is_passed(crossings: Iterable[Crossing], key: str, theta: Array) -> Mask:
+    """Whether driver angles are in a change point of a dyad."""
+    return near((crossing for crossing in crossings if crossing.dyad == key), theta, SAME_RAD)
+
+
+def _places(crossings: Iterable[Crossing]) -> str:
+    """Change points by dyad, in words."""
+    angles: dict[str, list[str]] = {}
+    for crossing in crossings:
+        degrees = f"{math.degrees(crossing.driver_rad):.6g}"
+        angles.setdefault(crossing.dyad, []).append(degrees)
+    found = [
+        f"the change point{'s' * (len(each) > 1)} of {key} at driver {', '.join(each)} deg"
+        for key, each in angles.items()
+    ]
+    return " and ".join(found)
+
+
+def _valleys(sine: Array) -> Mask:
+    """Where a series is no larger than its neighbours and smaller than one of them, (T,) bool."""
+    before = np.concatenate([[np.inf], sine[:-1]])
+    after = np.concatenate([sine[1:], [np.inf]])
+    return np.asarray((sine <= before) & (sine <= after) & ((sine < before) | (sine < after)))

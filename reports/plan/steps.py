@@ -1,0 +1,62 @@
+"""How long a step is and how many there are, checked before anything runs."""
+
+from __future__ import annotations
+
+import math
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.compare.compare import SETTLING
+
+LEAST_STEPS_PER_TURN = 8
+LEAST_STEPS = 2 * SETTLING
+"""Measured: of the shipped scenes none fails for shortness alone in a run of so many steps."""
+MOST_STEPS = 300_000
+"""All steps are logged: as many take about 1 GB with a six-bar."""
+STEPS_PER_TURN = 720.0
+
+
+def counted(
+    scene: Scene, dt_s: float | None, steps_per_turn: float | None, turns: float
+) -> tuple[float, int]:
+    """Step [s] and number of steps for a scene, from --dt or --steps-per-turn (default 720).
+
+    Raises
+    ------
+    CrankcheckError
+        A number that is not above 0, too few steps in a turn, too many or too few in all.
+    """
+    positive("--turns", turns, "turns; 1 is one period of the driver")
+    period = scene.driver.law.period_s
+    if dt_s is not None:
+        positive("--dt", dt_s, "seconds, such as 1e-3")
+        option, per_turn = f"--dt {dt_s:g}", period / dt_s
+    else:
+        per_turn = STEPS_PER_TURN if steps_per_turn is None else steps_per_turn
+        positive("--steps-per-turn", per_turn, "steps, such as 720")
+        option = f"--steps-per-turn {per_turn:g}"
+    if per_turn < LEAST_STEPS_PER_TURN * (1 - 1e-12):
+        raise CrankcheckError(
+            f"{option}: {per_turn:.3g} steps in a turn of {scene.name} ({period:.4g} s); a "
+            f"turn needs at least {LEAST_STEPS_PER_TURN}, so dt at most "
+            f"{period / LEAST_STEPS_PER_TURN:.4g} s"
+        )
+    steps = turns * per_turn * (1 - 1e-12)  # may be infinite
+    if not steps <= MOST_STEPS:
+        raise CrankcheckError(
+            f"{option} --turns {turns:g}: {steps:.6g} steps of {scene.name}; at most "
+            f"{MOST_STEPS} are logged; take a longer step or fewer turns"
+        )
+    if steps <= LEAST_STEPS - 1:
+        raise CrankcheckError(
+            f"{option} --turns {turns:g}: {math.ceil(steps)} steps of {scene.name}; an "
+            f"engine takes up its pins in the first {SETTLING}, so a run has at least "
+            f"{LEAST_STEPS}: take {LEAST_STEPS / per_turn:.3g} turns or more, or a shorter step"
+        )
+    return dt_s or period / per_turn, math.ceil(steps)
+
+
+def positive(option: str, value: float, unit: str) -> None:
+    """Refuse a number that is not above 0. Raises CrankcheckError that names the unit."""
+    if not (math.isfinite(value) and value > 0.0):
+        raise CrankcheckError(f"{option} {value:g}: give a number above 0, in {unit}")

@@ -1,0 +1,1 @@
+"""What stored cells say."""

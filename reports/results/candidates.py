@@ -1,0 +1,142 @@
+"""One set of settings at one number of steps a turn, over every scene of a study."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import pandas as pd
+
+from reports.results.cost import mean
+from reports.results.lines import Line, called, numbers
+from sim.engine import Drive, SettingValue
+
+NOT_RUN = "not run"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Settings that may be recommended, with what was measured of them.
+
+    ``errors`` are place errors by scene [pure] of the runs that ended well, ``faults`` say why a
+    scene has none. ``us_per_step`` (of the least and of the median repeat) and ``s_per_turn`` are
+    geometric means over the scenes, in which each counts the same however slow it is; NaN where a
+    scene was not timed.
+    """
+
+    engine: str
+    variant: str
+    versions: tuple[str, ...]
+    profile: str
+    drive: Drive
+    settings: Mapping[str, SettingValue] = field(repr=False)
+    steps_per_turn: float
+    errors: Mapping[str, float] = field(repr=False)
+    faults: Mapping[str, str] = field(repr=False)
+    us_per_step: float
+    us_per_step_median: float
+    s_per_turn: float
+
+    @property
+    def scenes(self) -> int:
+        """How many scenes there are."""
+        return len(self.errors) + len(self.faults)
+
+    @property
+    def name(self) -> str:
+        """As a sentence calls it."""
+        return f"{called(self.variant, self.drive)} at {self.steps_per_turn:g} steps a turn"
+
+    @property
+    def worst_scene(self) -> str | None:
+        """The scene with the largest error; None where no run ended well."""
+        return max(self.errors, key=lambda scene: self.errors[scene], default=None)
+
+    @property
+    def worst_error(self) -> float:
+        """The largest error over the scenes; infinite where one has no run that ended well."""
+        return math.inf if self.faults else max(self.errors.values(), default=math.inf)
+
+    def same_settings(self, other: Candidate) -> bool:
+        """Whether another one differs in its step at most."""
+        return (self.engine, self.variant, self.drive, self.settings) == (
+            other.engine,
+            other.variant,
+            other.drive,
+            other.settings,
+        )
+
+    def holds(self, line: Line) -> bool:
+        """Whether a line is of these settings."""
+        return (self.engine, self.variant, self.drive, self.settings) == (
+            line.engine,
+            line.variant,
+            line.drive,
+            line.settings,
+        )
+
+    def reaching(self, target: float) -> int:
+        """On how many scenes the error is at most ``target``."""
+        return sum(error <= target for error in self.errors.values())
+
+    def reaches(self, target: float) -> bool:
+        """Whether it is on all of them."""
+        return self.reaching(target) == self.scenes
+
+
+def candidates(lines: Sequence[Line]) -> tuple[Candidate, ...]:
+    """All settings and steps of a study, by variant, from coarse to fine.
+
+    Settings count as the same where all of them are, drive included; a scene on which they were
+    not run is a fault.
+    """
+    scenes = list(dict.fromkeys(line.scene for line in lines))
+    groups: dict[tuple[str, ...], dict[str, Line]] = {}
+    for line in lines:
+        settings = json.dumps(dict(line.settings), sort_keys=True)
+        same = (line.engine, line.variant, line.drive, settings)
+        groups.setdefault(same, {})[line.scene] = line
+    return tuple(one for group in groups.values() for one in _each_step(group, scenes))
+
+
+def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candidate]:
+    """The candidates of one set of settings."""
+    by_step: dict[float, dict[str, pd.Series]] = {}
+    for scene, line in group.items():
+        for _, row in line.cells.iterrows():
+            by_step.setdefault(round(float(row["steps_per_turn"]), 6), {})[scene] = row
+    first = next(iter(group.values()))
+    versions = tuple(sorted({line.version for line in group.values()}, key=numbers))
+    found = []
+    for steps, rows in sorted(by_step.items()):
+        faults = {scene: _fault(rows.get(scene)) for scene in scenes}
+        good = {scene: row for scene, row in rows.items() if not faults[scene]}
+        complete = tuple(good.values()) if len(good) == len(scenes) else ()
+        found.append(
+            Candidate(
+                engine=first.engine,
+                variant=first.variant,
+                versions=versions,
+                profile=first.profile,
+                drive=first.drive,
+                settings=first.settings,
+                steps_per_turn=steps,
+                errors={scene: float(row["place_pure"]) for scene, row in good.items()},
+                faults={scene: fault for scene, fault in faults.items() if fault},
+                us_per_step=mean(float(row["us_per_step"]) for row in complete),
+                us_per_step_median=mean(float(row["us_per_step_median"]) for row in complete),
+                s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
+            )
+        )
+    return found
+
+
+def _fault(row: pd.Series | None) -> str:
+    """Why a cell promises nothing; empty where it does."""
+    if row is None:
+        return NOT_RUN
+    if row["status"] != "ok":
+        return str(row["status"])
+    return "" if math.isfinite(row["place_pure"]) else "error is no number"

@@ -1,0 +1,156 @@
+"""What a step costs, how well that is known, and the time that a target error takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from reports.results.fits.reach import interpolate
+from reports.results.lines import Line
+from reports.results.one_processor import comparable
+from reports.store.reader import Stored
+from sim.engine import Drive
+
+SHARE = 0.95
+"""The share of A/A pairs whose halves differ by no more than the noise."""
+
+
+def pairs(stored: Stored) -> pd.Series[float]:
+    """How far apart the A/A pair of every timed cell is: two timings of one run in one sweep."""
+    cells = comparable(stored.cells)
+    a, b = cells["us_per_step_a"], cells["us_per_step_b"]
+    both = a.notna() & b.notna()
+    return pd.Series([apart(*pair) for pair in zip(a[both], b[both], strict=True)], dtype=float)
+
+
+def noise(stored: Stored) -> float:
+    """The relative difference up to which two costs are called equal; NaN where nothing was timed.
+
+    95 of 100 pairs of timings of the same thing differ by less.
+    """
+    return noise_of(pairs(stored))
+
+
+def apart(a: float, b: float) -> float:
+    """The relative difference of two costs: |a - b| / min(a, b)."""
+    return abs(a - b) / min(a, b)
+
+
+def noise_of(differences: Iterable[float]) -> float:
+    """The difference that 95 of 100 stay below; NaN of none."""
+    found = list(differences)
+    return float(np.quantile(found, SHARE)) if found else math.nan
+
+
+def equal(a: float, b: float, within: float) -> bool:
+    """Whether two costs differ by no more than the noise ``within``."""
+    return a == b or abs(a - b) <= within * min(a, b)
+
+
+@dataclass(frozen=True)
+class Reached:
+    """A target error reached on a line: steps a turn, and time per simulated turn [s].
+
+    ``s_per_turn`` is NaN where the cells were not timed. Where the coarsest step that ended well
+    reaches the target already, it stands for itself: a coarser one may do, but was not run.
+    """
+
+    steps_per_turn: float
+    s_per_turn: float
+    how: Literal["along the fit", "at the coarsest step"]
+
+
+def reached(line: Line, target: float) -> Reached | None:
+    """Where a line comes to an error of at most ``target`` and stays below it; None: nowhere."""
+    dt_s = line.fit.dt_for(target)
+    if dt_s is not None:
+        return Reached(line.period_s / dt_s, _cost(line, dt_s), "along the fit")
+    runs = line.fit.runs
+    if runs and all(error <= target for _, error in runs):
+        coarsest = runs[-1][0]
+        return Reached(line.period_s / coarsest, _cost(line, coarsest), "at the coarsest step")
+    return None
+
+
+def time_to(line: Line, target: float) -> float | None:
+    """Time per simulated turn [s] that an error of ``target`` takes (see `reached`).
+
+    Interpolated along the fit, never extrapolated; None where the line does not reach the target,
+    or was not timed.
+    """
+    found = reached(line, target)
+    return None if found is None or math.isnan(found.s_per_turn) else found.s_per_turn
+
+
+def _cost(line: Line, dt_s: float) -> float:
+    """Time per turn [s] at a step, between the measured ones; NaN where those were not timed."""
+    timed = line.cells.dropna(subset=["s_per_turn"])
+    costs = [float(cost) for cost in timed["s_per_turn"]]
+    found = interpolate([float(dt) for dt in timed["dt_s"]], costs, dt_s)
+    return math.nan if found is None else found
+
+
+MEANS = (
+    "Geometric means over the scenes, interpolated along the fits; m/n: so on m of n scenes only. "
+    "Where the coarsest step reaches an error already, its time stands: nothing is extrapolated."
+)
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What a variant costs, as geometric means over the scenes.
+
+    ``us_per_step`` is of the least and ``us_per_step_median`` of the median repeat, over the
+    ``timed`` scenes, which have cells that were timed. ``s_to`` is the time per turn [s] to reach
+    each target, NaN where it is not reached on every scene; ``reached`` on how many scenes it is.
+    """
+
+    engine: str
+    variant: str
+    drive: Drive
+    us_per_step: float
+    us_per_step_median: float
+    timed: int
+    s_to: Mapping[float, float]
+    reached: Mapping[float, int]
+    scenes: int
+
+    def part(self, number: int) -> str:
+        """On how many scenes something is so, as m/n; empty where it is on all of them."""
+        return "" if number == self.scenes else f"{number}/{self.scenes}"
+
+
+def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ...]:
+    """The costs of each variant."""
+    scenes = len({line.scene for line in lines})
+    groups: dict[tuple[str, str, Drive], list[Line]] = {}
+    for line in lines:
+        groups.setdefault((line.engine, line.variant, line.drive), []).append(line)
+    found = []
+    for named, group in groups.items():
+        timed = [x for line in group if len(x := line.cells.dropna(subset=["us_per_step"]))]
+        cells = pd.concat(timed or [group[0].cells.iloc[:0]])
+        times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
+        found.append(
+            Costs(
+                *named,
+                us_per_step=mean(cells["us_per_step"]),
+                us_per_step_median=mean(cells["us_per_step_median"].dropna()),
+                timed=len(timed),
+                s_to={a: mean(t) if len(t) == scenes else math.nan for a, t in times.items()},
+                reached={a: sum(reached(line, a) is not None for line in group) for a in targets},
+                scenes=scenes,
+            )
+        )
+    return tuple(found)
+
+
+def mean(values: Iterable[float]) -> float:
+    """The geometric mean, NaN of nothing."""
+    logs = np.log(np.fromiter(values, dtype=np.float64))
+    return float(np.exp(logs.mean())) if len(logs) else math.nan

@@ -1,0 +1,255 @@
+"""Split an error over the crank angle into what a user can turn.
+
+For the cells of a line, which differ in step only, at the instants that they share::
+
+    total(t; dt)     = drive + geometric          geometric: against the logged crank angle
+    geometric(t; dt) = floor(t) + discretisation(t; dt)
+    floor(t)         = g1 + (g1 - g2) / (r^p - 1)
+
+with g1 and g2 the geometric errors at the two finest steps, r the ratio of these steps and p the
+order that was fitted to the line: Richardson's extrapolation to dt = 0 (Richardson, Phil. Trans.
+R. Soc. A 210, 1911), instant by instant and with sign. The parts add up to the total exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reports.compare.series import Array
+from reports.results.fits.line import LineFit
+from reports.results.lines import Line
+
+Trace = Mapping[str, Array]
+SHARED = 12
+"""Instants that two steps must have in common: fewer make no curve."""
+SAME = 1e-9
+"""Instants nearer than this part of a period are one."""
+UNTOLD_ORDER = 1.0
+"""Taken where the points do not tell an order because the floor is all of the error: at such a line
+the two finest errors hardly differ, and the order hardly matters."""
+LEAST_ORDER = 0.3
+"""Below this there is nothing that falls with the step."""
+LEFT = "the logged crank left the reach of the mechanism"
+
+
+@dataclass(frozen=True)
+class Body:
+    """The link or slider that a curve is of: the series of its trace, and what it is divided by.
+
+    ``scale`` is 1 for a link angle [rad] and the longest link [m] for a slider.
+    """
+
+    series: str
+    scale: float
+
+    @property
+    def name(self) -> str:
+        quantity, _, body = self.series.partition(".")
+        return f"{'angle' if quantity == 'angle' else 'displacement'} of {body}"
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of the error of one cell, pure, with sign, shape (T,) each; their sum is ``total``.
+
+    ``floor`` and ``discretisation`` are None where no floor can be told, and ``drive`` and
+    ``geometric`` where the logged crank left the reach of the mechanism.
+    """
+
+    time_s: Array
+    driver_rad: Array
+    total: Array
+    gap: Array
+    drive: Array | None = None
+    geometric: Array | None = None
+    floor: Array | None = None
+    discretisation: Array | None = None
+
+
+@dataclass(frozen=True)
+class Split:
+    """The parts of every cell of a line that has a trace, by key.
+
+    ``floor`` is the largest of the extrapolated error, and ``doubt`` what it is uncertain by: as
+    the order is, as the next coarser steps tell otherwise, and all of it where the line shows no
+    floor (both NaN where there is none; ``why`` then says why). Only a floor above is seen.
+    """
+
+    cells: Mapping[str, Parts]
+    floor: float = math.nan
+    doubt: float = math.nan
+    why: str = ""
+
+    @property
+    def seen(self) -> bool:
+        return self.floor > self.doubt
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """The extrapolated error at the instants ``time_s``, and its doubt."""
+
+    time_s: Array
+    error: Array
+    doubt: float
+
+
+def worst_body(
+    lines: Sequence[Line], trace: Callable[[str], Trace], longest_m: float
+) -> Body | None:
+    """The link or slider of a scene with the largest error, over all its lines.
+
+    Of each line that ended well the finest cell counts, by the logarithm of its largest error: one
+    line that is far off does not decide for the others.
+    """
+    sums: dict[str, float] = {}
+    for line in lines:
+        done = line.cells[line.cells["status"] == "ok"]
+        if done.empty:
+            continue
+        for name, values in trace(str(done["key"].iloc[-1])).items():
+            kind = name.partition(".")[0]
+            if kind in ("angle", "displacement"):
+                pure = float(np.max(np.abs(values))) / (1.0 if kind == "angle" else longest_m)
+                sums[name] = sums.get(name, 0.0) + math.log10(max(pure, 1e-15))
+    if not sums:
+        return None
+    worst = max(sums, key=lambda name: sums[name])
+    return Body(worst, 1.0 if worst.startswith("angle.") else longest_m)
+
+
+def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: float) -> Split:
+    """The parts of the error of every cell of a line.
+
+    Parameters
+    ----------
+    line : Line
+        Cells from the coarse to the fine step, with the fit of their error of place.
+    trace : Callable
+        From the key of a cell to its trace (`reports.compare.last_turn`), empty where there is
+        none.
+    body : Body
+        What the curves are of.
+    longest_m : float
+        The longest link, which gaps are divided by [m].
+    """
+    traces = {str(key): trace(str(key)) for key in line.cells["key"]}
+    traces = {key: one for key, one in traces.items() if body.series in one}
+    limit = _limit(line, traces, body)
+    told = limit if isinstance(limit, _Limit) else None
+    cells = {key: _parts(one, body, longest_m, told, line.period_s) for key, one in traces.items()}
+    if told is None:
+        return Split(cells, why=str(limit))
+    floor = float(np.max(np.abs(told.error)))
+    # A line that falls as far as it was run has no floor: what is left is doubt.
+    doubt = told.doubt if line.fit.kind == "floor" else max(told.doubt, floor)
+    return Split(cells, floor=floor, doubt=doubt)
+
+
+def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
+    """The error at dt = 0 by Richardson's extrapolation, or why there is none."""
+    order = _order(line.fit)
+    if order is None:
+        return "the error follows no order of the step"
+    name = f"geometric.{body.series}"
+    # Not the finest cells: one that timed out, or is at rounding, is none that the fit stands on.
+    stood_on = line.cells.loc[list(line.fit.used), ["key", "dt_s"]]
+    finest = [
+        _Logged(float(dt), traces[key][name] / body.scale, traces[key]["time_s"])
+        for key, dt in stood_on.iloc[::-1].itertuples(index=False)
+        if name in traces.get(key, {})
+    ][:3]
+    if len(finest) < 3:
+        left = any(key in traces for key in stood_on["key"])
+        return LEFT if left else "no run that the fit stands on was logged"
+    fine = _extrapolated(finest[0], finest[1], order, line.period_s)
+    coarse = _extrapolated(finest[1], finest[2], order, line.period_s)
+    if fine is None:
+        return "the two finest steps were logged at different instants"
+    if coarse is None:
+        return fine
+    # What the next coarser steps tell otherwise is doubt as well.
+    here, there = shared(fine.time_s, coarse.time_s, line.period_s)
+    other = float(np.max(np.abs(fine.error[here] - coarse.error[there]), initial=0.0))
+    return replace(fine, doubt=max(fine.doubt, other))
+
+
+@dataclass(frozen=True)
+class _Logged:
+    """The geometric error of one run [pure] at the instants of its log, (T,), and its step."""
+
+    dt_s: float
+    error: Array
+    time_s: Array
+
+
+def _extrapolated(
+    fine: _Logged, coarse: _Logged, order: tuple[float, float], period_s: float
+) -> _Limit | None:
+    """Richardson's extrapolation of two runs; None where they share too few instants."""
+    here, there = shared(fine.time_s, coarse.time_s, period_s)
+    if len(here) < SHARED:
+        return None
+    p, more = order
+    ratio = coarse.dt_s / fine.dt_s
+    growth = ratio**p
+    step = fine.error[here] - coarse.error[there]
+    # d floor / d p, times what p is uncertain by
+    slope = growth * math.log(ratio) / (growth - 1.0) ** 2
+    doubt = slope * more * float(np.max(np.abs(step)))
+    return _Limit(fine.time_s[here], fine.error[here] + step / (growth - 1.0), doubt)
+
+
+def _order(fit: LineFit) -> tuple[float, float] | None:
+    """The order to extrapolate with and twice its uncertainty; None where there is none."""
+    if fit.kind == "floor" and not math.isfinite(fit.order):
+        return UNTOLD_ORDER, 1.0
+    if fit.kind not in ("order", "floor") or not fit.order > LEAST_ORDER:
+        return None
+    return fit.order, 2.0 * fit.order_error if math.isfinite(fit.order_error) else 0.5
+
+
+def _parts(
+    trace: Trace, body: Body, longest_m: float, limit: _Limit | None, period_s: float
+) -> Parts:
+    """The parts of one cell, at the instants where all of them are known."""
+    total = trace[body.series] / body.scale
+    time_s, driver, gap = trace["time_s"], trace["driver_rad"], trace["gap"] / longest_m
+    logged = trace.get(f"geometric.{body.series}")
+    if logged is None:
+        return Parts(time_s, driver, total, gap)
+    geometric = logged / body.scale
+    parts = Parts(time_s, driver, total, gap, drive=total - geometric, geometric=geometric)
+    if limit is None:
+        return parts
+    here, there = shared(time_s, limit.time_s, period_s)
+    if len(here) < SHARED:
+        return parts
+    floor = limit.error[there]
+    return Parts(
+        time_s=time_s[here],
+        driver_rad=driver[here],
+        total=total[here],
+        gap=gap[here],
+        drive=(total - geometric)[here],
+        geometric=geometric[here],
+        floor=floor,
+        discretisation=geometric[here] - floor,
+    )
+
+
+def shared(a_s: Array, b_s: Array, period_s: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Indices of the instants that two rising series of times [s] have in common."""
+    if not (len(a_s) and len(b_s)):
+        return np.zeros(0, np.intp), np.zeros(0, np.intp)
+    right = np.clip(np.searchsorted(b_s, a_s), 1, max(len(b_s) - 1, 1))
+    left = right - 1
+    right = np.minimum(right, len(b_s) - 1)
+    near = np.where(np.abs(b_s[left] - a_s) <= np.abs(b_s[right] - a_s), left, right)
+    here = np.flatnonzero(np.abs(b_s[near] - a_s) <= SAME * period_s)
+    return here, near[here]

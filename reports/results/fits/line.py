@@ -1,0 +1,228 @@
+"""Fit error = floor + C dt^p to a line of cells that differ only in their step.
+
+A fit stands on points that ended well, at their own and at every finer step, and are above
+rounding; from the finest on, on as many coarser ones as one curve goes through. A floor is said to
+be seen only where it is most of the finest error, the error has all but stopped to fall, and no
+power of dt alone goes through the same points. Where the two parts work against each other
+(`reports.results.fits.curves`), five points can tell.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from reports.judge.three_steps import AT_ROUNDING
+from reports.results.fits.aligned import aligned_within
+from reports.results.fits.bent import ORDERS
+from reports.results.fits.curves import Array, Curve, straight
+from reports.results.fits.forms import (
+    FLAT,
+    FLOOR,
+    LOWEST,
+    OPPOSED,
+    POWER,
+    WILD,
+    Form,
+    floor_seen,
+    leaves,
+    longest,
+    opposed_seen,
+    slower,
+    uncertainty,
+)
+from reports.results.fits.points import NEAR_ROUNDING, points
+from reports.results.fits.reach import reach
+
+Kind = Literal[
+    "order", "floor", "grows", "irregular", "too few", "at rounding", "diverges", "not run"
+]
+
+
+@dataclass(frozen=True)
+class LineFit:
+    """What the errors of a line say; runs in the order in which they were given.
+
+    ``used`` says which runs the fit stands on, ``measured`` which ended well, as did every finer
+    one. ``stable_from_s`` is the coarsest step of those (NaN: none); ``failed`` the status of the
+    finest run that did not end well, "" where all did, and ``fails_from_s`` its step.
+
+    ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` and ``coefficient``
+    where the error follows no power of the step. Uncertainties hold the true value two times in
+    three, and more often next to a floor, where they allow floor and step to add or to oppose in
+    any proportion (`reports.results.fits.aligned`). ``floor_below`` is the largest floor that two
+    such uncertainties allow, NaN where the line says nothing about it; a floor that works against
+    the step, rather than adds to it, may hide up to about the finest error where none is seen.
+    ``scatter`` is by what share of itself an error is off its curve. ``curve`` is None where no
+    curve goes through the points.
+    """
+
+    dt_s: tuple[float, ...]
+    error: tuple[float, ...]
+    statuses: tuple[str, ...]
+    rounding: float
+    kind: Kind
+    used: tuple[bool, ...]
+    measured: tuple[bool, ...]
+    stable_from_s: float = math.nan
+    fails_from_s: float = math.nan
+    failed: str = ""
+    order: float = math.nan
+    order_error: float = math.nan
+    floor: float = math.nan
+    floor_error: float = math.nan
+    floor_below: float = math.nan
+    coefficient: float = math.nan
+    scatter: float = math.nan
+    curve: Curve | None = None
+
+    @property
+    def runs(self) -> tuple[tuple[float, float], ...]:
+        """(step [s], error) of the runs that ended well, finest first."""
+        every = zip(self.dt_s, self.error, self.measured, strict=True)
+        return tuple(sorted((dt, e) for dt, e, well in every if well))
+
+    @property
+    def finest_error(self) -> float:
+        """The error at the finest step that ended well; NaN where none did."""
+        return self.runs[0][1] if self.runs else math.nan
+
+    @property
+    def used_range_s(self) -> tuple[float, float]:
+        """Finest and coarsest step that the fit stands on; NaN where it stands on none."""
+        steps = [dt for dt, yes in zip(self.dt_s, self.used, strict=True) if yes]
+        return (min(steps), max(steps)) if steps else (math.nan, math.nan)
+
+    def error_at(self, dt_s: float) -> float | None:
+        """The error at a step, along the fit; None outside the steps that it stands on."""
+        low, high = self.used_range_s
+        near = 1e-12 * high  # a step that was computed as period / n
+        if self.curve is None or not low - near <= dt_s <= high + near:
+            return None
+        return self.curve.at(dt_s)
+
+    def dt_for(self, target: float) -> float | None:
+        """The coarsest step from which on every error is at most ``target`` [s].
+
+        Along the fit, or between measured points where there is none; None where the target is
+        below the floor or the finest error, or every measured step reaches it: nothing is
+        extrapolated.
+        """
+        knots = []
+        for dt, error in self.runs:
+            fitted = self.error_at(dt)
+            knots.append((dt, error if fitted is None else fitted))
+        return reach(knots, target, self.error_at)
+
+
+def fit_line(
+    dt_s: Sequence[float],
+    error: Sequence[float],
+    *,
+    rounding: float = AT_ROUNDING,
+    statuses: Sequence[str] | None = None,
+) -> LineFit:
+    """Fit a line: steps [s], the largest error at each, and how each run ended (None: all well).
+
+    An error up to ``rounding`` (same unit) needs no step to explain it.
+
+    Raises
+    ------
+    ValueError
+        Lengths differ, a step is not positive and finite, or an error is negative.
+    """
+    ends = ["ok"] * len(dt_s) if statuses is None else list(statuses)
+    found = points(dt_s, error, ends, rounding)
+    failed = "" if found.bad is None else ends[found.bad]
+    line = LineFit(
+        tuple(dt_s),
+        tuple(error),
+        tuple(ends),
+        rounding,
+        "too few",
+        used=(False,) * len(ends),
+        measured=_mask(found.well, len(ends)),
+        stable_from_s=dt_s[found.well[-1]] if found.well else math.nan,
+        fails_from_s=math.nan if found.bad is None else dt_s[found.bad],
+        failed="diverged" if failed == "ok" else failed,
+    )
+    if not found.well:
+        return replace(line, kind="not run" if found.bad is None else "diverges")
+    if len({dt_s[i] for i in found.fit}) < 3:
+        return replace(line, kind="at rounding" if found.at_rounding else "too few")
+    fitted = _fitted(line, found.fit)
+    if fitted.kind == "floor" and fitted.floor <= NEAR_ROUNDING * rounding:
+        return fit_line(dt_s, error, rounding=NEAR_ROUNDING * rounding, statuses=statuses)
+    return fitted
+
+
+def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
+    """The form that goes through the points ``fit`` (indices, finest first)."""
+    dts, errors = np.array(line.dt_s)[list(fit)], np.array(line.error)[list(fit)]
+    if not slower(LOWEST, dts, errors):  # a floor would not be seen: do not look for one
+        return _without_floor(line, fit, dts, errors)
+    against = opposed_seen(dts, errors)
+    if against is not None:
+        return _with_floor(_on(line, fit, against), OPPOSED, dts, errors, against)
+    bend = longest(FLOOR, dts, errors)
+    if bend is not None and floor_seen(bend, dts, errors):
+        return _with_floor(_on(line, fit, bend), FLOOR, dts, errors, bend)
+    return _without_floor(line, fit, dts, errors)
+
+
+def _with_floor(line: LineFit, form: Form, dts: Array, errors: Array, curve: Curve) -> LineFit:
+    """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
+    dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
+    alone = form.within(dts, errors, curve, more**2)
+    told = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
+    near = alone.joined(aligned_within(dts, errors, curve, more**2))
+    wide = (2.0 * more) ** 2
+    far = form.within(dts, errors, curve, wide).joined(aligned_within(dts, errors, curve, wide))
+    return replace(
+        line,
+        kind="floor",
+        order=curve.order if told else math.nan,
+        order_error=_farthest(curve.order, near.order) if told else math.nan,
+        floor=curve.floor,
+        floor_error=_farthest(curve.floor, near.floor),
+        floor_below=far.floor[1],
+        coefficient=curve.coefficient if told else math.nan,
+    )
+
+
+def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Array) -> LineFit:
+    """A power of dt, where one goes through the points."""
+    curve = longest(POWER, dts, errors) or straight(dts, errors)
+    dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
+    if curve.scatter > WILD or abs(curve.order) < FLAT or leaves(dts, errors):
+        return replace(line, kind="irregular", scatter=curve.scatter)
+    far = POWER.within(dts, errors, curve, (2.0 * more) ** 2)
+    x, falls = np.log(dts), curve.order > 0.0
+    return replace(
+        _on(line, fit, curve),
+        kind="order" if falls else "grows",
+        order=curve.order,
+        order_error=more / math.sqrt(float(np.sum((x - x.mean()) ** 2))),
+        floor_below=min(far.floor[1], float(errors.min())) if falls else math.nan,
+        coefficient=curve.coefficient,
+    )
+
+
+def _on(line: LineFit, fit: tuple[int, ...], curve: Curve) -> LineFit:
+    """The line with a curve, and the points that it goes through."""
+    used = _mask(fit[: curve.points], len(line.used))
+    return replace(line, used=used, curve=curve, scatter=curve.scatter)
+
+
+def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
+    there = set(indices)
+    return tuple(i in there for i in range(number))
+
+
+def _farthest(found: float, bounds: tuple[float, float]) -> float:
+    """How far the farther bound is off what was found."""
+    return max(bounds[1] - found, found - bounds[0])

@@ -1,0 +1,167 @@
+"""The cells of a store as lines: a scene in one engine with one set of settings, at every step."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import cast
+
+import pandas as pd
+from pydantic import ValidationError
+
+from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
+from reports.judge.three_steps import AT_ROUNDING
+from reports.plan.study import Study
+from reports.results.fits.line import LineFit, fit_line
+from reports.results.fits.words import words
+from reports.results.one_processor import comparable
+from reports.store.manifest import Manifest
+from reports.store.reader import Stored
+from sim.engine import Drive, SettingValue
+
+
+@dataclass(frozen=True)
+class Line:
+    """Cells that differ in their step only.
+
+    ``cells`` are rows of the store, from the coarse to the fine step; ``settings`` are those that
+    were asked for. ``fit`` and ``words`` speak of one quantity.
+    """
+
+    scene: str
+    engine: str
+    variant: str
+    version: str
+    profile: str
+    drive: Drive
+    line: str
+    settings: Mapping[str, SettingValue]
+    cells: pd.DataFrame = field(repr=False, compare=False)
+    fit: LineFit
+    words: str
+
+    @property
+    def name(self) -> str:
+        """The variant as a sentence calls it, without the engine."""
+        return called(self.variant, self.drive)
+
+    @property
+    def period_s(self) -> float:
+        """The period of the driver [s]."""
+        first = self.cells.iloc[0]
+        return float(first["dt_s"] * first["steps_per_turn"])
+
+
+Named = tuple[str, str, Drive]
+"""Engine, variant and drive: what settings are told by in tables, legends and looks."""
+
+
+def named(line: Line) -> Named:
+    """What the settings of a line are told by."""
+    return line.engine, line.variant, line.drive
+
+
+def called(variant: str, drive: Drive) -> str:
+    """A variant by its name, and its drive where that is not the usual one."""
+    return variant if drive == "prescribed" else f"{variant}, {drive} drive"
+
+
+def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
+    """The lines of a store, by scene and variant in the order of its study.
+
+    ``quantity`` is the column of ``stored.cells`` that is fitted. Where a store holds several
+    lines of one scene, engine, variant and drive (of another version of the engine, with other
+    settings under the same name, over other turns), only the newest is given: the highest version,
+    and of that the one that was written last. Times are those of one processor (see `machines`).
+    """
+    cells = comparable(stored.cells)
+    chosen = _newest(cells)
+    found = [
+        _line(rows.sort_values("dt_s", ascending=False).reset_index(drop=True), quantity)
+        for key, rows in cells.groupby("line", sort=False)
+        if key in chosen
+    ]
+    scenes, variants = list(stored.manifest.scenes), _variants(stored.manifest)
+
+    def place(line: Line) -> tuple[int, int]:
+        which = (line.engine, line.variant)
+        return (
+            scenes.index(line.scene) if line.scene in scenes else len(scenes),
+            variants.index(which) if which in variants else len(variants),
+        )
+
+    return tuple(sorted(found, key=place))
+
+
+def _variants(manifest: Manifest) -> list[tuple[str, str]]:
+    """Engine and name of the variants of all runs, in the order of their studies."""
+    found: dict[tuple[str, str], None] = {}
+    for run in manifest.runs:
+        try:
+            study = Study.model_validate(run.get("study"))
+        except ValidationError:  # of another version of crankcheck: then as the cells come
+            continue
+        found |= {(one.engine, one.name): None for each in study.variants for one in each.each()}
+    return list(found)
+
+
+def _newest(cells: pd.DataFrame) -> set[str]:
+    """The names of the lines that no newer one replaces."""
+    names = ["scene", "engine", "variant", "drive"]
+    found: dict[tuple[str, ...], tuple[tuple[tuple[int, ...], int], str]] = {}
+    for at, row in enumerate(cells[[*names, "version", "line"]].itertuples(index=False)):
+        *which, version, line = (str(value) for value in row)
+        age = (numbers(version), at)
+        if tuple(which) not in found or age > found[tuple(which)][0]:
+            found[tuple(which)] = (age, line)
+    return {line for _, line in found.values()}
+
+
+def numbers(version: str) -> tuple[int, ...]:
+    """A version as numbers, which compare as versions do."""
+    return tuple(int(part) for part in re.findall(r"\d+", version))
+
+
+def _line(rows: pd.DataFrame, quantity: str) -> Line:
+    """One line of its rows."""
+    first = rows.iloc[0]
+    fit = fit_line(
+        [float(dt) for dt in rows["dt_s"]],
+        [float(error) for error in rows[quantity]],
+        rounding=_rounding(rows),
+        statuses=[str(status) for status in rows["status"]],
+    )
+    return Line(
+        scene=str(first["scene"]),
+        engine=str(first["engine"]),
+        variant=str(first["variant"]),
+        version=str(first["version"]),
+        profile=str(first["profile"]),
+        drive=cast(Drive, str(first["drive"])),
+        line=str(first["line"]),
+        settings=json.loads(str(first["asked"])),
+        cells=rows,
+        fit=fit,
+        words=words(fit, _unit(quantity), float(first["dt_s"] * first["steps_per_turn"])),
+    )
+
+
+PURE = {"displacement": "L", "position": "L", "gap": "L", "velocity": "w", "acceleration": "w^2"}
+"""What pure errors are shares of, where it is not the radian."""
+UNITS = ("rad_s2", "m_s2", "rad_s", "m_s", "rad", "m")
+
+
+def _unit(quantity: str) -> str:
+    """The unit of a column of errors."""
+    if quantity.endswith("_pure"):
+        return PURE.get(quantity.partition("_")[0], "rad")
+    found = next((unit for unit in UNITS if quantity.endswith(f"_{unit}")), "")
+    return found.replace("_s2", "/s^2").replace("_s", "/s")
+
+
+def _rounding(rows: pd.DataFrame) -> float:
+    """The pure error that rounding explains: that of the crank, and what the others are behind."""
+    drive = max((float(error) for error in rows["drive_pure"] if error <= EXACT_DRIVE), default=0.0)
+    return max(AT_ROUNDING, BEHIND_DRIVE * drive)

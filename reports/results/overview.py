@@ -1,0 +1,109 @@
+"""What all sections of a page are built from: a store, and what was chosen from it, once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import pandas as pd
+
+from models.errors import CrankcheckError
+from models.files import parse_scene
+from models.scene import Scene
+from reports.results.candidates import Candidate, candidates
+from reports.results.cost import Costs, costs_of, noise
+from reports.results.lines import Line, Named, lines, named
+from reports.results.looks import Look, looks
+from reports.results.recommend import TARGETS, Recommendation, recommendations
+from reports.results.settings_text import settings_told
+from reports.stability.matrix import Matrix
+from reports.store.reader import Stored
+
+
+@dataclass(frozen=True)
+class Report:
+    """A store as the page sees it: its newest lines, and the cells of those.
+
+    ``matrix`` are the hard cases that were run beside it, if any.
+    """
+
+    stored: Stored
+    matrix: Matrix | None = None
+
+    @cached_property
+    def lines(self) -> tuple[Line, ...]:
+        """The newest lines, by scene and variant in the order of the study."""
+        return lines(self.stored)
+
+    @cached_property
+    def cells(self) -> pd.DataFrame:
+        """The cells of the lines, in their order, coarse steps first."""
+        return pd.concat([line.cells for line in self.lines], ignore_index=True)
+
+    @cached_property
+    def looks(self) -> Mapping[Named, Look]:
+        """How each engine with its settings is drawn."""
+        return looks(self.lines)
+
+    @cached_property
+    def recommendations(self) -> tuple[Recommendation, ...]:
+        """The cheapest settings per engine and target."""
+        return recommendations(self.stored)
+
+    @cached_property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Every set of settings at every step, over all scenes."""
+        return candidates(self.lines)
+
+    @cached_property
+    def costs(self) -> tuple[Costs, ...]:
+        """What each variant costs, and the time in which it comes to the targets."""
+        return costs_of(self.lines, TARGETS)
+
+    @cached_property
+    def noise(self) -> float:
+        """The relative difference up to which costs are called equal; NaN if nothing was timed."""
+        return noise(self.stored)
+
+    @cached_property
+    def scenes(self) -> Mapping[str, Scene | None]:
+        """The scenes that were run, in order; None where the store has no readable text of one."""
+        names = dict.fromkeys(line.scene for line in self.lines)
+        return {name: _parsed(self.stored.manifest.scenes.get(name), name) for name in names}
+
+    @cached_property
+    def engines(self) -> Mapping[str, str]:
+        """The engines with their versions, in the order of the study."""
+        found: dict[str, dict[str, None]] = {}
+        for line in self.lines:
+            found.setdefault(line.engine, {})[line.version] = None
+        return {engine: ", ".join(versions) for engine, versions in found.items()}
+
+    @property
+    def timed(self) -> bool:
+        """Whether there is a cost to speak of."""
+        return bool(self.cells["s_per_turn"].notna().any())
+
+    def look(self, line: Line) -> Look:
+        """How a line is drawn."""
+        return self.looks[named(line)]
+
+    def lines_of(self, scene: str) -> tuple[Line, ...]:
+        """The lines of a scene."""
+        return tuple(line for line in self.lines if line.scene == scene)
+
+    @cached_property
+    def settings_told(self) -> Mapping[Named, str]:
+        """The settings of each variant, as what differs from the engine as shipped."""
+        return settings_told(self.lines)
+
+
+def _parsed(text: str | None, name: str) -> Scene | None:
+    """A scene of its text."""
+    if text is None:
+        return None
+    try:
+        return parse_scene(text, name)
+    except CrankcheckError:
+        return None

@@ -1,0 +1,119 @@
+"""Noise and recommendations for the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from reports.results.cost import SHARE, noise, pairs
+from reports.results.fits.words import short
+from reports.results.lines import called
+from reports.results.one_processor import left_out, machine
+from reports.results.recommend import Recommendation
+from reports.store.reader import Stored
+
+WIDE = 90
+"""Columns of a terminal that have room for the scene of the worst error in a column of its own."""
+
+
+def recommendation_table(
+    recommendations: Sequence[Recommendation], width: int = WIDE
+) -> RenderableType:
+    """The cheapest settings for each target and engine, with what is to be said of them below."""
+    wide = width >= WIDE
+    table = _table("cheapest settings that keep every scene within a target")
+    table.add_column("target\nrad", no_wrap=True, justify="right")
+    table.add_column("engine", no_wrap=True)
+    table.add_column("settings", overflow="fold", min_width=10)
+    for head in ("steps\na turn", "us per\nstep", "ms per\nturn", "worst\nerror"):
+        table.add_column(head, justify="right", no_wrap=True)
+    if wide:
+        table.add_column("on scene", overflow="fold")
+        table.add_column("steps on\nthe fit", justify="right", no_wrap=True)
+    notes: list[str] = []
+    for one in recommendations:
+        mark = _mark(_note(one), notes)
+        table.add_row(*_row(one, mark, wide))
+        if one.steadier is not None:
+            table.add_row(*_row(one.steadier, "", wide, steadier=True), style="dim")
+    return Group(table, *(Text(f"[{i}] {note}") for i, note in enumerate(notes, 1)))
+
+
+def _table(title: str) -> Table:
+    return Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        padding=(0, 1, 0, 0),
+        collapse_padding=True,
+    )
+
+
+def _row(
+    one: Recommendation, mark: str, wide: bool, *, steadier: bool = False
+) -> Sequence[str | Text]:
+    """One row; of what comes nearest where nothing reaches the target."""
+    none = one.variant is None
+    name = (
+        Text("none", "red")
+        if none
+        else Text(("or " if steadier else "") + called(str(one.variant), one.drive))
+    )
+    if mark:
+        name.append(f" [{mark}]", "yellow")
+    first = ["", ""] if steadier else [short_target(one.target), one.engine]
+    numbers = [
+        f"{one.steps_per_turn:g}",
+        _number(one.us_per_step, 2),
+        _number(1e3 * one.s_per_turn, 3),
+        short(one.worst_error),
+    ]
+    if wide:
+        least = "-" if one.least_steps is None else f"{math.ceil(one.least_steps - 1e-6)}"
+        numbers += [escape(str(one.worst_scene)), least]
+    return [*first, name, *(["-"] * len(numbers) if none else numbers)]
+
+
+def short_target(target: float) -> str:
+    """1e-3 for 0.001."""
+    return f"{target:.0e}".replace("e-0", "e-") if target < 1.0 else f"{target:g}"
+
+
+def _note(one: Recommendation) -> str:
+    """What is to be said of a row; empty where there is nothing."""
+    if one.reason:
+        return one.reason
+    if one.caution:
+        return f"holds at this step, {one.caution}"
+    return f"equal within the noise: {', '.join(one.equal_to)}" if one.equal_to else ""
+
+
+def _mark(note: str, notes: list[str]) -> str:
+    """The number of a note, which is added to the others where it is new."""
+    if note and note not in notes:
+        notes.append(note)
+    return str(notes.index(note) + 1) if note else ""
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
+
+
+def noise_line(stored: Stored) -> str:
+    """How well costs are known, in a line; and whose times are left out."""
+    found = pairs(stored)
+    if found.empty:
+        return "No cell was timed: no costs, and no recommendation rests on one."
+    text = (
+        f"Noise of costs on {machine(stored.cells)}: {SHARE:.0%} of {len(found)} A/A pairs differ "
+        f"by less than {noise(stored):.1%}, half of them by less than {found.median():.1%}; "
+        "costs that differ by less than the former are called equal."
+    )
+    others = left_out(stored.cells)
+    return text + (f" Times of {', '.join(others)} are not compared with these." if others else "")

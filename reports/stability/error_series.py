@@ -1,0 +1,125 @@
+"""What is seen of a hard run: errors over time, apart from how they are judged."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve
+from analytic.nearness import nearness
+from models.joints import joints
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.branch import HERE_RAD, departure
+from reports.compare.completeness import incomplete
+from reports.compare.errors import Departure
+from reports.compare.series import Array, angle_error, length
+from reports.compare.tracks import tracks
+from sim.engine import Run
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A run beside the truth, sample by sample (T,).
+
+    ``place`` is the worst error of any link, slider and point, ``gap`` the widest open joint,
+    ``drive`` the error of the crank, all as pure numbers (rad, lengths over the longest link) and
+    infinite where a number is missing; ``crank`` is its logged angle [rad]. ``settled`` is the
+    first sample that counts, and ``incomplete`` what the log lacks of what was commanded.
+    ``limited`` says that ``place`` is the crank's, against a command that ends at a limit.
+    """
+
+    status: str
+    reason: str
+    time_s: Array
+    driver_rad: Array
+    place: Array
+    gap: Array
+    drive: Array
+    crank: Array
+    period_s: float
+    settled: int
+    departure: Departure | None
+    sine: float
+    incomplete: str = ""
+    limited: bool = False
+
+    @property
+    def turn(self) -> Array:
+        """How many periods have gone by."""
+        return np.asarray((self.time_s - self.time_s[0]) / self.period_s)
+
+    def worst(self, series: Array) -> tuple[float, int]:
+        """The largest number of a series that counts, and its sample."""
+        index = self.settled + int(np.argmax(series[self.settled :]))
+        return float(series[index]), index
+
+    def first(self, series: Array, over: float) -> int:
+        """The first sample that counts at which a series is over a number; the last if none."""
+        found = np.flatnonzero(series[self.settled :] > over)
+        return self.settled + int(found[0]) if found.size else len(series) - 1
+
+
+def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
+    """A run that logged something beside the reference.
+
+    Raises CrankcheckError where the scene has no reference at the times of the run.
+    """
+    assert run.motion is not None
+    motion = run.motion
+    reference = solve(scene, motion.time_s, bound=False)
+    placed = list(tracks(scene, motion, reference, 0))
+    driver = scene.driver.law.at(motion.time_s)[0]
+    with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
+        place = _widest([length(track.error) / track.scale for track in placed], driver)
+        gap = _widest([np.abs(gap) / scene.longest_m for gap in run.gaps.values()], driver)
+        crank = motion.links[scene.driver.link].theta
+        drive = _widest([angle_error(crank, driver)], driver)
+    period = scene.driver.law.period_s
+    first = int(np.searchsorted(motion.time_s, motion.time_s[0] + settled_turns * period))
+    settled = min(first, len(driver) - 1)
+    left = departure(scene, run, placed, driver)
+    if place[settled:].max() < HERE_RAD:
+        left = None  # it came back before it counted
+    return Seen(
+        status=run.status,
+        reason=run.reason,
+        time_s=motion.time_s,
+        driver_rad=driver,
+        place=place,
+        gap=gap,
+        drive=drive,
+        crank=crank,
+        period_s=period,
+        settled=settled,
+        departure=left,
+        sine=nearest(scene, reference),
+        incomplete=lacking(scene, run),
+    )
+
+
+def lacking(scene: Scene, run: Run) -> str:
+    """What the log lacks of the samples that were commanded, or of the joints; "" if nothing."""
+    joined = dict.fromkeys([*(pin.point for pin in joints(scene).pins), *scene.sliders])
+    silent = [name for name in joined if name not in run.gaps]
+    return incomplete(run) or (f"no gap of {', '.join(silent)} in the log" if silent else "")
+
+
+def nearest(scene: Scene, reference: Motion) -> float:
+    """How near a motion comes to a singular position (`nearness`); 1 where it has no dyad."""
+    found = nearness(scene, reference).values()
+    return min((float(np.min(each)) for each in found), default=1.0)
+
+
+def worst_of(series: Array) -> Array:
+    """The series with what is not a number as infinite."""
+    return np.where(np.isnan(series), math.inf, series)
+
+
+def _widest(series: list[Array], like: Array) -> Array:
+    """The largest of several series at each sample, infinite where one is not a number."""
+    if not series:
+        return np.zeros_like(like)
+    return worst_of(np.max([np.abs(one) for one in series], axis=0))

@@ -1,0 +1,95 @@
+"""What is measured of one cell: its rows, and how it moved, ready to travel between processes."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.motion import Motion
+from reports.compare.last_turn import trace
+from reports.compare.series import Array
+from reports.judge.cell import Cell, examined
+from reports.judge.rows import cell_row, error_rows
+from reports.output.provenance import crankcheck_version
+from sim.run import time_run
+
+REPEATS = 2
+"""Timed repeats of a cell in one pass."""
+REPEAT_S = 0.015
+"""About how long a repeat lasts: long over the clock's resolution, short enough for hundreds."""
+UNMEASURED: Mapping[str, object] = {"logged_us_per_step": None, "wall_s": None}
+"""The columns of a cell that was lost."""
+LEAST_TIMED, MOST_TIMED = 200, 50_000
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A cell that was run: its row, the rows of its errors, its last turn, and the whole motion
+    where that was asked for. ``crankcheck`` is the version that ran it."""
+
+    row: Mapping[str, object]
+    errors: tuple[Mapping[str, object], ...] = ()
+    trace: Mapping[str, Array] = field(default_factory=dict)
+    crankcheck: str = ""
+    motion: Motion | None = None
+    gaps: Mapping[str, Array] = field(default_factory=dict)
+
+
+def measured(cell: Cell, keep_motion: bool) -> Outcome:
+    """Run a cell, compare it and judge it."""
+    checked, run = examined(cell)
+    motion = None if run is None else run.motion
+    cost = None if run is None else run.cost
+    row = cell_row(checked) | {
+        # Logged, and with other cells at work beside it: kept, and never compared.
+        "logged_us_per_step": cost.us_per_step if cost and cost.steps else None,
+        "wall_s": checked.wall_s,
+    }
+    return Outcome(
+        row=row,
+        errors=tuple(error_rows(checked)),
+        trace=trace(cell.scene, run) if run and checked.errors else {},
+        crankcheck=crankcheck_version(),
+        motion=motion if keep_motion else None,
+        gaps=run.gaps if run and keep_motion else {},
+    )
+
+
+def timed(cell: Cell, us_per_step: float) -> tuple[float, ...]:
+    """What a step of a cell costs without logging, in several repeats [microseconds].
+
+    ``us_per_step`` is a first guess, which sets how many steps a repeat has.
+    """
+    steps = int(np.clip(1e6 * REPEAT_S / max(us_per_step, 0.1), LEAST_TIMED, MOST_TIMED))
+    state = solve(cell.scene, np.zeros(1)).state()
+    found = time_run(
+        cell.scene,
+        state,
+        cell.engine,
+        cell.profile,
+        dt_s=cell.dt_s,
+        steps=steps,
+        repeats=REPEATS,
+        drive=cell.drive,
+        settings=cell.settings,
+    )
+    return tuple(1e6 * wall / steps for wall in found.walls_s)
+
+
+def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:
+    """The columns of a timing, from passes A and B over the same cells, some time apart.
+
+    How far their minima lie apart is the noise of comparing cells with each other.
+    """
+    return {
+        "us_per_step": min(*a, *b),
+        "us_per_step_median": statistics.median([*a, *b]),
+        "us_per_step_a": min(a),
+        "us_per_step_b": min(b),
+        "s_per_turn": 1e-6 * min(*a, *b) * cell.steps_per_turn,
+        "repeats": float(len(a) + len(b)),
+    }

@@ -1,0 +1,191 @@
+"""One set of settings put to the test: the coarsest step at which it reaches the target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from models.errors import CrankcheckError
+from models.scene import Scene
+from reports.judge.cell import Cell
+from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, counted
+from reports.sweep.measured import Outcome, measured
+from reports.tune.coarsest import coarsest
+from reports.tune.cost import Settings, Work
+from reports.workers.isolated import Isolated, Limits, Lost
+from sim.engine import SettingValue
+
+MOST_STEPS = 200_000
+"""Of a run: some seconds. A finer step can not be what a search for the cheapest one is after."""
+DEARER = 2.0
+"""How many times the cost of the best so far settings may take before they are given up."""
+NONE_KNOWN = 30.0
+"""How far, in decades, settings are off whose runs give no error at all."""
+Row = Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is asked for: ``target`` is the error of place (angle [rad], position and displacement
+    over the longest link), the worst of all ``scenes`` in a run of ``turns``."""
+
+    scenes: tuple[Scene, ...]
+    engine: str
+    profile: str
+    target: float
+    turns: float
+
+    @property
+    def least(self) -> int:
+        """The fewest steps in a turn that a run of so many turns may have."""
+        return max(LEAST_STEPS_PER_TURN, math.ceil(LEAST_STEPS / self.turns))
+
+    @property
+    def most(self) -> int:
+        """The most steps in a turn; a run at half the step is still to be done."""
+        return int(MOST_STEPS / (2.0 * self.turns))
+
+    def cell(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Cell:
+        """A run with complete settings."""
+        dt_s, steps = counted(scene, None, steps_per_turn, self.turns)
+        return Cell(
+            scene=scene,
+            engine=self.engine,
+            profile=self.profile,
+            dt_s=dt_s,
+            steps=steps,
+            gated=False,
+            converge=False,
+            settings=settings,
+        )
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What came of some settings.
+
+    ``steps_per_turn`` is None where no step reached the target for good: ``error`` is then the
+    least that is over it, at ``tried`` steps in a turn. ``cost_us`` is what a turn takes by the
+    model, all scenes together [microseconds]; ``runs`` the number of runs, one per scene and step.
+    ``timed_out`` says that the clock ended a run: this says nothing for good about the settings.
+    """
+
+    settings: Mapping[str, SettingValue]
+    steps_per_turn: int | None
+    tried: int
+    error: float
+    scene: str
+    cost_us: float
+    runs: int
+    reason: str = ""
+    timed_out: bool = False
+
+    @property
+    def reached(self) -> bool:
+        return self.steps_per_turn is not None
+
+    def over(self, target: float) -> float:
+        """By how many decades the error is over the target; 0 or less where it is not."""
+        if self.error == 0.0:
+            return -NONE_KNOWN
+        return min(math.log10(self.error / target), NONE_KNOWN)
+
+    def plain(self) -> dict[str, object]:
+        """As plain values, to be kept."""
+        return asdict(self)
+
+
+class LostError(Exception):
+    """A run that came to nothing: no other step is tried with its settings."""
+
+    def __init__(self, scene: str, status: str, reason: str) -> None:
+        super().__init__(f"{scene}: {status}: {reason}")
+        self.timed_out = status == "timeout"
+
+
+class Bench:
+    """Runs settings at steps, in a process of its own that may crash or hang; to be closed."""
+
+    def __init__(self, goal: Goal, works: Sequence[Work], limits: Limits) -> None:
+        self.goal = goal
+        self._works = works
+        self._isolated: Isolated[Outcome] = Isolated(limits)
+
+    def close(self) -> None:
+        """End the process at once."""
+        self._isolated.close()
+
+    def us_per_step(self, settings: Settings) -> float:
+        """What a step takes by the model, all scenes together [microseconds]."""
+        return sum(work(settings) for work in self._works)
+
+    def row(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Row:
+        """The row of one run.
+
+        Raises
+        ------
+        LostError
+            The process crashed or took too long, or the engine can not hold the scene.
+        """
+        cell = self.goal.cell(scene, settings, steps_per_turn)
+        found = self._isolated.call(measured, cell, False)
+        if isinstance(found, Lost):
+            raise LostError(scene.name, found.status, found.reason)
+        if found.row["status"] == "unsupported":
+            raise LostError(scene.name, "unsupported", str(found.row["reason"]))
+        return found.row
+
+    def refuse_unsupported(self, settings: Settings) -> None:
+        """Raise CrankcheckError for a scene that the engine can not hold."""
+        for scene in self.goal.scenes:
+            cell = self.goal.cell(scene, settings, self.goal.least)
+            found = self._isolated.call(measured, cell, False)
+            if isinstance(found, Outcome) and found.row["status"] == "unsupported":
+                raise CrankcheckError(f"{cell.label}: {found.row['reason']}")
+
+    def attempt(self, settings: Settings, best: Attempt | None) -> Attempt:
+        """Find the coarsest step that reaches the target.
+
+        The look starts where ``best``, the best so far, has its step, and ends where these
+        settings would take several times as long: they can not win any more.
+        """
+        goal, each = self.goal, self.us_per_step(settings)
+        most, start = goal.most, 4 * goal.least
+        if best is not None and best.steps_per_turn is not None:
+            start = best.steps_per_turn
+            most = min(most, int(DEARER * best.cost_us / each))
+        worst: dict[int, tuple[float, str]] = {}
+        runs = 0
+
+        def error_at(steps_per_turn: int) -> float:
+            nonlocal runs
+            errors = []
+            for scene in goal.scenes:
+                runs += 1
+                error = error_of(self.row(scene, settings, steps_per_turn))
+                errors.append((error, scene.name))
+                if math.isinf(error):
+                    break
+            worst[steps_per_turn] = max(errors)
+            return worst[steps_per_turn][0]
+
+        reason, timed_out = "", False
+        steps: int | None = None
+        try:
+            found = coarsest(error_at, goal.target, start, goal.least, max(most, goal.least))
+            steps = found.steps
+        except LostError as lost:
+            reason, timed_out = str(lost), lost.timed_out
+        over = [n for n, (error, _) in worst.items() if not error <= goal.target]
+        tried = steps or min(over, key=lambda n: (worst[n][0], n), default=start)
+        error, scene = worst[tried] if tried in (steps, *over) else (math.inf, "")
+        cost_us = tried * each
+        return Attempt(dict(settings), steps, tried, error, scene, cost_us, runs, reason, timed_out)
+
+
+def error_of(row: Row) -> float:
+    """The error of place of a run; infinite where it did not come to its end."""
+    error = row["place_pure"]
+    sound = row["status"] == "ok" and isinstance(error, float) and math.isfinite(error)
+    return float(error) if sound and isinstance(error, float) else math.inf

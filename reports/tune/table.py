@@ -1,0 +1,131 @@
+"""What a search found, beside the profile, on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from reports.tune.attempt import Attempt, Goal, Row
+from reports.tune.knobs import Space
+from reports.tune.timing import Taken
+
+OTHERS = {
+    "gap_pure": "gap / L",
+    "velocity_pure": "velocity / w",
+    "acceleration_pure": "acceleration / w^2",
+}
+"""Errors that are not searched for, and shown: a column of a cell's row to what it is called."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """One column of the table: settings, the rows of their runs, and what they take."""
+
+    title: str
+    attempt: Attempt
+    rows: Sequence[Row]
+    taken: Taken | None = None
+
+
+def show(console: Console, goal: Goal, space: Space, sides: Sequence[Side]) -> None:
+    """Print the table, and the ratio of the last side to the first."""
+    names = ", ".join(scene.name for scene in goal.scenes)
+    console.print(Text(f"{names}, {goal.engine}: error of place up to {goal.target:g}", "bold"))
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    table.add_column("", overflow="fold")
+    for side in sides:
+        table.add_column(side.title, justify="right", no_wrap=True)
+    for label, cells in _lines(goal, space, sides):
+        changed = (
+            len(cells) == 2 and label in {k.name for k in space.knobs} and cells[0] != cells[1]
+        )
+        table.add_row(
+            label, *(Text(c, "bold" if changed and i else "") for i, c in enumerate(cells))
+        )
+    console.print(table, highlight=False)
+    if ratio := _ratio(sides):
+        console.print(Text(ratio), highlight=False)
+    last = sides[-1].attempt
+    if last.reached and last.tried == goal.least:
+        console.print(
+            f"{goal.least} steps per turn are the fewest that a run of {goal.turns:g} turns may "
+            "have; with more --turns there may be fewer",
+            highlight=False,
+        )
+
+
+def _lines(goal: Goal, space: Space, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
+    """Labels and cells."""
+    found = [
+        (knob.name, [_value(side.attempt.settings[knob.targets[0]]) for side in sides])
+        for knob in space.knobs
+    ]
+    found.append(("steps per turn", [str(side.attempt.tried) for side in sides]))
+    found.append(("error of place", [_error(side.attempt, goal.target) for side in sides]))
+    if len(goal.scenes) > 1:
+        found.append(("worst in", [side.attempt.scene or "-" for side in sides]))
+    for column, label in OTHERS.items():
+        found.append((label, [_number(_worst(side.rows, column)) for side in sides]))
+    each = "" if len(goal.scenes) == 1 else f", {len(goal.scenes)} scenes"
+    if all(side.taken for side in sides):
+        taken = [side.taken for side in sides if side.taken]
+        found.append((f"us per step{each}", [f"{one.us_per_step:.2f}" for one in taken]))
+        found.append((f"ms per turn{each}", [f"{1e3 * one.s_per_turn:.3g}" for one in taken]))
+    return found
+
+
+def _ratio(sides: Sequence[Side]) -> str:
+    """How the last side compares with the first, with the noise of the comparison."""
+    first, last = sides[0], sides[-1]
+    if first is last or not (first.attempt.reached and last.attempt.reached):
+        return ""
+    what = f"cost of a turn, {last.title} over {first.title}"
+    model = f"{last.attempt.cost_us / first.attempt.cost_us:.2f} by the model that was searched on"
+    if first.taken is None or last.taken is None:
+        return f"{what}: {model}"
+    ratio = last.taken.s_per_turn / first.taken.s_per_turn
+    noise = max(first.taken.noise, last.taken.noise)
+    words = (
+        "no difference" if abs(math.log(ratio)) <= noise else "cheaper" if ratio < 1 else "DEARER"
+    )
+    return f"{what}: {ratio:.2f} measured ({words}; A/A noise {noise:.1%}), {model}"
+
+
+def _worst(rows: Sequence[Row], column: str) -> float | None:
+    """The largest of a column over the scenes."""
+    known = [float(value) for row in rows if isinstance(value := row[column], float)]
+    return max(known, key=lambda x: x if math.isfinite(x) else math.inf, default=None)
+
+
+def _value(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _error(attempt: Attempt, target: float) -> str:
+    """The error, and whether it is too large."""
+    if math.isinf(attempt.error):
+        return "none"
+    return f"{attempt.error:.2e}" + ("" if attempt.reached else " OVER")
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}"
+
+
+def footer(goal: Goal, how: str, facts: Mapping[str, str]) -> str:
+    """What the numbers are, how they were found, and where."""
+    turned = f"{goal.turns:g} turn" + ("" if goal.turns == 1.0 else "s")
+    return "\n".join(
+        [
+            f"Largest errors of {turned} against the closed form; place: angle [rad], position and "
+            "displacement / L; L longest link, w driver's peak speed. Steps per turn: the fewest "
+            "that reach the target, to 1 %; 1.4 and 2 times as many reach it too.",
+            how,
+            ", ".join(f"{name} {value}" for name, value in facts.items()),
+        ]
+    )

@@ -1,0 +1,1 @@
+"""All cells of a request: table and JUnit."""

@@ -1,0 +1,226 @@
+"""A verification on the terminal: failures first with their cure, then the tables, then where the
+numbers come from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from reports.compare.errors import Error, Errors, Quantity, largest
+from reports.judge.cell import Checked
+from reports.judge.rules import RULES
+from reports.judge.rules.base import Finding
+
+MARKS = {
+    "within": Text("ok", "green"),
+    "out": Text("OUT", "bold red"),
+    "unsupported": Text("NONE", "bold red"),
+}
+
+
+ANGLE, GAP = "angle\nrad", "gap\n/ L"
+NUMBERS: dict[str, tuple[Quantity, ...]] = {
+    ANGLE: ("angle",),
+    "place\n/ L": ("displacement", "position"),
+    GAP: ("gap",),
+    "veloc.\n/ w": ("velocity",),
+    "accel.\n/ w^2": ("acceleration",),
+}
+"""The columns of numbers: head, and the quantities that it shows the worst of."""
+WIDE, STACKED = 100, 76
+"""Columns of a terminal that show every number; below which the engine stands under the scene."""
+
+
+def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
+    """Print the whole verification."""
+    failed = [one for one in checked if one.cell.gated and one.verdict != "within"]
+    _failures(console, failed)
+    for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
+        chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
+        console.print(_table(profile, gated, chosen, console.width), "")
+    _advice(console, checked)
+    console.print(_summary(checked, failed))
+    console.print(_footer(checked, facts), style="dim", highlight=False)
+
+
+def _failures(console: Console, failed: Sequence[Checked]) -> None:
+    """What is out of tolerance, cell by cell, then what would mend it, rule by rule."""
+    for one in failed:
+        console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
+        for finding in one.failures:
+            rule = RULES[finding.rule]
+            _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
+    cures = {(finding.rule, finding.cure) for one in failed for finding in one.failures}
+    for rule_id, cure in sorted(cures):
+        if cure:
+            _hanging(console, f"{rule_id} cure: ", cure, style="cyan")
+    if failed:
+        console.print()
+
+
+def _hanging(console: Console, head: str, text: str, style: str = "") -> None:
+    """A paragraph whose later lines stand below its text."""
+    grid = Table.grid(padding=0)
+    grid.add_column(no_wrap=True)
+    grid.add_column(overflow="fold")
+    grid.add_row(Text(head, style), Text(text, style))
+    console.print(grid)
+
+
+def _mark(one: Checked) -> Text:
+    """The verdict; red only where it counts."""
+    mark = MARKS[one.verdict]
+    return mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
+
+
+def _heads(width: int) -> tuple[str, ...]:
+    """The numbers that a terminal of a width has room for; the others are in the files."""
+    if width >= WIDE:
+        return tuple(NUMBERS)
+    return (ANGLE, GAP) if width >= STACKED else (ANGLE,)
+
+
+def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
+    """The cells of one profile, those out of tolerance first."""
+    heads, stacked = _heads(width), width < STACKED
+    role = "gated" if gated else "shown, not gated"
+    table = Table(
+        title=f"profile {profile} ({role})",
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        padding=(0, 1, 0, 0),
+        collapse_padding=True,
+    )
+    table.add_column("")
+    table.add_column("scene\nengine" if stacked else "scene", overflow="fold", min_width=22)
+    if not stacked:
+        table.add_column("engine", no_wrap=True)
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_column("most of\na limit", no_wrap=True)
+    least, most = (None, 14) if stacked else (15, None)
+    table.add_column("when dt\nis halved", overflow="fold", min_width=least, max_width=most)
+    for one in sorted(chosen, key=lambda one: one.verdict == "within"):
+        names = (one.cell.scene.name, one.cell.engine)
+        table.add_row(_mark(one), *(["\n".join(names)] if stacked else names), *_cells(one, heads))
+    return table
+
+
+def _cells(one: Checked, heads: Sequence[str]) -> list[Text | str]:
+    """One row, from its numbers on."""
+    errors = one.errors
+    if errors is None:
+        return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
+    numbers = [_largest(errors, NUMBERS[head]) for head in heads]
+    seen = one.convergence.words.replace(": ", "\n") if one.convergence else ""
+    if one.status != "ok":
+        early = one.status != "branch-changed"  # such a run goes on to its end
+        seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
+    return [*(_number(error) for error in numbers), _share(one.findings), seen]
+
+
+def _largest(errors: Errors, quantities: Sequence[Quantity]) -> Error | None:
+    """The worst of some quantities, as reported."""
+    return largest(worst for name in quantities if (worst := errors.worst(name)))
+
+
+def _number(error: Error | None) -> str:
+    """A pure number, or a dash where nothing of the kind was reported."""
+    return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
+
+
+SHORT = {
+    "CC102": "drive",
+    "CC103": "ang",
+    "CC104": "disp",
+    "CC105": "gap",
+    "CC106": "vel",
+    "CC107": "vel'",
+    "CC108": "acc",
+    "CC113": "pos",
+    "CC114": "acc'",
+}
+"""The rules that hold an error to a limit, short; a dash marks differenced rates."""
+
+
+def _share(findings: Sequence[Finding]) -> Text:
+    """The largest share of a limit that an error takes, and whose it is."""
+    shares = [
+        (finding.number / finding.limit, SHORT[finding.rule])
+        for finding in findings
+        if finding.rule in SHORT and finding.number is not None and finding.limit
+    ]
+    if not shares:
+        return Text("")
+    share, name = max(shares, key=lambda pair: math.inf if math.isnan(pair[0]) else pair[0])
+    if math.isnan(share):
+        return Text("nan", "red")
+    size = f"{share:.0%}" if share < 10 else f"x{share:.0f}" if share < 1e4 else f"x{share:.0e}"
+    style = "red" if share > 1 else "yellow" if share > 0.5 else ""
+    return Text(f"{size} {name}", style)
+
+
+def _advice(console: Console, checked: Sequence[Checked]) -> None:
+    """What is not a failure and still worth knowing: one line per rule, profile and engine."""
+    groups: dict[tuple[str, str, str], list[tuple[Checked, Finding]]] = {}
+    for one in checked:
+        for finding in one.advice:
+            key = (finding.rule, one.cell.engine, one.cell.profile)
+            groups.setdefault(key, []).append((one, finding))
+    for (rule, engine, profile), members in groups.items():
+        one, finding = members[0]
+        others = f" (and {_count(len(members) - 1, 'more scene')})" if len(members) > 1 else ""
+        head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
+        console.print(Text(f"{head}{finding.text}"))
+        console.print(Text(f"  {finding.cure}", "cyan"))
+    if groups:
+        console.print()
+
+
+def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
+    """The verdict in one line."""
+    gated = [one for one in checked if one.cell.gated]
+    scenes = len({one.cell.scene.name for one in gated})
+    engines = len({one.cell.engine for one in gated})
+    counted = f"{_count(scenes, 'scene')} x {_count(engines, 'engine')}"
+    what = f"{_count(len(gated), 'cell')} ({counted})"
+    if failed:
+        return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
+    every = "all " if len(gated) > 1 else ""
+    return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
+
+
+def _count(number: int, thing: str) -> str:
+    """A number of things, in the singular or the plural."""
+    return f"{number} {thing}" + ("" if number == 1 else "s")
+
+
+def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """Units, steps and versions."""
+    steps = sorted({round(one.cell.steps_per_turn, 3) for one in checked})
+    turns = sorted({round(one.cell.turns, 3) for one in checked})
+    dts = sorted({one.cell.dt_s for one in checked})
+    drives = [e for one in checked if one.errors and (e := one.errors.worst("drive"))]
+    drive = largest(drives)
+    turned = f"{_span(turns)} turn" + ("" if turns == [1.0] else "s")
+    lines = [
+        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
+        "peak speed.",
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
+        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
+        + "- not reported.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    return escape("\n".join(lines))
+
+
+def _span(values: Sequence[float]) -> str:
+    """One value, or the smallest and the largest."""
+    low, high = f"{values[0]:.4g}", f"{values[-1]:.4g}"
+    return low if low == high else f"{low} to {high}"

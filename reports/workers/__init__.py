@@ -1,0 +1,1 @@
+"""Other processes: isolated children, pools, signals, programs."""

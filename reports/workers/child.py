@@ -1,0 +1,97 @@
+"""The process that cells run in: it may crash, hang or run out of memory without harm to others.
+
+It reads pickled jobs from its standard input and writes pickled answers to its standard output; it
+ends as soon as its input does, whatever it is doing. What engines print goes nowhere.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import pickle
+import queue
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO
+
+Answer = tuple[str, object, bool]
+"""How a job ended (``done``, ``crashed``), its result or reason, and whether another child should
+do the next, as this one has much memory that it did not give back."""
+WORN = 0.5
+"""The share of its memory that a child may have kept from job to job."""
+
+
+def main(memory_bytes: int) -> None:
+    """Serve jobs until the input ends."""
+    answers = os.fdopen(os.dup(1), "wb")
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+    jobs: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, jobs), daemon=True).start()
+    importlib.import_module("reports.sweep.measured")  # no part of any cell's time or memory
+    at_first = _taken()
+    _limit(at_first + memory_bytes)
+    send(answers, ("ready", None, False))
+    while True:
+        function, arguments = pickle.loads(jobs.get())
+        how, value = _done(function, arguments, memory_bytes)
+        answer: Answer = (how, value, _taken() - at_first > WORN * memory_bytes)
+        send(answers, answer)
+
+
+def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
+    """Hand on what comes in; end the process with the one that sends it."""
+    while raw := receive(source):
+        jobs.put(raw)
+    os._exit(0)
+
+
+def _done(
+    function: Callable[..., object], arguments: tuple[object, ...], memory_bytes: int
+) -> tuple[str, object]:
+    """How one job ended, and its result or the reason."""
+    try:
+        return "done", function(*arguments)
+    except MemoryError:
+        return "crashed", f"out of memory: a cell has {memory_bytes / 1e9:.3g} GB"
+    except Exception as error:  # whatever an engine throws costs its own cell alone
+        return "crashed", f"{type(error).__name__}: {error}"
+
+
+def _taken() -> int:
+    """The memory that this process has asked for [bytes]; 0 where the system does not say."""
+    try:
+        pages = Path("/proc/self/statm").read_text(encoding="ascii").split()[0]
+    except OSError:
+        return 0
+    return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _limit(most_bytes: int) -> None:
+    """Let the process have no more memory than that, where the system can hold it to it."""
+    with contextlib.suppress(ImportError, OSError, ValueError, AttributeError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (most_bytes, most_bytes))
+
+
+def send(stream: IO[bytes], value: object) -> None:
+    """Write one pickled value with its length before it."""
+    raw = pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL)
+    stream.write(len(raw).to_bytes(8, "little"))
+    stream.write(raw)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> bytes:
+    """The next pickled value as bytes; empty at the end of the stream."""
+    head = stream.read(8)
+    if len(head) < 8:
+        return b""
+    size = int.from_bytes(head, "little")
+    raw = stream.read(size)
+    return raw if len(raw) == size else b""

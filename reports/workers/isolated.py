@@ -1,0 +1,176 @@
+"""Run cells in a process of their own, which is ended when it fails or takes too long."""
+
+from __future__ import annotations
+
+import contextlib
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import IO, Generic, TypeVar, cast
+
+from models.errors import CrankcheckError
+from reports.workers.child import receive, send
+
+Result = TypeVar("Result")
+LIMIT_S = 60.0
+MEMORY_GB = 2.0
+MOST_S, MOST_GB = 1e6, 1e4
+START_S = 60.0
+"""How long a child may take to import what it needs."""
+START = (
+    "import sys; sys.path[:] = sys.argv[2:]; from reports.workers.child import main; "
+    "main(int(sys.argv[1]))"
+)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a cell may take: wall time [s] and memory [GB] beyond that of a child at its start."""
+
+    time_s: float = LIMIT_S
+    memory_gb: float = MEMORY_GB
+
+
+def checked_limits(time_s: float, memory_gb: float) -> Limits:
+    """What a user lets a cell take. Raises CrankcheckError for numbers that are no limits."""
+    for option, value, most, unit in (
+        ("--limit-s", time_s, MOST_S, "seconds"),
+        ("--memory-gb", memory_gb, MOST_GB, "GB"),
+    ):
+        if not 0.0 < value <= most:
+            raise CrankcheckError(f"{option} {value:g}: give a number above 0 to {most:g} {unit}")
+    return Limits(time_s, memory_gb)
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason."""
+
+    status: str
+    reason: str
+
+
+class Isolated(Generic[Result]):
+    """A child process that runs one job at a time; a new one takes the place of one that died.
+
+    Not to be shared by threads. `close` ends the child at once.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+        self._child: subprocess.Popen[bytes] | None = None
+        self.closed = False
+        self._at_work = threading.Lock()
+
+    def call(self, function: Callable[..., Result], *arguments: object) -> Result | Lost:
+        """What ``function`` returns, or how it was lost.
+
+        The function has to be importable by name, and the arguments to be pickled.
+        """
+        with self._at_work:
+            return self._called(function, arguments)
+
+    def _called(
+        self, function: Callable[..., Result], arguments: tuple[object, ...]
+    ) -> Result | Lost:
+        """As `call`, with the child for itself."""
+        if self.closed:
+            return Lost("crashed", "the sweep was ended")
+        child = self._child or self._started()
+        if self.closed:  # while it started
+            return Lost("crashed", "the sweep was ended")
+        jobs, answers = _pipes(child)
+        with _watched(child, self.limits.time_s) as late:
+            try:
+                send(jobs, (function, arguments))
+                raw = receive(answers)
+            except OSError:
+                raw = b""
+        if not raw:
+            return self._lost(child, late.is_set())
+        how, value, worn = pickle.loads(raw)
+        if worn or late.is_set():  # an answer in the last moment stands; the child is gone
+            self._end(child)
+        return cast(Result, value) if how == "done" else Lost(how, str(value))
+
+    def close(self) -> None:
+        """End the child, also in the middle of a job that another thread waits for."""
+        self.closed = True
+        if (child := self._child) is not None:
+            child.kill()
+        with self._at_work:
+            if self._child is not None:
+                self._end(self._child)
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        """A new child, in a session of its own: Ctrl-C at the terminal is not for it."""
+        child = self._child = subprocess.Popen(
+            # The packages of this process, whatever stands in the folder that it works in.
+            [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        with _watched(child, START_S):
+            receive(_pipes(child)[1])  # it is ready, or has ended: the first job will tell
+        return child
+
+    def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:
+        """Why a child gave no answer."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(1.0)  # it is about to end by itself, which tells more than being killed
+        code = self._end(child)
+        if late:
+            return Lost("timeout", f"no end within {self.limits.time_s:g} s")
+        return Lost("crashed", f"the engine ended its process ({_ending(code)})")
+
+    def _end(self, child: subprocess.Popen[bytes]) -> int:
+        """End a child, whose exit code this is; the next job gets another."""
+        self._child = None
+        child.kill()
+        code = child.wait()
+        for pipe in _pipes(child):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        return code
+
+
+@contextlib.contextmanager
+def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threading.Event]:
+    """Kill the child when the block takes longer; the event says whether that happened."""
+    late = threading.Event()
+
+    def end() -> None:
+        late.set()
+        child.kill()
+
+    clock = threading.Timer(limit_s, end)
+    clock.daemon = True
+    clock.start()
+    try:
+        yield late
+    finally:
+        clock.cancel()
+        clock.join()  # it may be at it: the next job must not be what it kills
+
+
+def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:
+    """Where jobs go in and answers come out."""
+    assert child.stdin is not None
+    assert child.stdout is not None
+    return child.stdin, child.stdout
+
+
+def _ending(code: int) -> str:
+    """An exit code in words."""
+    if code >= 0:
+        return f"exit code {code}"
+    try:
+        return f"signal {signal.Signals(-code).name}"
+    except ValueError:
+        return f"signal {-code}"

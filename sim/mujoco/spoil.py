@@ -1,0 +1,87 @@
+"""What can be broken in a session of MuJoCo: the compiled model and its state, in place."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
+from sim.engine import Session
+from sim.mujoco.engine import MujocoSession
+from sim.mujoco.settings import text
+from sim.spoil import Opening, Post, Spoiler, rounded
+
+
+class MujocoSpoiler:
+    """The loops are equality constraints; the rest is a tree."""
+
+    def open_loop(self, session: Session) -> None:
+        """Of the two flags a rollout reads that of the model, a step that of the state."""
+        own = _own(session)
+        own._model.eq_active0[:] = 0
+        own._data.eq_active[:] = 0
+
+    def soften(self, session: Session, opening: Opening, share: float) -> None:
+        """The impedance is the share of a joint's acceleration that is held."""
+        held = np.array([float(opening.settings[f"solimp_{end}"]) for end in ("dmin", "dmax")])
+        _own(session)._model.eq_solimp[:, :2] = held - share
+
+    def slip(self, session: Session, by_m: float) -> None:
+        """The site of the second body moves."""
+        model = _own(session)._model
+        model.site_pos[model.eq_obj2id[0], 0] += by_m
+
+    def pull(self, session: Session, gravity_m_s2: float) -> None:
+        """The mechanism stands in the x-y plane, so down is -y."""
+        _own(session)._model.opt.gravity[1] -= gravity_m_s2
+
+    def load(self, session: Session, share: float) -> None:
+        """Of the last body."""
+        _own(session)._model.body_mass[-1] *= 1.0 + share
+
+    def turn(self, session: Session, angle_rad: float) -> None:
+        """The last joint."""
+        own = _own(session)
+        own._data.qpos[-1] += angle_rad
+        mujoco.mj_forward(own._model, own._data)
+
+    def block(self, session: Session, opening: Opening, body: str, post: Post) -> None:
+        """The post is written into the model, which is compiled again; it and the bars of ``body``
+        are as hard as the joints."""
+        own = _own(session)
+        spec = mujoco.MjSpec.from_string(
+            text(opening.scene, opening.state, opening.settings, opening.dt_s, opening.drive)
+        )
+        spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[post.radius_m, 0.0, 0.0],
+            pos=[*post.centre, 0.0],
+        )
+        for geom in (spec.worldbody.geoms[-1], *spec.body(body).geoms):
+            geom.contype = geom.conaffinity = 1
+            geom.solref, geom.solimp = own._model.eq_solref[0], own._model.eq_solimp[0]
+        model = spec.compile()
+        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        data = mujoco.MjData(model)
+        data.qpos[:], data.qvel[:] = own._data.qpos, own._data.qvel
+        mujoco.mj_forward(model, data)
+        own._model, own._data = model, data
+
+    def round_state(self, session: Session, relative: float) -> None:
+        """Joint coordinates and their rates."""
+        data = _own(session)._data
+        data.qpos[:] = rounded(np.array(data.qpos), relative)
+        data.qvel[:] = rounded(np.array(data.qvel), relative)
+
+    def lose(self, session: Session) -> None:
+        """Of the last joint; MuJoCo then puts the whole state back to the start."""
+        _own(session)._data.qvel[-1] = np.nan
+
+
+def _own(session: Session) -> MujocoSession:
+    """The session as what it is; its parts are reached into, which nothing else does."""
+    return cast(MujocoSession, session)
+
+
+SPOILER: Spoiler = MujocoSpoiler()

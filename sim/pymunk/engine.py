@@ -1,0 +1,263 @@
+"""pymunk (Chipmunk): every joint an impulse constraint, solved by iteration at each step."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+
+import numpy as np
+import pymunk
+import pymunk.batch
+from numpy.typing import NDArray
+
+from models.joints import block_name, blocks
+from models.laws import ConstantSpeed
+from models.motion import State
+from models.scene import Point, Scene
+from sim import drive as drives
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
+from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines
+from sim.pymunk.space import SpaceModel, build
+
+Array = NDArray[np.float64]
+FIELDS = (
+    pymunk.batch.BodyFields.POSITION
+    | pymunk.batch.BodyFields.ANGLE
+    | pymunk.batch.BodyFields.VELOCITY
+    | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+)
+WIDTH = 6
+"""Numbers per body: x, y, angle, vx, vy, omega."""
+ROOM = 64
+"""Numbers of memory to spare: the buffer may not grow memory that is not its own."""
+VELOCITY_SHIFT = 0.5
+"""Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
+
+
+class PymunkEngine:
+    """The adapter."""
+
+    name = "pymunk"
+    profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
+
+    def version(self) -> str:
+        """The version of pymunk."""
+        return str(pymunk.version)
+
+    def check(self, settings: Mapping[str, SettingValue]) -> None:
+        """Raise SettingError for a value that Chipmunk does not take."""
+        checked(settings)
+
+    def open(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> PymunkSession:
+        """A session at ``state``; EngineError where pymunk cannot hold the scene."""
+        return PymunkSession(scene, state, settings, dt_s, drive)
+
+
+ENGINE = PymunkEngine()
+
+
+class PymunkSession:
+    """One space."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        state: State,
+        settings: Mapping[str, SettingValue],
+        dt_s: float,
+        drive: Drive,
+    ) -> None:
+        checked(settings)
+        self._scene, self._dt, self._settings = scene, dt_s, settings
+        self._start_s, self._done = state.time_s, 0
+        self._model: SpaceModel = build(
+            scene,
+            state,
+            servo=drive == "servo",
+            free=drive == "free",
+            exact_lines=exact_lines(settings),
+            delay_s=VELOCITY_SHIFT * dt_s,
+        )
+        self._space = self._model.space
+        self._space.iterations = int(settings["iterations"])
+        self._space.damping = float(settings["damping"])
+        for constraint in self._space.constraints:
+            constraint.error_bias = float(settings["error_bias"])
+        law = scene.driver.law
+        self._coasts = drive == "free" or isinstance(law, ConstantSpeed)
+        if drive != "free":
+            first = drives.start_speed(law, state.time_s, dt_s, VELOCITY_SHIFT)
+            self._model.crank.angular_velocity = first
+        self._buffer = pymunk.batch.Buffer()
+        self._memory = np.empty(0)
+        self._rows = _rows(self._model)
+
+    def facts(self) -> Facts:
+        """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
+        free = {
+            name: body
+            for name, body in self._model.bodies.items()
+            if body.body_type == pymunk.Body.DYNAMIC
+        }
+        space = self._space
+        biases = {float(constraint.error_bias) for constraint in space.constraints}
+        return Facts(
+            version=ENGINE.version(),
+            mass_kg={n: b.mass for n, b in free.items()},
+            inertia_kg_m2={n: b.moment for n, b in free.items() if math.isfinite(b.moment)},
+            centre_m={n: _sum(self._model.centre[n], b.center_of_gravity) for n, b in free.items()},
+            gravity_m_s2=(space.gravity[0], space.gravity[1]),
+            start=self.read(),
+            settings=dict(self._settings)
+            | {
+                "timestep_s": self._dt,
+                "iterations": int(space.iterations),
+                "damping": float(space.damping),
+                **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
+            },
+            velocity_shift=VELOCITY_SHIFT,
+            acceleration_shift=0.0,
+            reports_accelerations=False,
+        )
+
+    def step(self, steps: int) -> None:
+        """Advance without logging."""
+        self._advance(steps, 0)
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance; one batch call per logged step appends all bodies to one buffer."""
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
+        began = time.perf_counter()
+        self._make_room(len(at))
+        self._log()
+        self._advance(steps, every)
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        wall = time.perf_counter() - began
+        rows = rows.reshape(len(at), -1, WIDTH)
+        good = np.isfinite(rows).all(axis=(1, 2))
+        count = len(at) if good.all() else int(np.argmin(good))
+        poses = self._poses(rows[:count], at[:count])
+        return Log(poses, (count - 1) * every, count < len(at), (), wall)
+
+    def read(self) -> Poses:
+        """The current state."""
+        self._make_room(1)
+        self._log()
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        return self._poses(rows.reshape(1, -1, WIDTH), np.array([float(self._done)]))
+
+    def _make_room(self, samples: int) -> None:
+        """Empty the buffer, after lending it memory for the samples; what it grows it leaks."""
+        need = samples * (len(self._rows) + 1) * WIDTH + ROOM
+        if len(self._memory) < need:
+            self._memory = np.empty(need)
+            self._buffer.set_float_buf(self._memory)
+        self._buffer.clear()
+
+    def _log(self) -> None:
+        """Append the current state of all bodies to the buffer."""
+        pymunk.batch.get_space_bodies(self._space, FIELDS, self._buffer)
+
+    def _advance(self, steps: int, every: int) -> None:
+        """Step; log after every ``every``-th step, or never if it is 0."""
+        if self._coasts:
+            self._coast(steps, every)
+        else:
+            self._follow(steps, every)
+        self._done += steps
+
+    def _coast(self, steps: int, every: int) -> None:
+        """Step with the crank free or at constant speed; tight loops, that logging slows little."""
+        step, dt = self._space.step, self._dt
+        log, space, buffer = pymunk.batch.get_space_bodies, self._space, self._buffer
+        if every == 1:
+            for _ in range(steps):
+                step(dt)
+                log(space, FIELDS, buffer)
+            return
+        for _ in range(steps // every if every else 0):
+            for _ in range(every):
+                step(dt)
+            log(space, FIELDS, buffer)
+        for _ in range(steps % every if every else steps):
+            step(dt)
+
+    def _follow(self, steps: int, every: int) -> None:
+        """Step with the crank on its law.
+
+        A step turns the crank by speed * dt before the other bodies' velocities are solved for, so
+        the crank is set back by the next step's turn and ends at the law's angle, with the speed
+        of the step to come.
+        """
+        step, dt = self._space.step, self._dt
+        crank, motor = self._model.crank, self._model.motor
+        law, first = self._scene.driver.law, self._done + 1
+        theta = drives.angles(law, self._start_s, dt, first, first + steps - 1)
+        chord = drives.chords(law, self._start_s, dt, first, first + steps - 1)
+        for k, (angle, speed) in enumerate(zip(theta.tolist(), chord.tolist(), strict=True), 1):
+            if motor is not None:
+                motor.rate = speed
+            else:
+                crank.angle = angle - speed * dt
+                crank.angular_velocity = speed
+            step(dt)
+            if every and k % every == 0:
+                self._log()
+
+    def _poses(self, rows: Array, at: Array) -> Poses:
+        """Poses of the links' own frames from the bodies' centres of gravity."""
+        lag = VELOCITY_SHIFT * self._dt
+        found = {
+            name: _pose(rows[:, row], self._model.centre[name], lag)
+            for name, row in self._rows.items()
+        }
+        held = blocks(self._scene)
+        return Poses(
+            time_s=self._start_s + self._dt * at,
+            links={name: found[name] for name in self._scene.links},
+            blocks={s.name: found[block_name(s)] for s in held.values()},
+            lag_s=lag,
+        )
+
+
+def _sum(a: Point, b: Point) -> Point:
+    """Sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1]
+
+
+def _rows(model: SpaceModel) -> dict[str, int]:
+    """Which row of a batch belongs to which body; the static body of the space has one too."""
+    buffer = pymunk.batch.Buffer()
+    pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
+    order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
+    return {name: order.index(body.id) for name, body in model.bodies.items()}
+
+
+def _pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
+    """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
+    theta, omega = row[:, 2], row[:, 5]
+    later = _arm(theta + lag_s * omega, centre)
+    across = np.stack([-later[:, 1], later[:, 0]], axis=-1)
+    none = np.full(len(theta), np.nan)
+    return BodyPose(
+        origin=row[:, 0:2] - _arm(theta, centre),
+        theta=theta,
+        velocity=row[:, 3:5] - omega[:, None] * across,
+        omega=omega,
+        origin_acceleration=np.full((len(theta), 2), np.nan),
+        alpha=none,
+    )
+
+
+def _arm(theta: Array, local: Point) -> Array:
+    """A vector of a body's frame in the plane (T, 2)."""
+    c, s = np.cos(theta), np.sin(theta)
+    return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)

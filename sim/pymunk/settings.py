@@ -1,0 +1,62 @@
+"""pymunk's settings: the two profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sim.engine import Profile, Setting, SettingValue
+from sim.settings import check_choices, check_ranges
+
+AS_SHIPPED = Profile(
+    "as-shipped",
+    "pymunk",
+    "pymunk's own defaults",
+    {
+        "iterations": Setting(10, "default"),
+        "error_bias": Setting(
+            0.0017970074436457143,
+            "default, (1 - 0.1f)^60: a joint error loses 10 % in 1/60 s, so errors fall as dt",
+        ),
+        "damping": Setting(1.0, "default: none"),
+        "lines": Setting("groove", "points on lines run in pymunk's groove joints"),
+    },
+)
+TUNED = Profile(
+    "tuned",
+    "pymunk",
+    "Joint errors removed within the step",
+    {
+        "iterations": Setting(
+            150,
+            "error_bias matters only as far as the iteration converges: with 100 the heavy ram of "
+            "scene shaper breaks away at steps below 1/5000 turn, with 130 it holds; 14 of the 18 "
+            "shipped scenes need 20 at most (`crankcheck tune`), for a quarter of the cost",
+        ),
+        "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
+        "damping": Setting(1.0, "none"),
+        "lines": Setting(
+            "exact",
+            "a groove lets the sliding speed leak across the line unless the pushed bodies cannot "
+            "turn; there a pin joint with a moving end holds the point (see sim.pymunk.rail)",
+        ),
+    },
+)
+
+
+RANGES = {
+    "iterations": (1, 1_000_000),
+    "error_bias": (0.0, 1.0),
+    "damping": (0.0, 1.0),
+}
+"""What Chipmunk takes; outside of it some values end the process."""
+
+
+def checked(settings: Mapping[str, SettingValue]) -> None:
+    """Refuse values that Chipmunk does not take. Raises SettingError."""
+    check_choices(settings, {"lines": ("groove", "exact")})
+    check_ranges(settings, RANGES)
+
+
+def exact_lines(settings: Mapping[str, SettingValue]) -> bool:
+    """Whether points on lines are held exactly."""
+    return settings["lines"] == "exact"

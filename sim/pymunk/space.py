@@ -1,0 +1,219 @@
+"""The pymunk space of a scene: a body per link, joints as constraints, no shapes.
+
+Bodies have their origin at the centre of gravity, as Chipmunk wants it; `Body.local` keeps where
+the link's own frame lies. A driven crank is a kinematic body on its pivot. A massless slider block
+is a groove that the point of its link runs in. A body that slides on the ground cannot turn: it
+gets an infinite moment; on a moving guide a gear of ratio 1 holds its angle.
+
+A groove is in error where pushed bodies turn; ``sim.pymunk.rail`` says why, and holds the cure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import pymunk
+
+from models.errors import EngineError
+from models.joints import (
+    Joints,
+    Prism,
+    Slot,
+    bodies,
+    joints,
+    less,
+    local_point,
+    sliding_angle,
+    turned,
+)
+from models.motion import State
+from models.poses import along, centre_of, frames, mass_of
+from models.scene import GROUND, Point, Scene, Slider, span
+from sim.pymunk.rail import Rail
+
+FAR = 1e3
+"""Ends of a groove over the sum of all lengths: where lines cross at a small angle a slider travels
+much further than any link is long. Chipmunk rounds at 1e-13 of the lengths then."""
+
+
+@dataclass(frozen=True)
+class SpaceModel:
+    """A space, its moving bodies by name in the order they were added, and the crank.
+
+    ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
+    ``motor`` is the servo, where there is one.
+    """
+
+    space: pymunk.Space
+    bodies: Mapping[str, pymunk.Body]
+    centre: Mapping[str, Point]
+    crank: pymunk.Body
+    motor: pymunk.SimpleMotor | None
+
+
+def build(
+    scene: Scene,
+    state: State,
+    *,
+    servo: bool = False,
+    free: bool = False,
+    exact_lines: bool = True,
+    delay_s: float = 0.0,
+) -> SpaceModel:
+    """The space of ``scene`` at ``state``.
+
+    The crank is dynamic under ``servo``, with a motor, and where it is ``free``, without one.
+    Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
+    is in error. Velocities are those of ``delay_s`` later (see `models.poses.frames`).
+
+    Raises
+    ------
+    EngineError
+        A link without mass that has to move freely, or a massless block that no body carries.
+    """
+    space = pymunk.Space()
+    space.gravity = scene.gravity_m_s2
+    held = joints(scene)
+    fixed_angle = {p.body for p in held.prisms if p.slider.on == GROUND}
+    where = frames(scene, state, delay_s)
+    made: dict[str, pymunk.Body] = {GROUND: space.static_body}
+    centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
+    for name in bodies(scene):
+        kinematic = name == scene.driver.link and not (servo or free)
+        pivot = scene.driver_pivot
+        centre[name] = local_point(scene, name, pivot) if kinematic else centre_of(scene, name)
+        body = _body(scene, name, kinematic, name in fixed_angle)
+        body.position = where[name].at(centre[name])
+        body.angle = where[name].theta
+        body.velocity = where[name].velocity_at(body.position) if not kinematic else (0.0, 0.0)
+        body.angular_velocity = where[name].omega
+        made[name] = body
+        space.add(body)
+    motor = None
+    crank = made[scene.driver.link]
+    if servo:
+        motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
+        space.add(_plain(motor))
+    found = _pins(scene, held, made, centre, pinned=servo or free)
+    for slide in held.slides:
+        found += _slide(scene, state, slide, made, centre, exact_lines)
+    for constraint in found:
+        space.add(_plain(constraint))
+    del made[GROUND]
+    return SpaceModel(space, made, centre, crank, motor)
+
+
+def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
+    """A body with the mass of the scene."""
+    if kinematic:
+        return pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    mass, inertia = mass_of(scene, name)
+    if mass <= 0.0 or (inertia <= 0.0 and not fixed_angle):
+        raise EngineError(
+            f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; pymunk moves no body without "
+            "both, give them"
+        )
+    return pymunk.Body(mass, math.inf if fixed_angle else inertia)
+
+
+def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
+    """The constraint without collision bookkeeping; there are no shapes."""
+    constraint.collide_bodies = False
+    return constraint
+
+
+def _pins(
+    scene: Scene,
+    held: Joints,
+    made: Mapping[str, pymunk.Body],
+    centre: Mapping[str, Point],
+    *,
+    pinned: bool,
+) -> list[pymunk.Constraint]:
+    """All pins; a kinematic crank needs none to the ground and is not ``pinned``."""
+    found: list[pymunk.Constraint] = []
+    for joint in held.pins:
+        first, *others = _pinned_bodies(scene, joint.bodies)
+        for other in others:
+            driven = {first, other} == {GROUND, scene.driver.link} and not pinned
+            if not (driven and joint.point == scene.driver_pivot):
+                a = _anchor(scene, centre, first, joint.point)
+                b = _anchor(scene, centre, other, joint.point)
+                found.append(pymunk.PivotJoint(made[first], made[other], a, b))
+    return found
+
+
+def _slide(
+    scene: Scene,
+    state: State,
+    slide: Prism | Slot,
+    made: Mapping[str, pymunk.Body],
+    centre: Mapping[str, Point],
+    exact_lines: bool,
+) -> list[pymunk.Constraint]:
+    """A point on a line and, on a moving guide, the gear that keeps a sliding body's angle."""
+    slider, rider = slide.slider, _rider(slide)
+    guide, body = made[slider.on], made[rider]
+    anchor = _anchor(scene, centre, rider, slider.point)
+    along_line = turned((1.0, 0.0), slider.direction_rad)
+    start = less(slider.through_m, centre[slider.on])
+    off = abs(along_line[0] * start[1] - along_line[1] * start[0])
+    small = 1e-12 * scene.longest_m
+    sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
+    found: list[pymunk.Constraint] = []
+    if sound or not exact_lines:
+        ends = [less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
+        found.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
+    else:
+        rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
+        found.append(rail.joint())
+    if isinstance(slide, Prism) and slider.on != GROUND:
+        found.append(pymunk.GearJoint(guide, body, sliding_angle(slider), 1.0))
+    return found
+
+
+def _firm(body: pymunk.Body) -> bool:
+    """Whether no push turns the body."""
+    return body.body_type != pymunk.Body.DYNAMIC or math.isinf(body.moment)
+
+
+def _anchor(scene: Scene, centre: Mapping[str, Point], body: str, point: str) -> Point:
+    """A point in the coordinates of the pymunk body."""
+    return less(local_point(scene, body, point), centre[body])
+
+
+def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The bodies of a pin, immovable ones first, so that all others hang on the firmest."""
+    firm = {GROUND: 0, scene.driver.link: 1}
+    return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
+
+
+def _rider(slide: Prism | Slot) -> str:
+    """The body whose point runs in the groove."""
+    if isinstance(slide, Prism):
+        return slide.body
+    if not slide.bodies:
+        raise EngineError(
+            f"slider {slide.slider.name}: no body carries point {slide.slider.point}; give "
+            f"sliders.{slide.slider.name} a mass_kg above 0"
+        )
+    return slide.bodies[0]
+
+
+def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:
+    """Ends of a groove in the frame of the guide [m], far enough that no motion reaches them."""
+    where = frames(scene, state)
+    place = where[rider].at(local_point(scene, rider, slider.point))
+    now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
+    reach = FAR * sum(_reach(scene, name) for name in (GROUND, *scene.links))
+    u = turned((1.0, 0.0), slider.direction_rad)
+    a, b = now - reach, now + reach
+    x, y = slider.through_m
+    return (x + a * u[0], y + a * u[1]), (x + b * u[0], y + b * u[1])
+
+
+def _reach(scene: Scene, body: str) -> float:
+    """The largest distance between two points of a body [m]."""
+    return span(scene.ground if body == GROUND else scene.links[body].points)

@@ -1,0 +1,94 @@
+"""What can be broken in a session of pymunk: its space, with bodies and constraints, in place."""
+
+from __future__ import annotations
+
+import math
+from typing import cast
+
+import numpy as np
+import pymunk
+
+from sim.engine import Session
+from sim.pymunk.engine import PymunkSession
+from sim.pymunk.space import SpaceModel
+from sim.spoil import Opening, Post, Spoiler, rounded
+
+
+class PymunkSpoiler:
+    """Every joint is a constraint; that of two moving bodies closes the loop."""
+
+    def open_loop(self, session: Session) -> None:
+        """The constraint leaves the space."""
+        model = _model(session)
+        model.space.remove(_closing(model))
+
+    def soften(self, session: Session, opening: Opening, share: float) -> None:
+        """`error_bias` is the share of a gap that is left after a second."""
+        a_step = float(opening.settings["error_bias"]) ** opening.dt_s + share
+        for constraint in _model(session).space.constraints:
+            constraint.error_bias = a_step ** (1.0 / opening.dt_s)
+
+    def slip(self, session: Session, by_m: float) -> None:
+        """The anchor on the second body moves."""
+        joint = cast(pymunk.PivotJoint, _closing(_model(session)))
+        joint.anchor_b = (joint.anchor_b[0] + by_m, joint.anchor_b[1])
+
+    def pull(self, session: Session, gravity_m_s2: float) -> None:
+        """Down is -y."""
+        space = _model(session).space
+        space.gravity = (space.gravity[0], space.gravity[1] - gravity_m_s2)
+
+    def load(self, session: Session, share: float) -> None:
+        """Of the last body."""
+        _last(session).mass *= 1.0 + share
+
+    def turn(self, session: Session, angle_rad: float) -> None:
+        """About its centre of gravity."""
+        _last(session).angle += angle_rad
+
+    def block(self, session: Session, opening: Opening, body: str, post: Post) -> None:
+        """The post is a part of the ground, which joints keep from colliding with what they hold.
+        The bar of ``body`` is as thick as MuJoCo's."""
+        model = _model(session)
+        for constraint in model.space.constraints:
+            constraint.collide_bodies = True
+        x0, y0 = model.centre[body]
+        first, *others = [(x - x0, y - y0) for x, y in opening.scene.links[body].points.values()]
+        thin = 0.012 * opening.scene.longest_m
+        bars = [pymunk.Segment(model.bodies[body], first, end, thin) for end in others]
+        ground = model.space.static_body
+        model.space.add(pymunk.Circle(ground, post.radius_m, post.centre), *bars)
+
+    def round_state(self, session: Session, relative: float) -> None:
+        """Places, angles and velocities of all bodies, the crank's too."""
+        for body in _model(session).bodies.values():
+            state = np.array(
+                [*body.position, body.angle, *body.velocity, body.angular_velocity],
+                dtype=np.float64,
+            )
+            x, y, angle, vx, vy, omega = rounded(state, relative).tolist()
+            body.position, body.angle = (x, y), angle
+            body.velocity, body.angular_velocity = (vx, vy), omega
+
+    def lose(self, session: Session) -> None:
+        """Of the last body."""
+        _last(session).velocity = (math.nan, math.nan)
+
+
+def _model(session: Session) -> SpaceModel:
+    """The space of the session, which is reached into here, and by nothing else."""
+    return cast(PymunkSession, session)._model
+
+
+def _last(session: Session) -> pymunk.Body:
+    """The body that was added last."""
+    return list(_model(session).bodies.values())[-1]
+
+
+def _closing(model: SpaceModel) -> pymunk.Constraint:
+    """The last joint of two bodies that both can move freely."""
+    free = pymunk.Body.DYNAMIC
+    return [c for c in model.space.constraints if c.a.body_type == c.b.body_type == free][-1]
+
+
+SPOILER: Spoiler = PymunkSpoiler()

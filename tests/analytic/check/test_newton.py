@@ -1,0 +1,216 @@
+"""The closed form against the second opinion: two computations, one mechanism."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import analytic
+from analytic import kinematics
+from analytic.check.constraints import Constraints
+from analytic.check.newton import Guess
+from analytic.dyads.parts import MovingLine
+from analytic.dyads.plane import EPS, Real, Vec
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError
+from models.files import load_scene, shipped
+from models.motion import Motion
+from models.scene import Scene
+from tests.analytic.chain import coordinates
+from tests.worlds.strategies import FORMS, Designed, mechanisms, swing_times
+
+Array = NDArray[np.float64]
+SAMPLES = 73
+ROUNDINGS = 30.0
+
+
+def rough_guess(scene: Scene, motion: Motion) -> Guess:
+    """The first position, to two decimals of the longest link and of a radian."""
+    system, unit = Constraints(scene), 0.01 * scene.longest_m
+    q = coordinates(scene, motion, 0)
+    rounded = [round(c / u) * u for c, u in zip(q, (unit, unit, 0.01) * (len(q) // 3), strict=True)]
+    return Guess({body: (*rounded[at : at + 3],) for body, at in system.at.items()})  # type: ignore[misc]
+
+
+def both(scene: Scene, time_s: Array, guess: Guess | None = None) -> tuple[Motion, Motion]:
+    closed = kinematics.solve(scene, time_s)
+    return closed, analytic.check.newton.solve(scene, time_s, guess or rough_guess(scene, closed))
+
+
+def newton_rounding(scene: Scene, motion: Motion) -> tuple[Array, Array, Array]:
+    """What Newton's own rounding may come to at each level, over lengths and radians (T,).
+
+    With lengths over the longest link, and S the norm of the inverse Jacobian: rounding of the
+    constraints is eps times the largest coordinate; positions lose S, rates S again on the error of
+    the Jacobian, accelerations S once more.
+    """
+    system, unit = Constraints(scene), scene.longest_m
+    columns = np.tile([unit, unit, 1.0], system.size // 3)
+    position, rate, second = (np.empty(len(motion.time_s)) for _ in range(3))
+    for i in range(len(motion.time_s)):
+        q = np.array(coordinates(scene, motion, i))
+        jacobian = system.jacobian(q) * columns
+        jacobian /= np.abs(jacobian).max(axis=1, keepdims=True)
+        s = 1.0 + float(np.linalg.norm(np.linalg.inv(jacobian), np.inf))
+        size = 1.0 + float(np.abs(q / columns).max())
+        speed = max(float(np.abs(m.omega[i])) for m in motion.links.values())
+        speed = max([speed, *(_fast(p.velocity[i]) / unit for p in motion.points.values())])
+        gain = max(float(np.abs(m.alpha[i])) for m in motion.links.values())
+        gain = max([gain, *(_fast(p.acceleration[i]) / unit for p in motion.points.values())])
+        position[i] = ROUNDINGS * EPS * s * size
+        rate[i] = position[i] * s * speed
+        second[i] = position[i] * s * (gain + s * speed**2)
+    return position, rate, second
+
+
+def _fast(vector: Array) -> float:
+    return math.hypot(float(vector[0]), float(vector[1]))
+
+
+def _apart(value: Array, other: Array, *, turning: bool = False) -> Array:
+    apart = value - other
+    if turning:
+        apart = apart - math.tau * np.round(apart / math.tau)
+    return np.abs(apart) if apart.ndim == 1 else np.hypot(apart[:, 0], apart[:, 1])
+
+
+def disagreement(scene: Scene, closed: Motion, newton: Motion) -> float:
+    """The largest difference of the two, over what the bound and Newton's rounding allow."""
+    assert closed.bound is not None
+    allowed, worst = newton_rounding(scene, closed), 0.0
+    kinds: tuple[tuple[Mapping[str, object], ...], ...] = (
+        (closed.links, newton.links, closed.bound.links),
+        (closed.points, newton.points, closed.bound.points),
+        (closed.sliders, newton.sliders, closed.bound.sliders),
+    )
+    for kind, (ours, others, bounds) in enumerate(kinds):
+        assert ours.keys() == others.keys() == bounds.keys()
+        unit = 1.0 if kind == 0 else scene.longest_m
+        for name in ours:
+            levels = zip(*(vars(m[name]).values() for m in (ours, others, bounds)), strict=True)
+            for level, (value, other, bound) in enumerate(levels):
+                apart = _apart(value, other, turning=kind == 0 and level == 0)
+                assert np.isfinite(apart).all()
+                worst = max(worst, float(np.max(apart / (bound + unit * allowed[level]))))
+    return worst
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_closed_form_and_newton_agree_over_a_period(name: str) -> None:
+    scene = load_scene(name)
+    closed, newton = both(scene, swing_times(scene, SAMPLES))
+    assert disagreement(scene, closed, newton) <= 1.0
+    if {group.kind for group in analyse(scene).groups} == {"RPP"}:
+        return  # linear in its coordinates: on some processors Newton's step ends on the same bits
+    same = [np.array_equal(a, b) for a, b in zip(_numbers(closed), _numbers(newton), strict=True)]
+    assert not all(same), "bit for bit the same: is it the same computation?"
+
+
+def _numbers(motion: Motion) -> list[Array]:
+    """Every array of a motion."""
+    tracks = [*motion.links.values(), *motion.points.values(), *motion.sliders.values()]
+    return [array for track in tracks for array in vars(track).values()]
+
+
+def _hold_to_newton(designed: Designed) -> None:
+    """From a guess of two decimals, over a swing: same mechanism, same assembly, same motion."""
+    scene = designed.scene
+    closed = kinematics.solve(scene, swing_times(scene, 9))
+    rough = {
+        body: (round(x, 2), round(y, 2), round(a, 2)) for body, (x, y, a) in designed.frames.items()
+    }
+    newton = analytic.check.newton.solve(scene, closed.time_s, Guess(rough))
+    assert disagreement(scene, closed, newton) <= 1.0
+
+
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=20, deadline=None, derandomize=True, database=None)
+@given(data=st.data())
+def test_every_form_of_dyad_agrees_with_newton(form: str, data: st.DataObject) -> None:
+    designed = data.draw(mechanisms([form]))
+    assert analyse(designed.scene).groups[-1].kind == form[:3]
+    _hold_to_newton(designed)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@given(mechanisms())
+def test_chains_of_random_dyads_agree_with_newton(designed: Designed) -> None:
+    _hold_to_newton(designed)
+
+
+@pytest.mark.slow
+@settings(max_examples=2_000, deadline=None, derandomize=True, database=None)
+@given(mechanisms())
+def test_thousands_of_random_chains_agree_with_newton(designed: Designed) -> None:
+    _hold_to_newton(designed)
+
+
+def test_forms_cover_every_kind_and_role() -> None:
+    """Blocks, sliding links, and guides that are themselves unknown, for each kind that slides."""
+    assert {form[:3] for form in FORMS} == {"RRR", "RRP", "RPR", "PRP", "RPP"}
+    for kind in ("RRP", "RPR", "PRP", "RPP"):
+        said = " ".join(form for form in FORMS if form.startswith(kind))
+        assert all(role in said for role in ("block", "link", "guide"))
+
+
+def _reached(module: str, found: set[str]) -> set[str]:
+    """The modules of `analytic` that a module imports, directly or through others."""
+    root = Path(str(analytic.__file__)).parents[1]
+    path = root.joinpath(*module.split(".")).with_suffix(".py")
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+        names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom) and node.module == "analytic.dyads":
+            names = [f"analytic.dyads.{alias.name}" for alias in node.names]
+        for name in names:
+            if name.startswith("analytic.") and name not in found:
+                found.add(name)
+                _reached(name, found)
+    return found
+
+
+def test_neither_computation_imports_the_other() -> None:
+    closed, newton = (_reached(f"analytic.{m}", set()) for m in ("kinematics", "check.newton"))
+    assert {f"analytic.dyads.{kind}" for kind in ("rrr", "rrp", "rpr", "prp", "rpp")} <= closed
+    assert "analytic.check.newton" not in closed
+    names = {"analytic.structure.mobility", "analytic.structure.groups"}
+    assert newton == {"analytic.check.constraints", *names}, "only names are shared"
+
+
+def test_fault_planted_in_the_closed_form_makes_them_disagree(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    right = MovingLine.acceleration
+
+    def wrong(line: MovingLine, s: Real, speed: Real) -> Vec:
+        return right(line, s, -speed)  # Coriolis with the wrong sign
+
+    scene = load_scene("tangent")
+    monkeypatch.setattr(MovingLine, "acceleration", wrong)
+    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > 1e6
+
+
+def test_fault_planted_in_newton_makes_them_disagree(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = Constraints.gamma
+
+    def wrong(system: Constraints, q: Array, rates: Array, alpha: float) -> Array:
+        return right(system, q, rates * (1.0 + 1e-6), alpha)
+
+    scene = load_scene("slotted-lever")
+    monkeypatch.setattr(Constraints, "gamma", wrong)
+    assert disagreement(scene, *both(scene, swing_times(scene, 9))) > 1e3
+
+
+def test_newton_says_when_a_guess_leads_nowhere() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    nowhere = Guess(dict.fromkeys(scene.links, (0.0, 0.0, 0.0)))
+    with pytest.raises(CrankcheckError, match=r"fourbar-lecture-1: .*deg"):
+        analytic.check.newton.solve(scene, np.zeros(1), nowhere)

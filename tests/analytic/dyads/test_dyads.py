@@ -1,0 +1,221 @@
+"""The closed-form dyads against fifty digits: their error never exceeds the bound they carry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from mpmath import mp
+from numpy.typing import NDArray
+
+from analytic.dyads import rrr
+from analytic.dyads.parts import OpenError, Sliding, Turning
+from analytic.dyads.plane import EPS, ZERO, PointError, PointKinematics, Vec, fixed_point
+from tests.analytic.change_points.jets import Jet
+from tests.analytic.dyads.dyad_cases import KINDS, Bunch
+from tests.analytic.dyads.dyad_inputs import BUNCH, Draw, Exact, Moved
+
+Array = NDArray[np.float64]
+LEVELS = ("position", "rate", "acceleration")
+SURE = 20.0
+"""Rates have a bound wherever the sine exceeds so many times the square root of rounding."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Errors and bounds at the three levels, (N, 3), one row per unknown; what they belong to.
+
+    ``said`` is the sine that the dyad itself gives.
+    """
+
+    error: Array
+    bound: Array
+    unit: Array
+    sine: Array
+    said: Array
+    size: Array
+
+    def complaint(self, level: int) -> str:
+        worst = int(np.nanargmax(self.error[:, level] - self.bound[:, level]))
+        return (
+            f"{LEVELS[level]}: error {self.error[worst, level]:.3g} above the bound "
+            f"{self.bound[worst, level]:.3g} at sine {self.sine[worst]:.3g}"
+        )
+
+
+def _levels(unknown: Turning | Sliding) -> tuple[list[Array], list[Array]]:
+    """Values and bounds as arrays (3, n); the direction of a turning unknown comes apart."""
+    error = unknown.error
+    assert error is not None
+    if isinstance(unknown, Turning):
+        values = [np.zeros(BUNCH), unknown.omega, unknown.alpha]
+        bounds = [error.theta, error.omega, error.alpha]
+    else:
+        values = [unknown.s, unknown.speed, unknown.acceleration]
+        bounds = [error.displacement, error.speed, error.acceleration]
+    spread = [np.broadcast_to(np.asarray(b, dtype=float), (BUNCH,)) for b in bounds]
+    return values, spread
+
+
+def _angle_between(unknown: Turning, i: int, angle: Jet) -> float:
+    """By how much a direction is off the true angle, modulo whole turns."""
+    c, s = mp.cos_sin(angle.value)
+    x, y = mp.mpf(float(unknown.turn.x[i])), mp.mpf(float(unknown.turn.y[i]))
+    return abs(math.atan2(float(c * y - s * x), float(c * x + s * y)))
+
+
+def _compare(bunch: Bunch, shift: Exact | Moved) -> Found:
+    """The true errors of a bunch; NaN where the exact dyad, stretched, has no rates."""
+    rows: list[list[float]] = []
+    bounds: list[list[float]] = []
+    solved = [(u, *_levels(u)) for u in (bunch.dyad.first, bunch.dyad.second)]
+    for i in range(BUNCH):
+        for (unknown, values, bound), truth in zip(solved, bunch.truth(i, shift), strict=True):
+            exact = (truth.value, truth.rate, truth.second)
+            row = [abs(float(float(v[i]) - e)) for v, e in zip(values, exact, strict=True)]
+            if isinstance(unknown, Turning):
+                row[0] = _angle_between(unknown, i, truth)
+            rows.append(row)
+            bounds.append([float(b[i]) for b in bound])
+    turning = [isinstance(u, Turning) for u, _, _ in solved]
+    unit = np.where(np.tile(turning, BUNCH), 1.0, bunch.scale)[:, None]
+    return Found(
+        np.array(rows),
+        np.array(bounds),
+        unit * bunch.rate ** np.arange(3),
+        np.repeat(bunch.sine, 2),
+        np.repeat(np.broadcast_to(bunch.dyad.sine, (BUNCH,)), 2),
+        np.repeat(bunch.size, 2),
+    )
+
+
+def _many(kind: str, count: int, *, wrong: tuple[float, float] | None = None) -> Found:
+    """``count`` random dyads of a kind, half of them within 1e-6 of toggle."""
+    found = []
+    for number in range(count // BUNCH):
+        rng = np.random.default_rng([number, len(kind), ord(kind[1]), wrong is None])
+        bunch = KINDS[kind](Draw(rng, wrong=wrong))
+        found.append(_compare(bunch, Exact() if wrong is None else Moved(rng)))
+    return _joined(found)
+
+
+def _joined(found: list[Found]) -> Found:
+    columns = zip(*(vars(f).values() for f in found), strict=True)
+    return Found(*(np.concatenate(column) for column in columns))
+
+
+def _assert_bounded(found: Found) -> None:
+    """No error above its bound, no bound missing; without a true rate, none is claimed."""
+    assert not np.isnan(found.bound).any()
+    assert not np.isnan(found.error[:, 0]).any()
+    for level in range(3):
+        error, bound = found.error[:, level], found.bound[:, level]
+        inside = np.where(np.isnan(error), np.isinf(bound), error <= bound)
+        assert inside.all(), found.complaint(level)
+
+
+def _assert_certain_off_toggle(found: Found, kind: str) -> None:
+    """Bounds are finite but for a strip about toggle whose width rounding gives.
+
+    Two lines that cross lose their crossing where their angle is rounding; the others fold, and
+    lose their rates where the sine is the square root of rounding.
+    """
+    strip = EPS * (1.0 + found.size)
+    edge = SURE * (strip if kind in ("PRP", "RPP") else np.sqrt(strip))
+    assert np.isfinite(found.bound[found.sine > edge]).all()
+    if kind in ("RRR", "RRP", "RPR"):
+        assert np.isfinite(found.bound[:, 0]).all()
+
+
+def _check(kind: str, count: int) -> None:
+    found = _many(kind, count)
+    _assert_bounded(found)
+    _assert_certain_off_toggle(found, kind)
+    # Its square is a difference of lengths, or of angles.
+    power = 1 if kind in ("PRP", "RPP") else 2
+    off = np.abs(found.said**power - found.sine**power)
+    assert (off <= SURE * EPS * (1.0 + found.size)).all()
+    # A line through its pin (RPR without offset) has no toggle, so there are fewer of those.
+    assert (found.sine < 2e-3).mean() > 0.3, "half of the dyads are meant to stand near toggle"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_error_never_exceeds_the_bound(kind: str) -> None:
+    _check(kind, 5_000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_error_never_exceeds_the_bound_in_a_hundred_thousand(kind: str) -> None:
+    _check(kind, 100_000)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bound_covers_inputs_that_are_wrong_by_their_stated_error(kind: str) -> None:
+    """From rounding up to errors as large as the links, in places, rates, and turning guides."""
+    found = _many(kind, 2_000, wrong=(1e-13, 1.0))
+    _assert_bounded(found)
+    known = np.isfinite(found.bound) & (found.error > 0.0)
+    # Not by being boundless: most have a bound, and it is of the size of the change.
+    assert known[:, 0].mean() > 0.6
+    assert np.median(found.bound[known] / found.error[known]) < 50.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_bound_covers_wrong_inputs_in_a_hundred_thousand(kind: str) -> None:
+    _assert_bounded(_many(kind, 100_000, wrong=(1e-13, 1.0)))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bound_is_near_rounding_away_from_toggle(kind: str) -> None:
+    """Within some hundred roundings of each quantity's size; each level loses size / sine once."""
+    draws = (Draw(np.random.default_rng([n, 5]), near=False, far_m=10.0) for n in range(20))
+    found = _joined([_compare(KINDS[kind](draw), Exact()) for draw in draws])
+    good = found.sine > 0.1
+    assert good.mean() > 0.8
+    for level in range(3):
+        natural = found.unit[:, level] * (found.size / found.sine) ** (level + 1)
+        roundings = (found.bound[:, level] / (EPS * natural))[good]
+        assert np.median(roundings) < 1e3
+        assert np.quantile(roundings, 0.9) < 1e4
+
+
+def test_open_dyad_raises_with_its_shortage() -> None:
+    at, l1, l2 = fixed_point((0.3, -0.2)), 0.4, 0.7
+    for apart, short in ((1.35, 0.25), (0.1, 0.2)):
+        place = Vec(0.3 + np.array([0.5, apart]), -0.2)  # the first one closes
+        other = PointKinematics(place, ZERO, ZERO, None)
+        with pytest.raises(OpenError) as opened:
+            rrr.solve(at, other, l1, l2, 1)
+        assert opened.value.short_m[1] == pytest.approx(short, abs=1e-15)
+
+
+def test_dyad_open_by_rounding_alone_closes_in_toggle() -> None:
+    at, l1, l2 = fixed_point((0.0, 0.0)), 0.4, 0.7
+    apart = np.array([l1 + l2, math.nextafter(l1 + l2, 2.0), (l1 + l2) * (1 + 8 * EPS)])
+    other = PointKinematics(Vec(apart, 0.0 * apart), ZERO, ZERO, at.error)
+    dyad = rrr.solve(at, other, l1, l2, 1, certified=True)
+    assert isinstance(dyad.first, Turning)
+    assert dyad.first.error is not None
+    assert np.arctan2(dyad.first.turn.y, dyad.first.turn.x) == pytest.approx(0.0, abs=1e-7)
+    assert (dyad.first.error.theta < 1e-6).all()
+    assert np.isinf(dyad.first.error.omega).all()
+
+
+def test_what_hangs_on_an_uncertain_rate_is_uncertain_itself() -> None:
+    """Also where the rate is not a number, and its share is nothing times infinity."""
+    lost = PointError(1e-9, math.inf, math.inf)
+    for rate in (0.0, math.inf, math.nan):
+        still = Vec(np.full(3, rate), np.zeros(3))
+        at = PointKinematics(Vec(np.linspace(0.0, 0.1, 3), np.zeros(3)), still, still, lost)
+        with np.errstate(invalid="ignore"):
+            dyad = rrr.solve(at, fixed_point((0.5, 0.2)), 0.4, 0.3, 1, certified=True)
+        for unknown in (dyad.first, dyad.second):
+            assert isinstance(unknown, Turning)
+            assert unknown.error is not None
+            assert (unknown.error.theta < 1e-7).all()
+            assert np.isinf(unknown.error.omega).all()
+            assert np.isinf(unknown.error.alpha).all()

@@ -1,0 +1,270 @@
+"""Redundant links: found in the structure, moved by their pins, refused where they do not fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.check import newton
+from analytic.kinematics import reach, solve, solve_driven
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, StructureError
+from models.files import load_scene, parse_scene
+from models.laws import Oscillating
+from models.motion import LinkMotion
+from models.scene import Driver, Link, Point, Scene
+
+HIGH = np.radians(np.linspace(15.0, 165.0, 40))
+"""Driver angles that keep away from the flat positions."""
+
+
+def parallelogram(rockers: int, *, lever_m: float = 0.1, shift: Point = (0.0, 0.0)) -> Scene:
+    """Rods of 0.1 m on the ground 0.3 m apart under one coupler; the last one is the lever."""
+    names = [f"rocker{i}" for i in range(1, rockers)] + ["lever"]
+    feet = {f"A{i}": (0.3 * i, 0.0) for i in range(rockers + 1)}
+    feet[f"A{rockers}"] = (0.3 * rockers + shift[0], shift[1])
+    tops = {f"B{i}": (0.3 * i, 0.0) for i in range(rockers + 1)}
+    lengths = dict.fromkeys(names, 0.1) | {"lever": lever_m}
+    rods = [
+        f'{name} = {{ bar = ["A{i}", "B{i}"], length_m = {lengths[name]!r} }}'
+        for i, name in enumerate(names, start=1)
+    ]
+    text = f"""
+name = "parallelogram"
+source = "test"
+[ground]
+points = {{ {", ".join(f"{n} = [{x!r}, {y!r}]" for n, (x, y) in feet.items())} }}
+[links]
+crank = {{ bar = ["A0", "B0"], length_m = 0.1 }}
+coupler = {{ points = {{ {", ".join(f"{n} = [{x!r}, 0.0]" for n, (x, _) in tops.items())} }} }}
+{chr(10).join(rods)}
+[driver]
+link = "crank"
+speed_rad_s = 2.0
+start_deg = 15.0
+[branch]
+B1 = 1
+"""
+    return parse_scene(text, "test")
+
+
+def with_strut(scene: Scene, *points: str, body: str = "coupler", **moved: Point) -> Scene:
+    """The scene with a link over points of a body, or places beside them."""
+    places = {p: moved.get(p, scene.links[body].points[p]) for p in points}
+    x, y = next(iter(places.values()))
+    own = {p: (q[1] - y + 0.2, x - q[0]) for p, q in places.items()}  # a frame of its own, turned
+    strut = Link("strut", own, 1.0, (0.0, 0.0), 1.0)
+    return replace(scene, links={**scene.links, "strut": strut})
+
+
+@pytest.mark.parametrize("rockers", [2, 3])
+def test_rockers_beyond_the_second_are_redundant(rockers: int) -> None:
+    """The double parallelogram: mobility by count 0, with another rocker -1, really 1."""
+    found = analyse(parallelogram(rockers))
+    assert (found.count, found.mobility) == (2 - rockers, 1)
+    assert found.count == 3 * len(found.bodies) - 2 * found.pairs
+    assert [(g.kind, g.branch_key) for g in found.groups] == [("RRR", "B1")]
+    spare = [f"rocker{i}" for i in range(2, rockers)] + ["lever"]
+    assert [bridge.link for bridge in found.redundant] == spare
+    assert found.redundant[-1].pins == (f"A{rockers}", f"B{rockers}")
+    assert found.words == f"mobility 1 ({2 - rockers} by count; redundant: {', '.join(spare)})"
+
+
+def test_shipped_scenes_have_no_redundant_links() -> None:
+    for name in ("fourbar-lecture-1", "shaper", "sixbar-watt"):
+        found = analyse(load_scene(name))
+        assert (found.count, found.mobility, found.redundant) == (1, 1, ())
+        assert found.words == "mobility 1"
+
+
+@pytest.mark.parametrize("rockers", [2, 3])
+def test_all_rods_of_a_parallelogram_turn_with_its_crank_within_true_bounds(rockers: int) -> None:
+    scene = parallelogram(rockers)
+    rate, push = np.full_like(HIGH, 2.0), np.linspace(-5.0, 5.0, HIGH.size)
+    motion = solve_driven(scene, HIGH, rate, push)
+    assert motion.bound is not None
+    for name in (n for n in scene.links if n != "coupler"):
+        found, bound = motion.links[name], motion.bound.links[name]
+        for got, exact, most in (
+            (np.unwrap(found.theta), HIGH, bound.theta),
+            (found.omega, rate, bound.omega),
+            (found.alpha, push, bound.alpha),
+        ):
+            assert (np.abs(got - exact) <= most).all(), name
+            assert most.max() < 2e-10, name
+    place = np.stack([0.1 * np.cos(HIGH) + 0.3 * rockers, 0.1 * np.sin(HIGH)], axis=1)
+    off = np.hypot(*(motion.points[f"B{rockers}"].position - place).T)
+    assert (off <= motion.bound.points[f"B{rockers}"].position).all()
+
+
+def test_a_strut_on_the_coupler_turns_as_the_coupler_does_within_the_bounds_of_both() -> None:
+    scene = load_scene("sixbar-watt")
+    body = next(n for n, link in scene.links.items() if len(link.points) == 3)
+    points = tuple(scene.links[body].points)
+    law = Oscillating(scene.driver.law.offset_rad, 1.0, 5.0)
+    swinging = replace(scene, driver=Driver(scene.driver.link, law))
+    time_s = np.linspace(0.0, 2.0, 101)
+    for pins in (points, points[1:]):
+        motion = solve(with_strut(swinging, *pins, body=body), time_s)
+        assert motion.bound is not None
+        strut, bound = motion.links["strut"], motion.bound.links["strut"]
+        host, limit = motion.links[body], motion.bound.links[body]
+        turn = np.unwrap(strut.theta - host.theta)
+        lead = np.pi / 2.0 * np.round(turn[0] / (np.pi / 2.0))
+        assert (np.abs(turn - lead) <= bound.theta + limit.theta).all()
+        assert (np.abs(strut.omega - host.omega) <= bound.omega + limit.omega).all()
+        assert (np.abs(strut.alpha - host.alpha) <= bound.alpha + limit.alpha).all()
+        assert np.abs(strut.alpha).max() > 1.0
+        assert bound.alpha.max() < 1e-8
+
+
+def test_a_dyad_may_hang_on_a_redundant_link() -> None:
+    """Rod and arm on a point of the lever, beside its two pins; by the second opinion as well."""
+    scene = parallelogram(2)
+    lever = replace(scene.links["lever"], points={**scene.links["lever"].points, "E": (0.1, 0.05)})
+    more = {
+        "lever": lever,
+        "rod": Link("rod", {"E": (0.0, 0.0), "F": (0.3, 0.0)}, 1.0, (0.0, 0.0), 1.0),
+        "arm": Link("arm", {"H": (0.0, 0.0), "F": (0.25, 0.0)}, 1.0, (0.0, 0.0), 1.0),
+    }
+    hung = replace(scene, ground={**scene.ground, "H": (1.0, 0.0)}, links={**scene.links, **more})
+    assert [type(part).__name__ for part in analyse(hung).order] == ["Group", "Bridge", "Group"]
+    time_s = np.linspace(0.0, 1.2, 25)
+    motion = solve(hung, time_s)
+    slim = replace(hung, links={n: k for n, k in hung.links.items() if n != "rocker1"})
+    slim = replace(slim, branch={"B2": 1})  # without the first rocker the lever is the dyad's own
+    start = motion.state()
+    feet = {"crank": "A0", "coupler": "B0", "lever": "A2", "rod": "E", "arm": "H"}
+    guess = {n: (*start.position[p], start.theta[n]) for n, p in feet.items()}
+    other = newton.solve(slim, time_s, newton.Guess(guess))
+    for name in ("lever", "rod", "arm"):
+        assert same(motion.links[name], other.links[name])
+
+
+def same(one: LinkMotion, other: LinkMotion) -> bool:
+    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
+    return all(np.allclose(a, b, rtol=0, atol=1e-10) for a, b in pairs)
+
+
+def test_a_lever_of_another_length_is_refused_with_the_numbers() -> None:
+    said = (
+        r"parallelogram: redundant link lever is 0\.101 m long from A2 to B2, which stand 0\.1 m "
+        r"apart, 0\.001 m off, with crank at [-\d.]+ deg; .* mend its length .*, or remove it"
+    )
+    with pytest.raises(StructureError, match=said):
+        solve_driven(parallelogram(2, lever_m=0.101), HIGH, HIGH, HIGH)
+
+
+def rigid_at(degrees: float) -> Scene:
+    """The parallelogram with a lever that fits at one angle: its foot is moved about its top."""
+    lean = np.radians(25.0)
+    top = np.radians(degrees)
+    aside = (
+        -0.1 * np.cos(top + lean) + 0.1 * np.cos(top),
+        -0.1 * np.sin(top + lean) + 0.1 * np.sin(top),
+    )
+    return parallelogram(2, shift=(float(aside[0]), float(aside[1])))
+
+
+def test_a_lever_that_fits_at_one_angle_only_is_refused_where_it_fits_worst() -> None:
+    angles = np.radians([80.0, 90.0, 130.0, 95.0])
+    with pytest.raises(StructureError, match=r"redundant link lever .*crank at 130 deg"):
+        solve_driven(rigid_at(90.0), angles, angles, angles)
+
+
+@pytest.mark.parametrize("bound", [True, False])
+@pytest.mark.parametrize(("omega", "unit"), [(2.0, "m/s"), (0.0, "m/s\\^2")])
+def test_a_lever_that_fits_at_one_angle_only_is_refused_at_that_angle_too(
+    omega: float, unit: str, bound: bool
+) -> None:
+    """By what the distance of its pins changes at; at rest by what that would change at."""
+    at = np.radians([31.0])
+    said = rf"lever fits in place only: A2 and B2 part at [\d.]+ {unit} with crank at 31 deg"
+    with pytest.raises(StructureError, match=said):
+        solve_driven(rigid_at(31.0), at, np.array([omega]), np.array([3.0]), bound=bound)
+
+
+@pytest.mark.parametrize("bound", [True, False])
+def test_a_lever_whose_pins_turn_back_at_that_angle_is_refused_by_their_acceleration(
+    bound: bool,
+) -> None:
+    """Its foot stands in line with the way that its top goes about, farther off than its length."""
+    at = np.radians([40.0])
+    back = -0.05 * float(np.cos(at[0])), -0.05 * float(np.sin(at[0]))
+    long = parallelogram(2, lever_m=0.15, shift=back)
+    with pytest.raises(StructureError, match=r"lever fits in place only: .* at [\d.]+ m/s\^2"):
+        solve_driven(long, at, np.array([2.0]), np.zeros(1), bound=bound)
+
+
+@pytest.mark.parametrize("bound", [True, False])
+@pytest.mark.parametrize("relative", [1e-15, 1e-12, 9e-10, -9e-10, 1.2e-9, -1.2e-9, 1e-7, 1e-5])
+def test_a_misfit_of_a_billionth_is_let_pass_with_and_without_bounds(
+    relative: float, bound: bool
+) -> None:
+    scene = parallelogram(2, lever_m=0.1 * (1.0 + relative))
+    if abs(relative) > 1e-9:
+        with pytest.raises(StructureError, match=r"lever .*to within 1e-09 of it: ten digits"):
+            solve_driven(scene, HIGH, HIGH, HIGH, bound=bound)
+    else:
+        solve_driven(scene, HIGH, HIGH, HIGH, bound=bound)
+
+
+@pytest.mark.parametrize("relative", [9e-10, -9e-10])
+def test_a_misfit_that_is_let_pass_is_within_the_bounds(relative: float) -> None:
+    rate, push = np.full_like(HIGH, 2.0), np.linspace(-5.0, 5.0, HIGH.size)
+    motion = solve_driven(parallelogram(2, lever_m=0.1 * (1.0 + relative)), HIGH, rate, push)
+    assert motion.bound is not None
+    lever, bound = motion.links["lever"], motion.bound.links["lever"]
+    assert (np.abs(np.unwrap(lever.theta) - HIGH) <= bound.theta).all()
+    assert (np.abs(lever.omega - rate) <= bound.omega).all()
+    assert (np.abs(lever.alpha - push) <= bound.alpha).all()
+    assert bound.theta.min() > abs(relative)
+
+
+def test_a_third_pin_in_another_place_is_refused() -> None:
+    scene = parallelogram(2)
+    solve_driven(with_strut(scene, "B0", "B1", "B2"), HIGH, HIGH, HIGH)
+    with pytest.raises(StructureError, match=r"strut has B1 0\.001 m away from where coupler has"):
+        solve_driven(with_strut(scene, "B0", "B1", "B2", B1=(0.3, 0.001)), HIGH, HIGH, HIGH)
+
+
+@pytest.mark.parametrize("bound", [True, False])
+def test_a_third_pin_that_goes_another_way_is_refused_where_it_is_in_place(bound: bool) -> None:
+    """On the middle of the lever, which turns, while the strut goes with the coupler."""
+    scene, at = parallelogram(2), np.radians([31.0])
+    middle = 0.05 * float(np.cos(at[0])), 0.05 * float(np.sin(at[0]))
+    lever = replace(scene.links["lever"], points={**scene.links["lever"].points, "E": (0.05, 0.0)})
+    own: dict[str, Point] = {"B0": (0.0, 0.0), "B2": (0.6, 0.0), "E": (0.6 - middle[0], -middle[1])}
+    strut = Link("strut", own, 1.0, (0.0, 0.0), 1.0)
+    held = replace(scene, links={**scene.links, "lever": lever, "strut": strut})
+    said = r"strut fits in place only: E parts from it at 0\.1 m/s with crank at 31 deg"
+    with pytest.raises(StructureError, match=said):
+        solve_driven(held, at, np.array([2.0]), np.zeros(1), bound=bound)
+
+
+def test_a_lever_that_does_not_fit_leaves_no_range_to_the_driver() -> None:
+    assert len(reach(parallelogram(2))) == 1
+    assert reach(parallelogram(2, lever_m=0.101)) == []
+
+
+def test_the_second_opinion_says_that_it_counts_too_many_equations() -> None:
+    with pytest.raises(CrankcheckError, match="13 constraint equations for 12 coordinates"):
+        newton.solve(parallelogram(2), np.array([0.0]), newton.Guess({}))
+
+
+@pytest.mark.parametrize("rockers", [2, 3])
+def test_rods_turn_with_the_crank_through_the_flat_positions_too(rockers: int) -> None:
+    """Two turns, with samples in and beside both change points."""
+    scene, flat = parallelogram(rockers), (np.pi - np.radians(15.0)) / 2.0
+    beside = flat + np.array([0.0, 1e-9, 1e-6, np.pi / 2.0, np.pi])
+    time_s = np.sort(np.concatenate([np.linspace(0.0, 2.0 * np.pi, 721), beside]))
+    motion = solve(scene, time_s)
+    assert motion.bound is not None
+    for name in (n for n in scene.links if n.startswith(("rocker", "lever"))):
+        rod, bound = motion.links[name], motion.bound.links[name]
+        assert (np.abs(rod.theta - motion.links["crank"].theta) <= bound.theta).all()
+        assert (np.abs(rod.omega - 2.0) <= bound.omega).all()
+        assert (np.abs(rod.alpha) <= bound.alpha).all()
+        assert bound.theta.max() < 1e-10

@@ -1,0 +1,262 @@
+"""Closed forms of the four-bar, slider-crank and slotted lever, held to sweeps of the reference."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve, solve_driven
+from analytic.mechanism.fourbar import FourBar
+from analytic.mechanism.travel import Travel, travel, travels
+from models.errors import CrankcheckError, ReachError, StructureError
+from models.files import load_scene, parse_scene
+from models.scene import Scene
+from tests.analytic.test_reach import fourbar
+
+STILL = """
+name = "still"
+source = "a test"
+[ground]
+points = {{ A = [0.0, 0.0], D = [0.3, 0.0], E = [0.1, 0.0] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+rod = {{ bar = ["{rod}", "C"], length_m = 0.25 }}
+rocker = {{ bar = ["{rocker}", "C"], length_m = 0.2 }}
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+"""
+CRANK_ROCKERS = [
+    (0.1, 0.25, 0.2, 0.3),
+    (1.0, 2.5, 2.0, 3.0),
+    (0.2, 0.9, 0.7, 0.6),
+    (0.05, 0.3, 0.1, 0.28),
+]
+
+
+@pytest.mark.parametrize(
+    ("lengths", "wanted"),
+    [
+        ((0.1, 0.25, 0.2, 0.3), "crank-rocker"),
+        ((0.2, 0.25, 0.1, 0.3), "crank-rocker"),  # driven at its rocker, still one
+        ((0.25, 0.2, 0.3, 0.1), "double-crank"),
+        ((0.25, 0.1, 0.2, 0.3), "double-rocker"),
+        ((0.3, 0.22, 0.25, 0.5), "triple-rocker"),
+        ((0.1, 0.3, 0.1, 0.3), "change point"),
+        ((0.2, 0.2, 0.2, 0.2), "change point"),
+        ((0.1, 0.2, 0.3, 0.4), "change point"),
+    ],
+)
+def test_grashof_class(lengths: tuple[float, float, float, float], wanted: str) -> None:
+    assert FourBar(*lengths).grashof_class == wanted
+    assert FourBar(*(1e3 * x for x in lengths)).grashof_class == wanted
+
+
+def test_class_is_what_the_links_do() -> None:
+    """Which of driver and rocker turn fully, seen in the motion of random Grashof chains."""
+    rng, seen = np.random.default_rng(1), set()
+    theta = np.linspace(0.0, math.tau, 721)
+    for _ in range(120):
+        lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
+        if 2.0 * max(lengths) > sum(lengths):
+            continue
+        bar = FourBar(*lengths)
+        if abs(bar.excess_m) < 0.02:
+            continue
+        scene = fourbar(bar.driver, bar.coupler, bar.rocker, bar.ground)
+        try:
+            motion = solve_driven(scene, theta, np.ones(721), np.zeros(721), bound=False)
+        except ReachError:
+            assert not bar.driver_turns_fully
+            assert bar.grashof_class != "double-crank"
+            continue
+        turned = np.ptp(motion.links["rocker"].theta[[0, -1]]) > 6.0
+        assert bar.driver_turns_fully
+        assert bar.grashof_class == ("double-crank" if turned else "crank-rocker")
+        seen.add(bar.grashof_class)
+    assert seen == {"double-crank", "crank-rocker"}
+
+
+def test_lengths_that_make_no_fourbar_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"longest exceeds the sum of the others by 0\.4 m"):
+        FourBar(0.1, 0.2, 0.3, 1.0)
+    with pytest.raises(ValueError, match="above 0"):
+        FourBar(0.1, 0.0, 0.3, 0.3)
+
+
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "fourbar-crossed", "fourbar-double-rocker"])
+def test_lengths_are_read_from_a_scene(name: str) -> None:
+    wanted = (0.25, 0.1, 0.2, 0.3) if "rocker" in name else (0.1, 0.25, 0.2, 0.3)
+    assert FourBar.of(load_scene(name)) == FourBar(*wanted)
+    with pytest.raises(StructureError, match="shaper: not a four-bar; its groups are RPR, RRP"):
+        FourBar.of(load_scene("shaper"))
+
+
+@pytest.mark.parametrize("rod", ["A", "E"])
+def test_two_links_that_stand_still_are_no_four_bar_and_pass_no_change_point(rod: str) -> None:
+    scene = parse_scene(STILL.format(rod=rod, rocker="D"), "test")
+    with pytest.raises(StructureError, match="still: not a four-bar; rod and rocker hang between"):
+        FourBar.of(scene)
+    motion = solve(scene, np.linspace(0.0, 1.0, 100))
+    assert motion.crossings == ()
+    assert not np.ptp(motion.points["C"].position, axis=0).any()
+    assert not motion.links["rod"].omega.any()
+
+
+def test_two_links_that_stand_still_and_do_not_meet_are_out_of_reach() -> None:
+    text = STILL.format(rod="A", rocker="D").replace("0.25", "0.05")
+    with pytest.raises(ReachError, match=r"cannot close at C, it is open by 0\.05 m"):
+        solve(parse_scene(text, "test"), np.zeros(3))
+
+
+def test_a_rocker_on_the_pivot_of_the_crank_is_no_four_bar() -> None:
+    scene = parse_scene(STILL.format(rod="B", rocker="A"), "test")
+    with pytest.raises(StructureError, match=r"still: not a four-bar; lengths .* above 0"):
+        FourBar.of(scene)
+
+
+@pytest.mark.parametrize("lengths", CRANK_ROCKERS)
+@pytest.mark.parametrize("branch", [1, -1])
+def test_swing_and_time_ratio_are_those_of_the_motion(
+    lengths: tuple[float, float, float, float], branch: int
+) -> None:
+    bar, found = FourBar(*lengths), travel(fourbar(*lengths, branch), "rocker")
+    assert found.stroke == pytest.approx(bar.rocker_swing_rad, abs=1e-12)
+    assert found.time_ratio == pytest.approx(bar.time_ratio, abs=1e-9)
+    assert bar.time_ratio >= 1.0
+
+
+def test_swing_belongs_to_a_driven_crank() -> None:
+    for lengths in ((0.25, 0.2, 0.3, 0.1), (0.2, 0.25, 0.1, 0.3), (0.25, 0.1, 0.2, 0.3)):
+        with pytest.raises(StructureError, match="belong to a crank-rocker driven at its crank"):
+            _ = FourBar(*lengths).time_ratio
+
+
+def _transmission(scene: Scene, theta: np.ndarray) -> np.ndarray:
+    """The angle at C between coupler and rocker, from the places of B, C and D."""
+    motion = solve_driven(scene, theta, np.ones_like(theta), np.zeros_like(theta), bound=False)
+    b, c, d = (motion.points[p].position for p in "BCD")
+    x, y = b - c, d - c
+    return np.abs(np.arctan2(x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0], np.sum(x * y, axis=1)))
+
+
+@pytest.mark.parametrize("lengths", [*CRANK_ROCKERS, (0.25, 0.2, 0.3, 0.1), (0.25, 0.1, 0.2, 0.3)])
+def test_transmission_extremes_are_those_of_a_sweep(
+    lengths: tuple[float, float, float, float],
+) -> None:
+    bar, scene = FourBar(*lengths), fourbar(*lengths)
+    near, far = bar.driver_range_rad
+    mu = _transmission(scene, np.linspace(near + 1e-12, far - 1e-12, 5001))
+    low, high = bar.transmission_rad
+    tolerance = 1e-6 if bar.driver_turns_fully else 1e-4  # a square root at the ends of the range
+    assert mu.min() == pytest.approx(low, abs=tolerance)
+    assert mu.max() == pytest.approx(high, abs=tolerance)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.02, -0.02, 0.15])
+def test_stroke_and_time_ratio_of_the_slider_crank(e: float) -> None:
+    """On either side of the pivot: to and fro change places, the ratio stays above 1."""
+    scene, r, rod = load_scene("slider-crank-offset"), 0.1, 0.3
+    scene = replace(scene, sliders={"C": replace(scene.sliders["C"], through_m=(0.0, -e))})
+    found = travel(scene, "C")
+    stroke = math.sqrt((rod + r) ** 2 - e**2) - math.sqrt((rod - r) ** 2 - e**2)
+    imbalance = abs(math.asin(e / (rod - r)) - math.asin(e / (rod + r)))
+    assert (found.high_at_rad - found.low_at_rad) % math.tau > math.pi or e <= 0.0
+    assert found.stroke == pytest.approx(stroke, abs=1e-15)
+    assert found.time_ratio == pytest.approx(
+        (math.pi + imbalance) / (math.pi - imbalance), abs=1e-9
+    )
+
+
+def test_swing_and_time_ratio_of_the_slotted_lever() -> None:
+    beta = 2.0 * math.asin(0.1 / 0.3)
+    found = travel(load_scene("slotted-lever"), "lever")
+    assert found.stroke == pytest.approx(beta, abs=1e-13)
+    assert found.time_ratio == pytest.approx((math.pi + beta) / (math.pi - beta), abs=1e-9)
+
+
+@pytest.mark.parametrize("short", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_lever_that_swings_back_between_two_looks_is_seen_to(short: float) -> None:
+    """With the block next to the pivot it goes half a turn back in a millionth of one."""
+    scene = load_scene("slotted-lever")
+    scene = replace(
+        scene, ground={**scene.ground, "A": (0.0, 0.1 / (1.0 - short)), "C": (0.0, 0.0)}
+    )
+    beta = 2.0 * math.asin(1.0 - short)
+    found = travel(scene, "lever")
+    assert found.stroke == pytest.approx(beta, abs=1e-8)
+    narrow = 2.0 * math.acos(1.0 - short)  # math.pi - beta, with its digits
+    assert found.time_ratio == pytest.approx((math.tau - narrow) / narrow, rel=1e-3)
+
+
+def test_limit_positions_are_where_the_output_rests() -> None:
+    for name, output in (("shaper", "F"), ("sixbar-watt", "lever"), ("slider-crank-offset", "C")):
+        scene = load_scene(name)
+        found = travel(scene, output)
+        at = np.array([found.low_at_rad, found.high_at_rad])
+        motion = solve_driven(scene, at, np.ones(2), np.zeros(2))
+        if output in scene.links:
+            place, rate = motion.links[output].theta, motion.links[output].omega
+        else:
+            place, rate = motion.sliders[output].displacement, motion.sliders[output].speed
+        assert np.allclose(rate, 0.0, rtol=0, atol=1e-12)
+        assert np.allclose(np.diff(place), found.stroke, rtol=0, atol=1e-12)
+        dense = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 4001), bound=False)
+        swept = (
+            dense.links[output].theta
+            if output in scene.links
+            else dense.sliders[output].displacement
+        )
+        assert np.ptp(swept) == pytest.approx(found.stroke, abs=1e-5 * found.stroke)
+        assert np.ptp(swept) <= found.stroke + 1e-12
+
+
+def test_swing_of_more_than_half_a_turn_is_counted_in_full() -> None:
+    scene = load_scene("sixbar-watt")
+    spans = {"rod": ("E", 0.2017), "lever": ("G", 0.2174)}
+    links = dict(scene.links)
+    for name, (start, length) in spans.items():
+        links[name] = replace(links[name], points={start: (0.0, 0.0), "F": (length, 0.0)})
+    ground = {**scene.ground, "G": (0.3195, 0.1468)}
+    scene = replace(scene, ground=ground, links=links, branch={"C": 1, "F": -1})
+    dense = solve(scene, np.linspace(0.0, scene.driver.law.period_s, 40_001), bound=False)
+    swing = float(np.ptp(dense.links["lever"].theta))
+    assert swing > math.pi
+    assert travel(scene, "lever").stroke == pytest.approx(swing, abs=1e-6)
+
+
+def test_output_without_limits_is_refused() -> None:
+    with pytest.raises(CrankcheckError, match="lever never turns back"):
+        travel(load_scene("whitworth"), "lever")
+    with pytest.raises(
+        CrankcheckError, match="no link or slider 'ram'; it has crank, lever, rod, B, F"
+    ):
+        travel(load_scene("shaper"), "ram")
+    with pytest.raises(ReachError, match="driver can stand at"):
+        travel(load_scene("fourbar-double-rocker"), "rocker")
+
+
+def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("sixbar-watt")
+    outputs = (*scene.links, *scene.sliders)
+    asked: list[int] = []
+
+    def counting(*args: object, **options: object) -> object:
+        asked.append(1)
+        return solve_driven(*args, **options)  # type: ignore[arg-type]  # passed on as they are
+
+    monkeypatch.setattr("analytic.mechanism.travel.solve_driven", counting)
+    found = travels(scene, outputs)
+    together = len(asked)
+    for output in outputs:
+        asked.clear()
+        if isinstance(found[output], Travel):
+            assert travel(scene, output) == found[output]
+            assert len(asked) == together
+        else:
+            with pytest.raises(CrankcheckError, match=r"turns back|never turns"):
+                travel(scene, output)
+    assert sum(isinstance(one, Travel) for one in found.values()) > 2

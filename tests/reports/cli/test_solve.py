@@ -1,0 +1,344 @@
+"""`crankcheck solve`, `export`, `scenes`, `engines`, `view`: the reference alone, and its model."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.axes import Axes
+from PIL import Image
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+from analytic.kinematics import solve
+from models.files import load_scene, shipped
+from models.laws import Oscillating
+from models.scene import Scene
+from reports.cli import app
+
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def test_the_lecture_example_at_90_degrees_shows_the_lectures_numbers(crank: Crank) -> None:
+    result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
+    assert result.exit_code == 0
+    rows = {line.split()[0]: line.split() for line in result.output.splitlines() if line.strip()}
+    assert rows["coupler"][3:5] == ["-1.3257269", "20.297811"]
+    assert rows["rocker"][3:5] == ["4.6761490", "19.396967"]
+    points = [line.split() for line in result.output.splitlines() if line.startswith("C ")]
+    assert [row[-1] for row in points] == ["0.93522980", "5.8459573"]
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("fourbar-lecture-1", ["crank-rocker", "transmission angle", "rocker: swing"]),
+        ("fourbar-double-crank", ["double-crank"]),
+        ("fourbar-double-rocker", ["double-rocker", "18.1949 to 65.3757 deg"]),
+        ("slider-crank-central", ["C: stroke 0.2 m, time ratio 1"]),
+    ],
+)
+def test_the_heading_says_what_kind_of_mechanism_it_is(
+    crank: Crank, name: str, parts: list[str]
+) -> None:
+    output = crank("solve", name).output
+    assert all(part in output for part in parts), output
+
+
+def test_a_four_bar_driven_at_its_rocker_is_called_that(fourbar: Scene) -> None:
+    from analytic.structure.mobility import analyse
+    from reports.describe.facts import facts
+
+    def scene(driver: float, rocker: float) -> Scene:
+        links = dict(fourbar.links)
+        for name, tip, length in (("crank", "B", driver), ("rocker", "C", rocker)):
+            bar = links[name]
+            (held,) = (point for point in bar.points if point != tip)
+            links[name] = replace(bar, points={held: (0.0, 0.0), tip: (length, 0.0)})
+        return replace(fourbar, links=links)
+
+    assert facts(scene(0.2, 0.1), analyse(fourbar))[0].startswith(
+        "crank-rocker driven at its rocker (s + l"
+    )
+    assert facts(scene(0.1, 0.2), analyse(fourbar))[0].startswith("crank-rocker (s + l")
+
+
+def test_numbers_that_are_0_within_their_bound_are_shown_as_0(crank: Crank) -> None:
+    result = crank("solve", "fourbar-lecture-1", "--at-deg", "90")
+    (place, _) = [line.split() for line in result.output.splitlines() if line.startswith("B ")]
+    assert place[1] == "0.0000000"
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_every_shipped_scene_is_solved_and_drawn_as_a_table(crank: Crank, name: str) -> None:
+    result = crank("solve", name)
+    assert result.exit_code == 0
+    assert "mobility 1" in result.output
+    assert "nan" not in result.output.lower().split()
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+
+
+READERS = {
+    ".csv": pd.read_csv,
+    ".parquet": pd.read_parquet,
+    ".xlsx": lambda path: pd.read_excel(path, sheet_name="motion"),
+}
+
+
+@pytest.mark.parametrize("ending", list(READERS))
+def test_a_motion_written_to_a_file_is_read_back_to_the_last_bit(
+    crank: Crank, tmp_path: Path, ending: str
+) -> None:
+    path = tmp_path / f"out{ending}"
+    result = crank("solve", "slider-crank-offset", "--turns", "2", "-o", str(path))
+    assert result.exit_code == 0
+    frame = READERS[ending](path)
+    scene = load_scene("slider-crank-offset")
+    motion = solve(scene, frame["time_s"].to_numpy())
+    assert len(frame) == 721
+    # A spreadsheet keeps 15 to 17 digits, the others all.
+    close = {"rtol": 1e-12, "atol": 1e-12} if ending == ".xlsx" else {"rtol": 0.0, "atol": 0.0}
+    np.testing.assert_allclose(frame["rod_omega_rad_s"], motion.links["rod"].omega, **close)
+    np.testing.assert_allclose(frame["C_ax_m_s2"], motion.points["C"].acceleration[:, 0], **close)
+    np.testing.assert_allclose(frame["C_slider_speed_m_s"], motion.sliders["C"].speed, **close)
+    assert frame["time_s"].iloc[-1] == pytest.approx(2 * scene.driver.law.period_s)
+
+
+def test_the_workbook_says_where_its_numbers_come_from(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "out.xlsx"
+    crank("solve", "tangent", "-o", str(path))
+    origin = pd.read_excel(path, sheet_name="source")
+    assert load_scene("tangent").source in origin["value"].tolist()
+
+
+def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
+    tmp_path: Path, fourbar: Scene
+) -> None:
+    from reports.cli.commands.solve import Request, run_solve
+
+    path = tmp_path / "out.xlsx"
+    ringing = replace(fourbar, source="bell \x07")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.cli.commands.solve.load_scene", lambda _: ringing)
+        run_solve(Request("bell", None, None, None, path), Console())
+    assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
+
+
+def test_an_oscillating_driver_is_taken_on_its_way_up(crank: Crank) -> None:
+    result = crank("solve", "tangent", "--at-deg", "0")
+    (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
+    amplitude = math.radians(40.0)
+    assert float(lever[3]) == pytest.approx(10.0 * amplitude, rel=1e-7)
+    assert float(lever[4]) == 0.0
+
+
+def test_an_oscillating_driver_is_drawn_back_to_its_centre(crank: Crank) -> None:
+    result = crank("solve", "tangent", "--at-deg", "20")
+    (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
+    assert float(lever[4]) == pytest.approx(-100.0 * math.radians(20.0), rel=1e-7)
+
+
+def test_two_links_that_stand_still_are_solved_and_called_nothing(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = tmp_path / "still.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text.replace('bar = ["B", "C"]', 'bar = ["A", "C"]'), encoding="utf-8")
+    result = crank("solve", str(path), "--at-deg", "90")
+    assert result.exit_code == 0, result.stderr
+    assert "groups in solving order: RRR" in result.output
+    assert "rocker (s + l" not in result.output
+
+
+MISTAKES = {
+    "unknown scene": (["solve", "scotch-yok"], ["'scotch-yok'", "scotch-yoke"]),
+    "angle out of reach": (
+        ["solve", "{locks}", "--at-deg", "180"],
+        ["180", "can stand at"],
+    ),
+    "angle out of the law's swing": (
+        ["solve", "tangent", "--at-deg", "41"],
+        ["--at-deg 41", "swings from -40 to 40 deg"],
+    ),
+    "angle of nan": (["solve", "tangent", "--at-deg", "nan"], ["--at-deg nan"]),
+    "angle of no digits": (["solve", "tangent", "--at-deg", "1e300"], ["1e+300", "up to 1e+06"]),
+    "angle and turns": (
+        ["solve", "tangent", "--at-deg", "0", "--turns", "1"],
+        ["--at-deg with --turns", "one of them"],
+    ),
+    "no turns": (["solve", "tangent", "--turns", "0"], ["--turns 0", "above 0"]),
+    "no steps": (["solve", "tangent", "--steps-per-turn", "0"], ["--steps-per-turn 0"]),
+    "too many samples": (
+        ["solve", "tangent", "--steps-per-turn", "2000000"],
+        ["2000001 samples", "at most 1000000"],
+    ),
+    "endless turns": (["solve", "tangent", "--turns", "1e300"], ["1.2e+301 samples", "fewer"]),
+    "endless steps": (
+        ["solve", "tangent", "--turns", "1e300", "--steps-per-turn", "1" + 310 * "0"],
+        ["samples; at most 1000000"],
+    ),
+    "unknown ending": (
+        ["solve", "tangent", "-o", "out.txt"],
+        ["-o out.txt", "'.txt'", ".csv, .parquet, .xlsx"],
+    ),
+    "no folder": (["solve", "tangent", "-o", "no/out.csv"], ["there is no folder no"]),
+    "export elsewhere": (["export", "tangent", "-o", "out.mjcf"], ["'.mjcf'", "use .xml"]),
+    "export closed nowhere": (
+        ["export", "fourbar-lecture-1", "--close", "Q"],
+        ["close = Q", "not a pin that can close a loop"],
+    ),
+    "export of nothing": (["export", "tangen", "-o", "out.xml"], ["mean tangent"]),
+    "picture of another kind": (["view", "tangent", "-o", "t.mp4"], ["'.mp4'", ".gif, .png"]),
+}
+
+
+@pytest.mark.parametrize("name", list(MISTAKES))
+def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
+    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    locks = tmp_path / "locks.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    locks.write_text(text.replace("0.25", "0.17"), encoding="utf-8")
+    args, parts = MISTAKES[name]
+    result = crank(*(arg.format(locks=locks) for arg in args))
+    assert result.exit_code == 2, result.output
+    flat = " ".join(result.stderr.split())
+    assert all(part in flat for part in parts), flat
+    assert list(tmp_path.iterdir()) == [locks]
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_the_exported_model_compiles_alone_and_its_keyframe_closes_the_loops(
+    crank: Crank, tmp_path: Path, name: str
+) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    path = tmp_path / "scene.xml"
+    assert crank("export", name, "-o", str(path)).exit_code == 0
+    model = mujoco.MjModel.from_xml_path(str(path))
+    state = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, state, 0)
+    mujoco.mj_forward(model, state)
+    assert np.max(np.abs(state.efc_pos[: state.ne]), initial=0.0) < 1e-12
+
+
+def test_export_without_a_file_prints_the_model(crank: Crank) -> None:
+    result = crank("export", "tangent")
+    assert result.output.startswith("<mujoco")
+    assert result.output.rstrip().endswith("</mujoco>")
+
+
+def test_scenes_lists_every_shipped_scene_with_its_groups(crank: Crank) -> None:
+    output = crank("scenes").output
+    assert all(name in output for name in shipped())
+    assert "RPR + RRP" in output
+
+
+def test_engines_lists_versions_profiles_and_settings_with_reasons(crank: Crank) -> None:
+    plain, full = crank("engines").output, crank("engines", "--settings").output
+    assert "mujoco" in plain
+    assert "tuned" in plain
+    assert "as-shipped" in plain
+    assert len(full.splitlines()) > len(plain.splitlines()) + 5
+
+
+def test_an_engine_that_is_missing_shows_the_command_that_installs_it(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports.cli.commands import listing
+    from sim.registry import Availability
+
+    missing = (Availability("mujoco", None, "pip install mujoco"),)
+    monkeypatch.setattr(listing, "available", lambda: missing)
+    assert "not installed: pip install mujoco" in crank("engines").output
+
+
+def test_view_with_a_screen_opens_the_assembled_model(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer = pytest.importorskip("sim.mujoco.viewer")
+    shown: list[str] = []
+    monkeypatch.setattr(viewer, "show", lambda xml, _law: shown.append(xml))
+    monkeypatch.setattr("reports.cli.commands.view.has_screen", lambda: True)
+    assert crank("view", "tangent").exit_code == 0
+    assert "<key " in shown[0]
+
+
+def test_export_closes_the_loop_where_it_is_told(crank: Crank) -> None:
+    assert 'site1="coupler.C"' in crank("export", "fourbar-lecture-1").output
+    told = crank("export", "fourbar-lecture-1", "--close", "B").output
+    assert 'site1="crank.B"' in told
+    assert 'site1="coupler.C"' not in told
+
+
+def moves(frames: list[np.ndarray[tuple[int, ...], np.dtype[np.uint8]]]) -> bool:
+    return any(not np.array_equal(frames[0], frame) for frame in frames[1:])
+
+
+def test_view_without_a_screen_draws_an_animation_that_moves(
+    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports.drawing import gif as picture
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr("reports.cli.commands.view.sys.platform", "linux")
+    monkeypatch.setattr(picture, "FRAMES", 4)
+    result = crank("view", "scotch-yoke")
+    assert result.exit_code == 0
+    assert "scotch-yoke.gif" in result.output
+    with Image.open(tmp_path / "scotch-yoke.gif") as film:
+        assert film.n_frames == 4
+        frames = []
+        for index in range(4):
+            film.seek(index)
+            frames.append(np.asarray(film.convert("RGB")))
+    assert moves(frames)
+
+
+@pytest.mark.parametrize("name", ["shaper", "tangent", "sixbar-stephenson"])
+def test_a_strip_shows_every_link_in_its_colour(name: str) -> None:
+    from reports.drawing import gif as picture
+
+    scene = load_scene(name)
+    with Image.open(io.BytesIO(picture.strip(scene))) as image:
+        pixels = np.asarray(image.convert("RGB")).reshape(-1, 3)
+    for colour in picture.COLOURS[: len(scene.links)]:
+        rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+        assert np.any(np.all(pixels == rgb, axis=1)), colour
+
+
+@pytest.mark.parametrize("name", ["tangent", "fourbar-double-rocker"])
+def test_a_strip_of_a_swinging_driver_shows_both_ends_of_its_swing(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from reports.drawing import gif as picture
+
+    titles: list[str] = []
+    monkeypatch.setattr(Axes, "set_title", lambda _, text, **__: titles.append(text))
+    scene = load_scene(name)
+    law = scene.driver.law
+    assert isinstance(law, Oscillating)
+    picture.strip(scene)
+    shown = [float(title.split()[-2]) for title in titles]
+    for side in (-1.0, 1.0):
+        end = math.degrees(law.centre_rad + side * law.amplitude_rad)
+        assert min(abs(angle - end) for angle in shown) <= 0.5

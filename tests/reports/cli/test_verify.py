@@ -1,0 +1,432 @@
+"""`crankcheck verify` from the command line: verdict, table, files, and every mistake."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import pandas as pd
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+from models.errors import CrankcheckError, EngineError
+from models.files import shipped
+from reports.cli import app
+from reports.cli.commands import verify as command
+from reports.judge.rules import RULES
+
+FAST = ["--steps-per-turn", "360", "--turns", "1", "--no-convergence"]
+ONE = ["verify", "fourbar-lecture-1", *FAST]
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def refused(result: Result, *parts: str) -> None:
+    """The command ended with exit code 2 and one message that holds all the parts."""
+    assert result.exit_code == 2, result.output
+    assert "Traceback" not in result.output
+    flat = " ".join(result.stderr.replace("│", " ").split())
+    for part in parts:
+        assert part in flat, flat
+
+
+def test_a_scene_within_tolerance_ends_with_0(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
+    assert result.exit_code == 0
+    assert "WITHIN TOLERANCE: 1 cell (1 scene x 1 engine)" in result.output
+    assert "mujoco 4" in " ".join(result.output.split())
+
+
+def test_a_scene_out_of_tolerance_ends_with_1_failures_first_with_their_cure(
+    crank: Crank,
+) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned", "--tol", "angle=1e-12")
+    assert result.exit_code == 1
+    assert "OUT OF TOLERANCE: 1 of 1 cell (1 scene x 1 engine)" in result.output
+    head, _, _ = result.output.partition("profile tuned")
+    assert "CC103 angle" in head
+    assert "limit 1e-12 rad (--tol)" in " ".join(head.split())
+    assert "cure:" in head
+
+
+def test_by_default_as_shipped_is_shown_and_does_not_count(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco")
+    assert result.exit_code == 0
+    assert "profile tuned (gated)" in result.output
+    assert "profile as-shipped (shown, not gated)" in result.output
+    assert "OUT fourbar-lecture-1" in result.output
+
+
+def test_a_profile_that_is_named_is_gated(crank: Crank) -> None:
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "as-shipped")
+    assert result.exit_code == 1
+    assert "profile as-shipped (gated)" in result.output
+
+
+@pytest.mark.parametrize("dt", ["1e-3", "1e-4"])
+def test_the_table_says_that_mujoco_as_shipped_does_not_shrink(crank: Crank, dt: str) -> None:
+    result = crank("verify", "fourbar-lecture-1", "--engine", "mujoco", "--profile",
+                   "as-shipped", "--dt", dt, "--turns", "1")  # fmt: skip
+    assert result.exit_code == 1
+    assert "does not shrink" in result.output.partition("profile as-shipped")[2]
+
+
+def test_no_line_is_wider_than_a_hundred_columns(crank: Crank) -> None:
+    result = crank("verify", "slider-crank-excel-350", "--turns", "1")
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    assert "slider-crank-excel-350" in result.output.partition("profile tuned")[2]
+
+
+def test_a_scene_may_be_a_path(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text.replace('"fourbar-lecture-1"', '"mine"'), encoding="utf-8")
+    result = crank("verify", str(path), *FAST, "--engine", "mujoco")
+    assert result.exit_code == 0
+    assert "mine" in result.output
+
+
+def test_all_files_of_a_folder_are_written_and_hold_the_same_cells(
+    crank: Crank, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out"
+    assert crank(*ONE, "-o", str(folder), "--engine", "mujoco").exit_code == 0
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "errors.parquet",
+        "verify.csv",
+        "verify.json",
+        "verify.junit.xml",
+    ]
+    cells = pd.read_csv(folder / "verify.csv")
+    assert cells["profile"].tolist() == ["tuned", "as-shipped"]
+    stored = json.loads((folder / "verify.json").read_text())
+    assert [cell["verdict"] for cell in stored["cells"]] == ["within", "out"]
+    assert stored["cells"][0]["angle_error_rad"] == pytest.approx(cells["angle_error_rad"][0])
+    assert {f["rule"] for f in stored["cells"][0]["findings"]} <= set(RULES)
+    long = pd.read_parquet(folder / "errors.parquet")
+    rocker = long.query("profile == 'tuned' and body == 'rocker' and quantity == 'angle'")
+    assert set(rocker["kind"]) == {"total", "geometric"}
+    assert rocker["maximum"].max() <= cells["angle_error_rad"][0] * (1 + 1e-12)
+    suite = Xml.fromstring((folder / "verify.junit.xml").read_text())
+    assert [case.get("name") for case in suite.iter("testcase")] == ["fourbar-lecture-1"] * 2
+
+
+def test_a_second_run_replaces_the_files_of_the_first(crank: Crank, tmp_path: Path) -> None:
+    for tolerance in ("1e-12", "1e-1"):
+        crank(*ONE, "-o", str(tmp_path), "--engine", "mujoco", "--tol", f"angle={tolerance}")
+    cells = pd.read_csv(tmp_path / "verify.csv")
+    assert cells["verdict"][0] == "within"
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_junit_names_the_failure_and_skips_what_is_not_gated(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "j.xml"
+    result = crank(*ONE, "--engine", "mujoco", "--tol", "angle=1e-12", "--junit", str(path))
+    assert result.exit_code == 1
+    (suite,) = Xml.fromstring(path.read_text())
+    times = [float(case.get("time", "nan")) for case in suite.iter("testcase")]
+    assert all(0.0 < time < 60.0 for time in times)
+    assert float(suite.get("time", "nan")) == pytest.approx(sum(times), abs=2e-3)
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("2", "1", "1")
+    failure = suite.find("testcase/failure")
+    assert failure is not None
+    assert failure.get("type") == "CC103"
+    assert "cure" in (failure.text or "")
+
+
+def test_outputs_are_written_even_when_out_of_tolerance(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "cells.csv"
+    result = crank(*ONE, "--engine", "pymunk", "--tol", "drive=1e-30", "--csv", str(path))
+    assert result.exit_code == 1
+    assert "CC102" in pd.read_csv(path)["failed_rules"][0]
+
+
+def test_a_disk_that_fills_up_costs_the_file_and_not_the_table(
+    crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: Path, target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    result = crank(*ONE, "--engine", "mujoco", "--csv", str(tmp_path / "cells.csv"))
+    assert "WITHIN TOLERANCE" in result.output
+    refused(result, "cells.csv: can not be written: No space left on device; free some space")
+
+
+MISTAKES = {
+    "unknown scene": (["verify", "fourbar-lectur-1"], ["'fourbar-lectur-1'", "fourbar-lecture-1"]),
+    "unknown engine": ([*ONE, "--engine", "mujco"], ["'mujco'", "did you mean mujoco"]),
+    "unknown profile": ([*ONE, "--profile", "tund"], ["'tund'", "did you mean tuned"]),
+    "unknown drive": ([*ONE, "--drive", "belt"], ["'belt'", "prescribed or servo"]),
+    "tolerance": ([*ONE, "--tol", "angle:1e-4"], ["--tol 'angle:1e-4'", "angle=1e-4"]),
+    "unknown quantity": ([*ONE, "--tol", "angel=1"], ["'angel' is no quantity", "mean angle"]),
+    "dt of 0": (["verify", "fourbar-lecture-1", "--dt", "0"], ["--dt 0", "above 0"]),
+    "negative dt": (["verify", "fourbar-lecture-1", "--dt", "-1e-3"], ["--dt -0.001", "above 0"]),
+    "dt of nan": (["verify", "fourbar-lecture-1", "--dt", "nan"], ["--dt nan", "above 0"]),
+    "dt of words": (["verify", "fourbar-lecture-1", "--dt", "small"], ["--dt", "valid number"]),
+    "large dt": (
+        ["verify", "fourbar-lecture-1", "--dt", "0.1"],
+        ["--dt 0.1", "6.28 steps in a turn", "at least 8", "at most 0.07854 s"],
+    ),
+    "few steps": (["verify", "--steps-per-turn", "7.9"], ["--steps-per-turn 7.9", "at least 8"]),
+    "tiny dt": (["verify", "fourbar-lecture-1", "--dt", "1e-9"], ["--dt 1e-09", "at most 300000"]),
+    "dt of almost nothing": (
+        ["verify", "fourbar-lecture-1", "--dt", "1e-320"],
+        ["steps of fourbar-lecture-1", "at most 300000"],
+    ),
+    "endless steps": (["verify", "--steps-per-turn", "1e308"], ["at most 300000 are logged"]),
+    "endless turns": (
+        ["verify", "fourbar-lecture-1", "--turns", "1e300"],
+        ["--turns 1e+300: 7.2e+302 steps", "fewer turns"],
+    ),
+    "short run": (
+        ["verify", "fourbar-lecture-1", "--turns", "0.1"],
+        ["--turns 0.1: 72 steps of fourbar-lecture-1", "at least 80", "take 0.111 turns or more"],
+    ),
+    "one file twice": (
+        [*ONE, "--csv", "x", "--json", "./x"],
+        ["--csv and --json: both name x", "a file of its own"],
+    ),
+    "one file by way of the folder": (
+        [*ONE, "-o", ".", "--csv", "verify.json"],
+        ["--csv and -o: both name verify.json"],
+    ),
+    "dt and steps": ([*ONE, "--dt", "1e-3"], ["--dt and --steps-per-turn", "one of them"]),
+    "no turns": (["verify", "fourbar-lecture-1", "--turns", "0"], ["--turns 0", "above 0"]),
+    "infinite turns": (["verify", "fourbar-lecture-1", "--turns", "inf"], ["--turns inf"]),
+    "junit below a file": ([*ONE, "--junit", __file__ + "/j.xml"], ["--junit", "no folder"]),
+    "csv is a folder": ([*ONE, "--csv", str(Path(__file__).parent)], ["--csv", "a folder"]),
+    "folder is a file": ([*ONE, "-o", __file__], ["-o", "is a file; name a folder"]),
+    "scene is a folder": (["verify", str(Path(__file__).parent)], ["a directory"]),
+    "negative jobs": ([*ONE, "--jobs", "-1"], ["--jobs", "greater than or equal to 0"]),
+    "unknown option": ([*ONE, "--toll", "angle=1"], ["--toll"]),
+    "unknown command": (["verfy"], ["verfy"]),
+}
+
+
+@pytest.mark.parametrize("name", list(MISTAKES))
+def test_a_mistake_ends_with_2_and_a_message_that_names_place_fault_and_cure(
+    crank: Crank, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    args, parts = MISTAKES[name]
+    refused(crank(*args), *parts)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_engine_that_is_not_installed_names_the_command_that_installs_it(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.plan.chosen as names
+
+    def missing(name: str) -> object:
+        raise EngineError(f"engine {name}: not installed; pip install {name}")
+
+    monkeypatch.setattr(names, "engine", missing)
+    refused(crank(*ONE), "engine mujoco: not installed", "pip install mujoco")
+
+
+def test_two_files_with_one_name_are_refused(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "other.toml"
+    text = shipped()["fourbar-crossed"].read_text(encoding="utf-8")
+    text = text.replace('"fourbar-crossed"', '"fourbar-lecture-1"')
+    path.write_text(text, encoding="utf-8")
+    refused(crank(*ONE, str(path)), "a second scene called fourbar-lecture-1", "rename one")
+
+
+def test_a_fault_of_the_scene_is_told_before_anything_runs(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    path.write_text(text + "\n[tolerance]\nangel = 1e-3\n", encoding="utf-8")
+    refused(crank("verify", str(path)), "[tolerance] angel", "did you mean angle")
+
+
+def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
+    """A shipped scene with some of its text changed, as a file."""
+    text = shipped()[name].read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "edited.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_a_loop_that_can_not_follow_its_driver_is_told_with_its_range(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = edited(tmp_path, "fourbar-lecture-1", ("0.25", "0.17"))
+    refused(crank("verify", path), "crank can stand at", "deg")
+
+
+def test_a_loop_that_never_closes_says_by_how_much(crank: Crank, tmp_path: Path) -> None:
+    path = edited(
+        tmp_path, "fourbar-lecture-1", ("0.25", "0.01"), ("length_m = 0.2 ", "length_m = 0.05 ")
+    )
+    refused(crank("verify", path), "cannot be assembled", "open by", "change a length")
+
+
+def test_a_massless_link_is_refused_by_the_engine_that_needs_its_mass(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = edited(
+        tmp_path, "fourbar-lecture-1", ("length_m = 0.25", "length_m = 0.25, mass_kg = 0.0")
+    )
+    result = crank("verify", path, *FAST)
+    refused(result, "coupler", "mass_kg")
+    assert "unsupported" in result.output
+
+
+def test_ctrl_c_ends_with_130_and_one_line(crank: Crank, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> object:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "check_all", interrupted)
+    result = crank(*ONE)
+    assert result.exit_code == 130
+    assert result.stderr.splitlines() == ["crankcheck: interrupted"]
+
+
+def test_a_scene_that_no_engine_can_hold_is_a_row_and_exit_2(
+    crank: Crank, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.judge.cell as cell
+
+    def refuse(*_: object, **__: object) -> object:
+        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
+
+    monkeypatch.setattr(cell, "run", refuse)
+    result = crank(*ONE, "--engine", "mujoco", "--profile", "tuned")
+    assert result.exit_code == 2
+    assert "coupler has no mass" in " ".join(result.output.split())
+    assert "NONE fourbar-lecture-1" in result.output
+
+
+Verify = Callable[..., tuple[int, str]]
+
+
+@pytest.fixture
+def against(tmp_path: Path) -> Verify:
+    """Verify a four-bar with MuJoCo against a baseline; gives the exit code and the output."""
+
+    def run(**asked: object) -> tuple[int, str]:
+        console = Console(width=100, record=True, file=io.StringIO())
+        given: dict[str, object] = {
+            "scenes": ("fourbar-lecture-1",), "engines": ("mujoco",), "profiles": ("tuned",),
+            "dt_s": None, "steps_per_turn": 90.0, "turns": 1.0, "tolerance": (),
+            "drive": "prescribed", "converge": False, "jobs": 1, "junit": None, "csv": None,
+            "json": None, "folder": None,
+        }  # fmt: skip
+        code = command.verify(command.Request(**{**given, **asked}), console, console)  # type: ignore[arg-type]
+        return code, console.export_text()
+
+    return run
+
+
+def plant(folder: Path, column: str, factor: float) -> None:
+    """Make an error of a stored run so many times as large."""
+    cells = pd.read_csv(folder / "verify.csv")
+    cells[column] *= factor
+    cells.to_csv(folder / "verify.csv", index=False)
+
+
+def test_a_run_as_good_as_its_baseline_ends_with_0(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path)
+    code, text = against(baseline=tmp_path)
+    assert code == 0
+    verdict, _, diff = text.partition("NOT WORSE: 0 worse, 0 better, 1 equal, 0 new, 0 missing")
+    assert "WITHIN TOLERANCE" in verdict
+    assert f"old: {tmp_path}" in "".join(diff.splitlines())
+
+
+def test_a_run_worse_than_its_baseline_ends_with_1_though_within(
+    against: Verify, tmp_path: Path
+) -> None:
+    against(folder=tmp_path)
+    plant(tmp_path, "gap_pure", 1 / 1.2)
+    code, text = against(baseline=tmp_path, junit=tmp_path / "j.xml")
+    assert code == 1
+    assert "WITHIN TOLERANCE" in text
+    assert "WORSE: 1 worse" in text
+    assert against(baseline=tmp_path, factor=1.3)[0] == 0
+    own, diff = Xml.fromstring((tmp_path / "j.xml").read_text(encoding="utf-8"))
+    assert [suite.get("failures") for suite in (own, diff)] == ["0", "1"]
+    assert ["gap" in failure.get("message", "") for failure in diff.iter("failure")] == [True]
+
+
+def test_the_baseline_does_not_excuse_what_is_out_of_tolerance(
+    against: Verify, tmp_path: Path
+) -> None:
+    against(folder=tmp_path)
+    code, text = against(baseline=tmp_path, tolerance=("angle=1e-12",))
+    assert code == 1
+    assert "OUT OF TOLERANCE" in text
+    assert "NOT WORSE" in text
+
+
+def test_the_baseline_may_be_the_folder_that_is_written(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path)
+    plant(tmp_path, "gap_pure", 1 / 1.2)
+    assert against(baseline=tmp_path, folder=tmp_path)[0] == 1
+    assert against(baseline=tmp_path, folder=tmp_path)[0] == 0, "it is the new run by now"
+
+
+def test_only_what_is_run_now_is_compared(against: Verify, tmp_path: Path) -> None:
+    against(folder=tmp_path, profiles=("tuned", "as-shipped"))
+    code, text = against(baseline=tmp_path, scenes=("fourbar-lecture-1", "scotch-yoke"))
+    assert code == 0
+    assert "1 equal, 1 new, 0 missing" in text
+
+
+def test_an_engine_that_can_not_run_ends_with_2_beside_its_diff(
+    against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import reports.judge.cell as cell
+
+    def refuse(*_: object, **__: object) -> object:
+        raise EngineError("mujoco: coupler has no mass; give it a mass_kg")
+
+    against(folder=tmp_path)
+    monkeypatch.setattr(cell, "run", refuse)
+    code, text = against(baseline=tmp_path)
+    assert code == 2
+    assert "status" in text.partition("WORSE: 1 worse")[2]
+
+
+def test_a_scene_that_changed_since_the_baseline_is_refused(
+    against: Verify, tmp_path: Path
+) -> None:
+    scene = tmp_path / "mine.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    scene.write_text(text.replace("0.25", "0.26"), encoding="utf-8")
+    against(folder=tmp_path)
+    with pytest.raises(CrankcheckError, match="every scene of both changed in between"):
+        against(baseline=tmp_path, scenes=(str(scene),))
+
+
+def test_a_bad_baseline_is_refused_before_the_run(
+    against: Verify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    against(folder=tmp_path)
+    monkeypatch.setattr(command, "check_all", lambda *_: pytest.fail("it ran"))
+    for asked, fault in (
+        ({"baseline": tmp_path / "none"}, "none: no such folder"),
+        ({"baseline": tmp_path, "steps_per_turn": 180.0}, "no cell in common: .* holds 1 cell"),
+        ({"baseline": tmp_path, "factor": 0.5}, "--factor 0.5: give a number of at least 1"),
+    ):
+        with pytest.raises(CrankcheckError, match=fault):
+            against(**asked)

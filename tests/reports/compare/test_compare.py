@@ -1,0 +1,385 @@
+"""Every error that is put in is found in the right quantity, with the right size."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from analytic.kinematics import solve
+from models.files import load_scene
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.compare import SETTLING, compare
+from reports.compare.completeness import incomplete
+from reports.compare.errors import Errors, Kind, Quantity, Source
+from reports.judge.tolerance import limits
+from sim.engine import Poses, Run
+from sim.run import run as run_scene
+
+Array = NDArray[np.float64]
+Find = Callable[..., Errors]
+ROUNDING = 1e-12
+
+
+def pure(
+    errors: Errors, quantity: Quantity, source: Source = "reported", kind: Kind = "total"
+) -> float:
+    """The worst error of a quantity as a pure number."""
+    row = errors.worst(quantity, source, kind)
+    assert row is not None, (quantity, source, kind)
+    return row.pure
+
+
+def test_an_exact_run_has_errors_of_rounding_only(fourbar: Scene, errors_of: Find) -> None:
+    errors = errors_of(fourbar)
+    for quantity in ("drive", "angle", "position", "gap"):
+        assert pure(errors, quantity) < ROUNDING
+    assert pure(errors, "velocity") < ROUNDING
+    assert pure(errors, "acceleration") < 1e-10
+    assert pure(errors, "velocity", "differenced") < 1e-9
+    assert pure(errors, "acceleration", "differenced") < 1e-6
+
+
+def test_an_exact_slider_crank_has_errors_of_rounding_only(
+    slider_crank: Scene, errors_of: Find
+) -> None:
+    errors = errors_of(slider_crank)
+    for quantity in ("drive", "angle", "displacement", "position", "gap", "velocity"):
+        assert pure(errors, quantity) < ROUNDING
+
+
+def test_an_angle_error_of_a_link_shows_in_that_link_with_its_size_and_place(
+    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
+) -> None:
+    period = fourbar.driver.law.period_s
+
+    def bump(time_s: Array) -> Array:
+        return np.asarray(2e-5 * np.sin(np.pi * time_s / period))
+
+    errors = errors_of(fourbar, fake_engine.turned_link("rocker", bump))
+    worst = errors.worst("angle")
+    assert worst is not None
+    assert worst.body == "rocker"
+    assert worst.maximum == pytest.approx(2e-5, rel=1e-6)
+    assert worst.rms == pytest.approx(2e-5 / math.sqrt(2), rel=2e-3)
+    assert abs(worst.final) < 1e-10
+    assert worst.time_of_maximum_s == pytest.approx(period / 2)
+    assert worst.driver_at_maximum_rad == pytest.approx(math.pi / 2 + math.pi)
+    rocker_m = 0.2
+    assert pure(errors, "gap") == pytest.approx(2e-5 * rocker_m / fourbar.longest_m, rel=1e-6)
+
+
+def test_a_gap_is_found_at_the_pin_that_opens(fourbar: Scene, errors_of: Find) -> None:
+    def push(poses: Poses) -> Poses:
+        body = poses.links["rocker"]
+        moved = replace(body, origin=body.origin + np.array([3e-5, -4e-5]))
+        return replace(poses, links={**poses.links, "rocker": moved})
+
+    errors = errors_of(fourbar, push)
+    gaps = {row.body: row.maximum for row in errors.rows if row.quantity == "gap"}
+    assert gaps["D"] == pytest.approx(5e-5)
+    assert gaps["C"] == pytest.approx(5e-5)
+    assert gaps["B"] < 1e-15
+
+
+def lagging(scene: Scene, lag_s: float, disturbed: Callable[..., Run]) -> Run:
+    """A healthy mechanism whose crank runs late: its motion is that of ``lag_s`` before."""
+    engine_run = disturbed(scene)
+    assert engine_run.motion is not None
+    time_s = engine_run.motion.time_s
+    motion = replace(solve(scene, time_s - lag_s), time_s=time_s)
+    return replace(engine_run, motion=motion)
+
+
+def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    errors = compare(fourbar, lagging(fourbar, 1e-6, disturbed))
+    assert errors is not None
+    assert pure(errors, "drive") == pytest.approx(1e-5, rel=1e-6)
+    peak_ratio = 0.62  # of the rocker's speed to the crank's, largest over the turn
+    assert pure(errors, "angle") == pytest.approx(1e-5 * peak_ratio, rel=0.05)
+    assert pure(errors, "angle", kind="geometric") < ROUNDING
+    assert pure(errors, "position", kind="geometric") < ROUNDING
+
+
+def test_a_clock_off_by_one_sample_shows_as_one_step_of_drive(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    errors = compare(fourbar, lagging(fourbar, run.dt_s, disturbed))
+    assert errors is not None
+    assert pure(errors, "drive") == pytest.approx(errors.step_rad)
+    assert pure(errors, "angle", kind="geometric") < ROUNDING
+
+
+def test_velocities_half_a_step_late_show_in_reported_velocity_alone(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    early = run.motion.time_s - run.dt_s / 2
+    there = solve(fourbar, early)
+    motion = replace(
+        run.motion,
+        links={n: replace(m, omega=there.links[n].omega) for n, m in run.motion.links.items()},
+        points={
+            n: replace(m, velocity=there.points[n].velocity) for n, m in run.motion.points.items()
+        },
+    )
+    right = compare(fourbar, replace(run, motion=motion, velocity_time_s=early))
+    wrong = compare(fourbar, replace(run, motion=motion))
+    assert right is not None
+    assert wrong is not None
+    alpha = 0.9  # about the largest pure acceleration of the four-bar's links
+    assert pure(wrong, "velocity") == pytest.approx(wrong.step_rad / 2 * alpha, rel=0.15)
+    assert pure(wrong, "velocity") > limits(fourbar, wrong, {})["velocity"].number
+    assert pure(right, "velocity") < ROUNDING
+    assert pure(wrong, "angle") < ROUNDING
+    assert pure(wrong, "velocity", "differenced") == pure(right, "velocity", "differenced")
+
+
+def test_a_position_that_trembles_shows_in_the_differenced_rates(
+    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
+) -> None:
+    size = 1e-7
+
+    def tremble(time_s: Array) -> Array:
+        return np.asarray(size * (-1.0) ** np.arange(time_s.size) * (time_s > 0.0))
+
+    errors = errors_of(fourbar, fake_engine.turned_link("rocker", tremble))
+    rows = {
+        row.body: row
+        for row in errors.rows
+        if (row.quantity, row.source, row.kind) == ("acceleration", "differenced", "total")
+    }
+    step = errors.step_rad
+    assert rows["rocker"].pure == pytest.approx(4 * size / step**2, rel=1e-3)
+    assert pure(errors, "velocity") < ROUNDING
+
+
+@pytest.mark.parametrize("part", ["theta", "omega", "alpha"])
+@pytest.mark.parametrize("at", [SETTLING // 2, -1])
+def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
+    fourbar: Scene, disturbed: Callable[..., Run], part: str, at: int
+) -> None:
+    run = disturbed(fourbar)
+    motion = run.motion
+    assert motion is not None
+    series = vars(motion.links["rocker"])[part].copy()
+    series[at] = np.nan
+    link = replace(motion.links["rocker"], **{part: series})
+    wrong: Motion = replace(motion, links={**motion.links, "rocker": link})
+    errors = compare(fourbar, replace(run, motion=wrong))
+    assert errors is not None
+    assert any(row.body == "rocker" and not row.finite for row in errors.rows)
+
+
+def test_a_crank_angle_that_is_missing_leaves_a_note_and_a_broken_drive(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    crank = run.motion.links["crank"]
+    theta = crank.theta.copy()
+    theta[5] = np.nan
+    links = {**run.motion.links, "crank": replace(crank, theta=theta)}
+    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    assert errors is not None
+    assert "logged crank angle is not finite" in errors.notes[0]
+    assert not any(row.kind == "geometric" for row in errors.rows)
+    assert math.isnan(pure(errors, "drive"))
+
+
+def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    links = {
+        name: replace(link, alpha=np.full_like(link.alpha, np.nan))
+        for name, link in run.motion.links.items()
+    }
+    points = {
+        name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
+        for name, point in run.motion.points.items()
+    }
+    silent = replace(run, motion=replace(run.motion, links=links, points=points))
+    errors = compare(fourbar, replace(silent, reports_accelerations=False))
+    assert errors is not None
+    assert "acceleration of link rocker" in errors.not_reported
+    assert all(row.finite for row in errors.rows)
+    accused = compare(fourbar, silent)
+    assert accused is not None
+    assert accused.not_reported == ()
+    assert math.isnan(pure(accused, "acceleration"))
+
+
+def test_an_engine_without_accelerations_may_not_report_those_of_some_links_only(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    rocker = run.motion.links["rocker"]
+    links = {
+        **run.motion.links,
+        "rocker": replace(rocker, alpha=np.full_like(rocker.alpha, np.nan)),
+    }
+    some = replace(run, motion=replace(run.motion, links=links), reports_accelerations=False)
+    errors = compare(fourbar, some)
+    assert errors is not None
+    assert errors.not_reported == ()
+    assert math.isnan(pure(errors, "acceleration"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("links", "rocker"), ("links", "crank"), ("points", "C")]
+)
+def test_what_the_engine_leaves_out_is_missed(
+    fourbar: Scene, disturbed: Callable[..., Run], kind: str, name: str
+) -> None:
+    run = disturbed(fourbar)
+    kept = {n: part for n, part in vars(run.motion)[kind].items() if n != name}
+    motion = replace(run.motion, **{kind: kept})  # type: ignore[type-var]  # never None here
+    errors = compare(fourbar, replace(run, motion=motion))
+    assert errors is not None
+    assert errors.missing == (f"{kind[:-1]} {name}",)
+    assert any(row.body == name and not row.finite for row in errors.rows)
+
+
+@pytest.mark.parametrize("name", ["slider-crank-offset", "shaper"])
+def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., Run]) -> None:
+    scene = load_scene(name)
+    run = disturbed(scene)
+    whole, silent = compare(scene, run), compare(scene, replace(run, gaps={}))
+    assert whole is not None
+    assert silent is not None
+    assert whole.missing == ()
+    assert set(silent.missing) == {f"gap of {joint}" for joint in run.gaps}
+    assert math.isnan(pure(silent, "gap"))
+
+
+def test_a_series_of_another_length_counts_as_none(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    rocker = run.motion.links["rocker"]
+    links = {**run.motion.links, "rocker": replace(rocker, theta=rocker.theta[:1])}
+    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    assert errors is not None
+    assert math.isnan(pure(errors, "angle"))
+
+
+def cut(run: Run, keep: slice) -> Run:
+    """The run with a part of its samples."""
+    assert run.motion is not None
+    moved = run.motion
+
+    def parts(bodies: Mapping[str, Any]) -> dict[str, Any]:
+        return {
+            name: replace(body, **{key: series[keep] for key, series in vars(body).items()})
+            for name, body in bodies.items()
+        }
+
+    motion = replace(
+        moved,
+        time_s=moved.time_s[keep],
+        links=parts(moved.links),
+        points=parts(moved.points),
+        sliders=parts(moved.sliders),
+    )
+    assert run.velocity_time_s is not None
+    assert run.acceleration_time_s is not None
+    return replace(
+        run,
+        motion=motion,
+        gaps={name: gap[keep] for name, gap in run.gaps.items()},
+        velocity_time_s=run.velocity_time_s[keep],
+        acceleration_time_s=run.acceleration_time_s[keep],
+    )
+
+
+@pytest.mark.parametrize(
+    "keep", [slice(50), slice(1), slice(720), slice(1, None), slice(0, None, 2)]
+)
+def test_a_log_that_lacks_commanded_samples_is_incomplete(
+    fourbar: Scene, disturbed: Callable[..., Run], keep: slice
+) -> None:
+    run = disturbed(fourbar)
+    whole, short = compare(fourbar, run), compare(fourbar, cut(run, keep))
+    assert whole is not None
+    assert short is not None
+    assert whole.incomplete == ""
+    assert "not the 721 of 720 steps logged every 1" in short.incomplete
+
+
+def test_time_stamps_off_the_commanded_grid_are_found(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    run = disturbed(fourbar)
+    assert run.motion is not None
+    time_s = run.motion.time_s.copy()
+    time_s[7:] += 1e-9 * run.dt_s
+    errors = compare(fourbar, replace(run, motion=replace(run.motion, time_s=time_s)))
+    assert errors is not None
+    assert "sample 7 is stamped" in errors.incomplete
+    assert "714 of 721" in errors.incomplete
+
+
+@pytest.mark.parametrize(("steps", "every"), [(720, 1), (720, 7), (9000, 4)])
+def test_a_whole_log_is_complete_however_thinly_it_is_logged(
+    fourbar: Scene, fake_engine: ModuleType, steps: int, every: int
+) -> None:
+    state = solve(fourbar, np.array([0.3])).state()
+    engine = fake_engine.FakeEngine(exact=solve)
+    run = run_scene(fourbar, state, engine, dt_s=1e-3, steps=steps, every=every)
+    assert incomplete(run) == ""
+
+
+def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(
+    disturbed: Callable[..., Run],
+) -> None:
+    scene = load_scene("fourbar-double-rocker")
+    run = disturbed(scene)
+    assert run.motion is not None
+    driver = run.motion.links["driver"]
+    links = {**run.motion.links, "driver": replace(driver, theta=driver.theta + 2.0)}
+    errors = compare(scene, replace(run, motion=replace(run.motion, links=links)))
+    assert errors is not None
+    assert "left its range" in errors.notes[0]
+    assert pure(errors, "drive") == pytest.approx(2.0)
+
+
+def test_a_run_that_never_started_has_no_errors(
+    fourbar: Scene, disturbed: Callable[..., Run]
+) -> None:
+    assert compare(fourbar, replace(disturbed(fourbar), motion=None)) is None
+
+
+def test_the_pure_numbers_do_not_depend_on_the_size_of_the_scene(
+    fourbar: Scene, errors_of: Find, fake_engine: ModuleType
+) -> None:
+    links = {
+        name: replace(link, points={p: (10 * x, 10 * y) for p, (x, y) in link.points.items()})
+        for name, link in fourbar.links.items()
+    }
+    ground = {p: (10 * x, 10 * y) for p, (x, y) in fourbar.ground.items()}
+    large = replace(fourbar, links=links, ground=ground)
+
+    def bump(time_s: Array) -> Array:
+        return np.asarray(1e-4 * np.sin(7.0 * time_s))
+
+    disturb = fake_engine.turned_link("coupler", bump)
+    small_errors, large_errors = errors_of(fourbar, disturb), errors_of(large, disturb)
+    for quantity in ("angle", "position", "gap", "velocity"):
+        assert pure(large_errors, quantity) == pytest.approx(
+            pure(small_errors, quantity), rel=1e-6, abs=1e-12
+        )

@@ -1,0 +1,94 @@
+"""What is embedded can neither leave its script nor lose what a diagram shows."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+from reports.drawing.packed import LEVELS, embedded, packed, policy, size_of
+from reports.output.numbers import NONE, count, duration, error_text, listed, plain
+
+HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
+
+
+def test_a_hostile_text_stays_in_its_script() -> None:
+    text = str(embedded({HOSTILE: [HOSTILE, {"deep": HOSTILE}]}))
+    assert not re.search("[<>&\u2028\u2029]", text)
+    assert json.loads(text) == {HOSTILE: [HOSTILE, {"deep": HOSTILE}]}
+
+
+def test_numbers_are_thinned_and_what_is_no_number_is_null() -> None:
+    text = str(embedded({"a": np.array([1 / 3, math.nan, math.inf, 2.0]), "b": True, "c": None}))
+    assert text == '{"a":[0.333333,null,null,2],"b":true,"c":null}'
+    assert plain(np.float64(-1.23456789e-9)) == -1.23457e-9
+    assert plain(np.int64(7)) == 7
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-12, 1e300, 5e-324])
+def test_packed_samples_come_back_to_a_part_of_their_row(scale: float) -> None:
+    rows = np.vstack([np.sin(np.linspace(0, 7, 91)), np.linspace(-1e-6, 1e-7, 91)]) * scale
+    found = packed(rows)
+    whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 91)
+    back = whole * np.asarray(found["scales"])[:, None]
+    largest = np.max(np.abs(rows), axis=1, keepdims=True)
+    room = largest / LEVELS if scale > 1e-300 else np.full_like(largest, scale)
+    assert np.all(np.abs(back - rows) <= room)
+    assert found["samples"] == 91
+
+
+def test_packed_samples_that_are_missing_are_told_from_zero() -> None:
+    found = packed(np.array([[math.nan, 0.0, math.inf, 1.0], [0.0, 0.0, 0.0, math.nan]]))
+    whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 4)
+    assert whole.tolist() == [[-32768, 0, -32768, LEVELS], [0, 0, 0, -32768]]
+
+
+def test_the_size_of_packed_rows_is_known_beforehand() -> None:
+    rows = np.random.default_rng(1).normal(size=(17, 91))
+    assert size_of(17, 91) == pytest.approx(len(str(embedded(packed(rows)))), rel=0.05)
+
+
+def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
+    script = "let a = 1;"
+    found = policy([script])
+    own = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"script-src 'sha256-{own}';" in found
+    assert "default-src 'none'" in found
+    assert "http" not in found
+    assert "unsafe-eval" not in found
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(2.66e-4, "2.7e-4"), (0.0, "0"), (math.nan, NONE), (None, NONE), (1.0, "1.0e0")],
+)
+def test_errors_are_told_in_two_digits(value: float | None, text: str) -> None:
+    assert error_text(value) == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (1.4e-3, "1.40 ms"),
+        (14.06e-3, "14.1 ms"),
+        (0.99996e-3, "1.00 ms"),
+        (4.84e-4, "484 µs"),
+        (12.0, "12.0 s"),
+        (3e-9, "3.00 ns"),
+        (None, NONE),
+        (math.inf, NONE),
+    ],
+)
+def test_times_are_told_in_three_digits(seconds: float | None, text: str) -> None:
+    assert duration(seconds) == text
+
+
+def test_things_are_counted_and_listed() -> None:
+    assert [count(1, "scene"), count(2, "scene")] == ["1 scene", "2 scenes"]
+    assert count(2, "axis", "axes") == "2 axes"
+    assert [listed([]), listed(["a"]), listed(["a", "b", "c"])] == ["", "a", "a, b and c"]

@@ -1,0 +1,314 @@
+"""An environment per version: what makes it, what may not leak into it, and why it failed."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pytest
+from packaging.version import Version
+
+from models.errors import CrankcheckError
+from reports.history import environments
+from reports.history.cache import alone, cache_folder, user_cache
+from reports.history.environments import (
+    COMPLETE,
+    NotMeasuredError,
+    Wanted,
+    clean_variables,
+    commands,
+    place,
+    python_of,
+    ready,
+    wanted,
+)
+from reports.history.install_errors import reason
+from reports.workers.programs import Ended, run_child
+
+ONE = Wanted("mujoco", Version("3.6.0"))
+
+
+class FakeInstaller:
+    """Answers as an installer would; remembers what it was told to do."""
+
+    def __init__(self, fails: str = "", finds: str = "3.6.0") -> None:
+        self.fails, self.finds = fails, finds
+        self.commands: list[list[str]] = []
+        self.variables: list[dict[str, str]] = []
+
+    def __call__(
+        self, command: Sequence[str], variables: Mapping[str, str], folder: Path | None
+    ) -> Ended:
+        self.commands.append(list(command))
+        self.variables.append(dict(variables))
+        if "venv" in command:
+            python = python_of(Path(command[-1]))
+            python.parent.mkdir(parents=True)
+            python.touch()
+            return Ended(0, "", "")
+        if "install" in command:
+            return Ended(1 if self.fails else 0, "", self.fails)
+        return Ended(0, f"{self.finds}\n", "")
+
+    @property
+    def installs(self) -> int:
+        return sum("install" in command for command in self.commands)
+
+
+@pytest.mark.parametrize("text", ["3.x; rm", "", "--index-url", "3.6.0/..", "latest", "3.6 .0"])
+def test_a_text_that_is_no_version_is_refused(text: str) -> None:
+    with pytest.raises(CrankcheckError, match="not a version number"):
+        wanted("mujoco", ["3.6.0", text])
+
+
+def test_versions_are_taken_once_and_the_oldest_first() -> None:
+    found = wanted("mujoco", ["3.10.0", "3.9", "3.9.0", "3.10.0rc1"])
+    assert [one.name for one in found] == ["mujoco-3.9", "mujoco-3.10.0rc1", "mujoco-3.10.0"]
+
+
+def test_uv_makes_the_environment_where_there_is_one(tmp_path: Path) -> None:
+    make, install = commands("/bin/uv", tmp_path / "env", ONE, tmp_path / "held.txt")
+    assert make[:2] == ["/bin/uv", "venv"]
+    assert make[make.index("--python") + 1] == sys.executable
+    assert make[-1] == str(tmp_path / "env")
+    assert install[:3] == ["/bin/uv", "pip", "install"]
+    assert install[install.index("--python") + 1] == str(python_of(tmp_path / "env"))
+    assert install[-1] == "mujoco==3.6.0"
+
+
+def test_venv_and_pip_make_it_elsewhere(tmp_path: Path) -> None:
+    make, install = commands(None, tmp_path / "env", ONE, tmp_path / "held.txt")
+    assert make == [sys.executable, "-m", "venv", str(tmp_path / "env")]
+    assert install[:4] == [str(python_of(tmp_path / "env")), "-m", "pip", "install"]
+    assert install[-1] == "mujoco==3.6.0"
+
+
+@pytest.mark.parametrize("uv", [None, "/bin/uv"])
+def test_wheels_only_and_numpy_held_at_the_version_that_runs(
+    tmp_path: Path, uv: str | None
+) -> None:
+    import numpy as np
+
+    installer = FakeInstaller()
+    ready(tmp_path, ONE, uv, installer)
+    install = next(command for command in installer.commands if "install" in command)
+    assert install[install.index("--only-binary") + 1] == ":all:"
+    constraint = Path(install[install.index("--constraint") + 1])
+    assert constraint.read_text(encoding="utf-8") == f"numpy=={np.__version__}\n"
+
+
+def test_a_complete_environment_is_not_made_again(tmp_path: Path) -> None:
+    installer = FakeInstaller()
+    first = ready(tmp_path, ONE, None, installer)
+    assert ready(tmp_path, ONE, None, installer) == first
+    assert installer.installs == 1
+
+
+def test_what_a_killed_install_left_is_made_anew(tmp_path: Path) -> None:
+    installer = FakeInstaller()
+    ready(tmp_path, ONE, None, installer)
+    (place(tmp_path, ONE) / COMPLETE).unlink()
+    (place(tmp_path, ONE) / "half").touch()
+    ready(tmp_path, ONE, None, installer)
+    assert installer.installs == 2
+    assert not (place(tmp_path, ONE) / "half").exists()
+
+
+def test_a_failed_install_leaves_nothing_and_is_tried_again(tmp_path: Path) -> None:
+    with pytest.raises(NotMeasuredError, match="not installed: no space left"):
+        ready(tmp_path, ONE, None, FakeInstaller(fails="ERROR: no space left"))
+    assert not place(tmp_path, ONE).exists()
+    installer = FakeInstaller()
+    ready(tmp_path, ONE, None, installer)
+    assert installer.installs == 1
+
+
+def test_an_environment_that_finds_another_version_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NotMeasuredError, match=r"finds 4\.0\.0 in place of 3\.6\.0"):
+        ready(tmp_path, ONE, None, FakeInstaller(finds="4.0.0"))
+    assert not (place(tmp_path, ONE) / COMPLETE).exists()
+
+
+@pytest.mark.parametrize("changed", ["python", "numpy", "version"])
+def test_another_python_numpy_or_version_has_another_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changed: str
+) -> None:
+    before, one = place(tmp_path, ONE), ONE
+    if changed == "python":
+        monkeypatch.setattr(environments.platform, "python_version", lambda: "3.99.1")
+    elif changed == "numpy":
+        monkeypatch.setattr(environments, "held_numpy", lambda: "1.0")
+    else:
+        one = Wanted("mujoco", Version("3.7.0"))
+    assert place(tmp_path, one) != before
+
+
+def test_variables_of_this_environment_do_not_reach_the_new_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONHOME", "PIP_TARGET", "PIP_CONSTRAINT"):
+        monkeypatch.setenv(name, "elsewhere")
+    monkeypatch.setenv("PIP_INDEX_URL", "kept")
+    installer = FakeInstaller()
+    ready(tmp_path, ONE, None, installer)
+    for variables in (*installer.variables, clean_variables()):
+        assert "elsewhere" not in variables.values()
+        assert variables["PIP_INDEX_URL"] == "kept"
+
+
+PIP_NO_VERSION = """\
+WARNING: Location 'file:///srv/simple/mujoco/' is ignored: it is neither a file nor a directory.
+ERROR: Could not find a version that satisfies the requirement mujoco==3.65.0 (from versions: \
+2.3.7, 3.6.0, 3.7.0, 4.0.0)
+ERROR: No matching distribution found for mujoco==3.65.0
+"""
+PIP_NO_NETWORK = """\
+WARNING: Retrying (Retry(total=0, connect=None, read=None, redirect=None, status=None)) after \
+connection broken by 'NewConnectionError('<pip._vendor.urllib3.connection.HTTPSConnection object \
+at 0x7f>: Failed to establish a new connection: [Errno 111] Connection refused')': /simple/mujoco/
+ERROR: Could not find a version that satisfies the requirement mujoco==3.6.0 (from versions: none)
+ERROR: No matching distribution found for mujoco==3.6.0
+"""
+PIP_CONFLICT = """\
+ERROR: Cannot install mujoco==3.6.0 because these package versions have conflicting dependencies.
+ERROR: ResolutionImpossible: for help visit https://pip.example.io/en/latest/#dealing
+"""
+UV_NO_VERSION = """\
+error: No solution found when resolving dependencies
+  cause: Because there is no version of mujoco==9.9.9 and you require mujoco==9.9.9, we can \
+conclude that your requirements are unsatisfiable.
+"""
+UV_NO_VERSION_EARLIER = """\
+  \u00d7 No solution found when resolving dependencies:
+  \u2570\u2500\u25b6 Because there is no version of mujoco==9.9.9 and you require mujoco==9.9.9, \
+we can
+      conclude that your requirements are unsatisfiable.
+"""
+UV_NO_WHEEL = """\
+error: No solution found when resolving dependencies
+  cause: Because mujoco==2.3.0 has no usable wheels and you require mujoco==2.3.0, we can \
+conclude that your requirements are unsatisfiable.
+
+hint: Wheels are required for `mujoco` because building from source is disabled for all packages
+"""
+UV_NO_NETWORK = """\
+error: Request failed after 3 retries in 7.7s
+  cause: Failed to fetch: https://packages.example.com/simple/mujoco/
+  cause: error sending request for url (https://packages.example.com/simple/mujoco/)
+  cause: client error (Connect)
+  cause: dns error
+  cause: failed to lookup address information: Name or service not known
+"""
+UV_CONFLICT = """\
+error: No solution found when resolving dependencies
+  cause: Because mujoco==3.6.0 depends on numpy<2 and numpy==2.4.6, we can conclude that
+         mujoco==3.6.0 cannot be used.
+"""
+UV_CONFLICT_EARLIER = """\
+  \u00d7 No solution found when resolving dependencies:
+  \u2570\u2500\u25b6 Because mujoco==3.6.0 depends on numpy<2 and numpy==2.4.6, we can conclude that
+      mujoco==3.6.0 cannot be used.
+"""
+GONE = "ERROR: HTTP error 410 for https://packages.example.com/simple/mujoco-3.6.0.whl (Gone)\n"
+OTHER = """\
+Looking in indexes: https://user:secret@packages.example.com/simple
+ERROR: HTTP error 418 from packages.example.com
+"""
+
+
+@pytest.mark.parametrize(
+    ("output", "parts"),
+    [
+        (PIP_NO_VERSION, ["no mujoco 3.65.0 is offered", "near it: 3.6.0, 3.7.0, 4.0.0"]),
+        (PIP_NO_NETWORK, ["could not be reached (Connection refused)"]),
+        (PIP_CONFLICT, ["Cannot install mujoco==3.6.0", "conflicting dependencies"]),
+        (UV_NO_VERSION, ["no mujoco 9.9.9 is offered as a wheel for Python 3."]),
+        (UV_NO_VERSION_EARLIER, ["no mujoco 9.9.9 is offered as a wheel for Python 3."]),
+        (UV_NO_WHEEL, ["no mujoco 2.3.0 is offered as a wheel for Python 3."]),
+        (UV_NO_NETWORK, ["could not be reached (Name or service not known)"]),
+        (UV_CONFLICT, ["depends on numpy<2", "mujoco==3.6.0 cannot be used"]),
+        (
+            UV_CONFLICT_EARLIER,
+            ["Because mujoco==3.6.0 depends on numpy<2", "mujoco==3.6.0 cannot be used"],
+        ),
+        (GONE, ["HTTP error 410 for the package index (Gone)"]),
+        (OTHER, ["HTTP error 418 from the package index"]),
+        ("", ["no reason"]),
+    ],
+)
+def test_the_reason_is_one_line_that_names_no_host(output: str, parts: list[str]) -> None:
+    told = reason(output)
+    for part in parts:
+        assert part in told
+    assert "\n" not in told
+    assert len(told) <= 200
+    for secret in ("example", "secret", "http:", "https:", "/simple", "file:"):
+        assert secret not in told
+
+
+def test_a_program_that_is_not_there_is_an_end_with_a_reason(tmp_path: Path) -> None:
+    ended = run_child([str(tmp_path / "none")], os.environ)
+    assert ended.code
+    assert "none: No such file" in ended.complaint
+
+
+@pytest.mark.parametrize(
+    ("platform", "variables", "ending"),
+    [
+        ("linux", {"XDG_CACHE_HOME": "/big/cache"}, "/big/cache/crankcheck"),
+        ("linux", {"XDG_CACHE_HOME": "not/absolute"}, "/.cache/crankcheck"),
+        ("linux", {}, "/.cache/crankcheck"),
+        ("darwin", {}, "/Library/Caches/crankcheck"),
+        ("win32", {}, "/AppData/Local/crankcheck"),
+        ("win32", {"LOCALAPPDATA": "/users/me/local"}, "/users/me/local/crankcheck"),
+    ],
+)
+@pytest.mark.skipif(sys.platform == "win32", reason="paths are written as POSIX has them")
+def test_the_cache_is_where_the_system_has_caches(
+    platform: str, variables: dict[str, str], ending: str
+) -> None:
+    assert str(user_cache(platform, variables)).endswith(ending)
+
+
+def test_a_cache_that_is_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(CrankcheckError, match="--cache"):
+        cache_folder(tmp_path / "file")
+
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from reports.history.cache import alone
+with alone(Path(sys.argv[1]), lambda: None):
+    print("in", flush=True)
+    sys.stdin.read()
+    time.sleep(0.2)  # who does not wait is in before
+    Path(sys.argv[2]).touch()
+"""
+
+
+def test_a_second_process_waits_and_says_so(tmp_path: Path) -> None:
+    lock, leaving, told = tmp_path / "locks" / "one.lock", tmp_path / "leaving", []
+    root = str(Path(__file__).parents[3])
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(lock), str(leaving)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": root},
+    ) as holder:
+        stdin, stdout = holder.stdin, holder.stdout
+        assert stdin is not None
+        assert stdout is not None
+        assert stdout.readline().strip() == b"in"
+
+        def told_to_wait() -> None:
+            told.append("waiting")
+            stdin.close()
+
+        with alone(lock, told_to_wait):
+            assert leaving.exists()
+    assert told == ["waiting"]

@@ -1,0 +1,380 @@
+"""`crankcheck history` as a whole: with an installer and versions made up here, and for real."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from models.files import shipped
+from reports.cli.commands.history import Request, run_history
+from reports.history import verification
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
+
+INSTALLER = """\
+#!{python}
+# Stands in for uv: an environment with a package `mujoco`, which is the one that runs here under
+# another version; what is older than 3.7.0 has softer loops.
+import os, subprocess, sys, time
+from pathlib import Path
+
+arguments = sys.argv[1:]
+with open({log!r}, "a") as log:
+    log.write(" ".join(arguments) + "\\n")
+if arguments[0] == "venv":
+    sys.exit(subprocess.call([{python!r}, "-m", "venv", "--without-pip", arguments[-1]]))
+version = arguments[-1].partition("==")[2]
+if version == "9.9.9":
+    print("error: No solution found when resolving dependencies", file=sys.stderr)
+    print("  cause: Because there is no version of mujoco==9.9.9 and you", file=sys.stderr)
+    print("         require mujoco==9.9.9, we can conclude that it is so.", file=sys.stderr)
+    sys.exit(1)
+if version == "1.0":
+    Path({sign!r}).write_text(str(os.getpid()))
+    time.sleep(60.0)
+environment = Path(arguments[arguments.index("--python") + 1]).parents[1]
+(site,) = environment.glob("lib/python*/site-packages")
+(site / "mujoco").mkdir()
+code = Path({stub!r}).read_text().replace("VERSION", version)
+(site / "mujoco" / "__init__.py").write_text(code)
+(site / f"mujoco-{{version}}.dist-info").mkdir()
+(site / f"mujoco-{{version}}.dist-info" / "METADATA").write_text(
+    f"Metadata-Version: 2.1\\nName: mujoco\\nVersion: {{version}}\\n"
+)
+"""
+STUB = """\
+import os
+import sys
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec
+from pathlib import Path
+
+here = str(Path(__file__).parents[1])
+found = PathFinder.find_spec("mujoco", [path for path in sys.path if path != here])
+module = sys.modules["mujoco"] = module_from_spec(found)
+found.loader.exec_module(module)
+module.mj_versionString = lambda: "VERSION"
+load = module.MjModel.from_xml_string
+
+def from_xml_string(text):
+    Path("SIGN").write_text(str(os.getpid()))  # tells that a scene is about to be run
+    soft = "VERSION" == "3.6.0"
+    return load(text.replace('solref="0.02', 'solref="0.1') if soft else text)
+
+module.MjModel.from_xml_string = staticmethod(from_xml_string)
+"""
+SCENE = "fourbar-lecture-1"
+
+
+@pytest.fixture(scope="module")
+def installer(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a command `uv` that needs no network, and the log of its calls."""
+    folder = tmp_path_factory.mktemp("installer")
+    sign = str(folder / "running")
+    stub = STUB.replace("SIGN", sign)
+    (folder / "stub.py").write_text(stub, encoding="utf-8")
+    script = folder / "uv"
+    script.write_text(
+        INSTALLER.format(
+            python=sys.executable,
+            log=str(folder / "log"),
+            stub=str(folder / "stub.py"),
+            sign=sign,
+        ),
+        encoding="utf-8",
+    )
+    script.chmod(0o755)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+History = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> History:
+    """Run the command; exit code, output with single spaces, complaint."""
+    monkeypatch.setenv("PATH", f"{installer}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
+    code = verification.code_key()  # the same for all, also where somebody edits the code meanwhile
+    monkeypatch.setattr(verification, "code_key", lambda: code)
+
+    def run(*versions: str, **options: object) -> tuple[int, str, str]:
+        given = {"scenes": [SCENE], "turns": 1.0, "steps_per_turn": 360.0, "cache": cache} | options
+        output, complaint = io.StringIO(), io.StringIO()
+        code = run_history(
+            Request("mujoco", versions, **given),  # type: ignore[arg-type]
+            Console(file=output, width=100),
+            Console(file=complaint, width=100),
+        )
+        return code, " ".join(output.getvalue().split()), complaint.getvalue()
+
+    return run
+
+
+@posix
+def test_versions_are_installed_run_compared_and_kept(
+    history: History, installer: Path, cache: Path, tmp_path: Path
+) -> None:
+    code, output, complaint = history("3.7.0", "9.9.9", "3.6.0", folder=tmp_path / "out")
+    assert code == 2
+    reason = "not installed: no mujoco 9.9.9 is offered as a wheel for Python"
+    assert complaint.startswith(f"crankcheck: mujoco 9.9.9: {reason}")
+    assert f"9.9.9 - - - - {reason}" in output
+    assert "3.7.0 is better than 3.6.0 by" in output
+    assert f"on the pin gap of {SCENE} as shipped" in output
+    assert (installer / "log").read_text().count("pip install") == 3
+    for version in ("3.6.0", "3.7.0"):
+        folder = tmp_path / "out" / f"mujoco-{version}"
+        with (folder / "verify.csv").open(encoding="utf-8") as lines:
+            assert {row["version"] for row in csv.DictReader(lines)} == {version}
+        assert (folder / "errors.parquet").is_file()
+    assert not (tmp_path / "out" / "mujoco-9.9.9").exists()
+    with (tmp_path / "out" / "history.csv").open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    assert {row["version"] for row in rows} == {"3.6.0", "3.7.0", "9.9.9"}
+    assert "## 3.7.0 against 3.6.0" in (tmp_path / "out" / "history.md").read_text()
+
+    calls = (installer / "log").read_text().count("pip install")
+    code, output, complaint = history("3.6.0", "3.7.0")
+    assert (code, complaint) == (0, "")
+    assert output.count("kept from before") == 2
+    assert f"Results: {cache.resolve()}" in output.replace("- ", "-")
+    assert (installer / "log").read_text().count("pip install") == calls
+
+    code, output, _ = history("3.7.0", again=True)
+    assert "kept from before" not in output
+    assert (installer / "log").read_text().count("pip install") == calls
+    assert not list(cache.glob("history/results/.*"))
+
+
+@pytest.fixture
+def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
+    """The folders that were measured, with nothing installed or run for it."""
+    folders: list[Path] = []
+    columns = "scene,profile,verdict,status,reason,settings,angle_pure,displacement_pure,"
+    columns += "position_pure,gap_pure,pin_gap_m,slider_gap_m,velocity_pure,acceleration_pure"
+
+    def measure(folder: Path, *_: object) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "verify.csv").write_text(f"{columns}\n{SCENE},tuned,out,ok,,,1e-3,,,,,,,\n")
+        folders.append(folder)
+
+    monkeypatch.setattr("reports.cli.commands.history.measure", measure)
+    monkeypatch.setattr("reports.cli.commands.history.ready", lambda *_: tmp_path / "python")
+    return folders
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"turns": 2.0},
+        {"profiles": ["tuned"]},
+        {"dt_s": 2e-3, "steps_per_turn": None},
+        {"scenes": ["shaper"]},
+        {"again": True},
+    ],
+)
+def test_another_request_is_not_answered_from_the_cache(
+    history: History, measured: list[Path], tmp_path: Path, other: dict[str, object]
+) -> None:
+    for _ in range(2):
+        assert history("3.7.0", cache=tmp_path)[0] == 0
+    assert len(measured) == 1
+    _, output, _ = history("3.7.0", cache=tmp_path, **other)
+    assert len(measured) == 2
+    assert "kept from before" not in output
+
+
+def test_another_text_of_a_scene_is_not_answered_from_the_cache(
+    history: History, measured: list[Path], tmp_path: Path
+) -> None:
+    path, text = tmp_path / "mine.toml", shipped()[SCENE].read_text(encoding="utf-8")
+    bar = 'bar = ["B", "C"], length_m = 0.25'
+    longer = text.replace("length_m = 0.25", "length_m = 0.26")
+    said_otherwise = text.replace(bar, "points = { B = [0.0, 0.0], C = [0.25, 0.0] }")
+    for content, count in ((text, 1), (f"{text}# a word", 1), (longer, 2), (said_otherwise, 3)):
+        path.write_text(content, encoding="utf-8")
+        history("3.7.0", scenes=[str(path)], cache=tmp_path)
+        assert len(measured) == count
+
+
+def test_another_code_of_crankcheck_has_another_key(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "probe_of_history"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(verification, "PACKAGES", (package.name,))
+    keys = []
+    for text in ("A = 1\n", "A = 2\n"):
+        (package / "inner.py").write_text(text, encoding="utf-8")
+        keys.append((verification.code_key(), verification.key_of(["cell"])))
+    assert not set(keys[0]) & set(keys[1])
+
+
+@posix
+def test_a_verification_that_dies_is_a_row_with_its_reason(
+    history: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for code, reason in (
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "ended by signal 9"),
+        ("import sys; print('crankcheck: out of luck', file=sys.stderr)", "not run: out of luck"),
+        ("pass", "not run: exit code 0"),
+    ):
+        monkeypatch.setattr(verification, "LAUNCH", code)
+        ended, output, complaint = history("3.7.0", again=True)
+        assert ended == 2
+        assert reason in output
+        assert reason in complaint
+
+
+def test_a_mistake_is_told_before_anything_is_installed(
+    history: History, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("it was installed all the same")
+
+    monkeypatch.setattr("reports.cli.commands.history.ready", never)
+    (tmp_path / "file").touch()
+    for options, message in (
+        ({"scenes": ["fourbar-lecture-9"]}, "neither a shipped scene"),
+        ({"profiles": ["tund"]}, "did you mean tuned"),
+        ({"turns": -1.0}, "--turns"),
+        ({"cache": tmp_path / "file"}, "--cache"),
+        ({"folder": tmp_path / "file"}, "-o"),
+    ):
+        with pytest.raises(CrankcheckError, match=message):
+            history("8.8.8", **options)
+    with pytest.raises(CrankcheckError, match="not a version number"):
+        history("3.6.0", "3.x; rm")
+    with pytest.raises(CrankcheckError, match="name versions"):
+        history()
+    with pytest.raises(CrankcheckError, match="did you mean mujoco"):
+        run_history(Request("mujocco", ["3.6.0"]), Console(), Console())
+
+
+SCRIPT = """
+import os, signal, threading, time
+from pathlib import Path
+from reports.cli import guarded
+from reports.workers.signals import install
+from reports.output.console import terminal
+
+def stop():
+    sign = Path({sign!r})
+    while not (sign.exists() and sign.read_text()):
+        time.sleep(0.02)
+    {kill}
+
+if __name__ == "__main__":
+    threading.Thread(target=stop, daemon=True).start()
+    with guarded():
+        install()
+        from reports.cli.commands.history import Request, run_history
+        from reports.history.verification import patient
+        patient.keywords["patience_s"] = 60.0  # the other program ends without being killed
+        # One scene is run without workers, whose start would let signals through anyway.
+        request = Request("mujoco", [{version!r}], ["fourbar-lecture-1"], turns=100.0,
+                          cache=Path({cache!r}))
+        run_history(request, terminal(), terminal(stderr=True))
+"""
+
+
+def nothing_left(group: int) -> bool:
+    """Whether the processes of a group are all gone, or are within three seconds."""
+    for _ in range(60):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+GROUP = "os.killpg(os.getpgid(0), signal.SIGINT)"
+ALONE = "os.kill(os.getpid(), signal.SIGTERM)"
+
+
+@posix
+@pytest.mark.parametrize(
+    ("version", "kill", "end"),
+    [
+        ("1.0", GROUP, (130, "interrupted")),
+        ("3.7.0", ALONE, (143, "terminated")),
+    ],
+    ids=["while it installs", "while it verifies"],
+)
+def test_a_signal_ends_the_other_program_too(
+    installer: Path,
+    cache: Path,
+    tmp_path: Path,
+    version: str,
+    kill: str,
+    end: tuple[int, str],
+) -> None:
+    sign = installer / "running"
+    sign.unlink(missing_ok=True)  # of an earlier test
+    script = tmp_path / "run.py"
+    script.write_text(
+        SCRIPT.format(kill=kill, sign=str(sign), version=version, cache=str(cache)),
+        encoding="utf-8",
+    )
+    running = subprocess.Popen(
+        [sys.executable, str(script)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        env=os.environ
+        | {
+            "PYTHONPATH": str(Path(__file__).parents[3]),
+            "PATH": f"{installer}{os.pathsep}{os.environ['PATH']}",
+        },
+    )
+    output, complaint = running.communicate(timeout=30)
+    assert (running.returncode, complaint) == (end[0], f"crankcheck: {end[1]}\n")
+    assert output == ""
+    environments = list(cache.glob(f"history/environments/mujoco-{version}-*"))
+    assert [path for path in environments if (path / "complete.txt").exists()] == (
+        [] if version == "1.0" else environments
+    )
+    assert not list(cache.glob("history/results/.*"))
+    assert nothing_left(running.pid)
+    assert nothing_left(int(sign.read_text())), "what it has started has a group of its own"
+
+
+@pytest.mark.slow
+def test_mujoco_3_7_closes_moving_loops_better_than_3_6(tmp_path: Path) -> None:
+    """The velocity term of moving loop constraints that 3.7.0 added; needs the network."""
+    output, complaint = io.StringIO(), io.StringIO()
+    request = Request("mujoco", ["3.6.0", "3.7.0"], cache=tmp_path / "cache", folder=tmp_path)
+    code = run_history(request, Console(file=output, width=100), Console(file=complaint))
+    assert (code, complaint.getvalue()) == (0, "")
+    with (tmp_path / "history.csv").open(encoding="utf-8") as lines:
+        better = {
+            row["scene"]: float(row["times_better"])
+            for row in csv.DictReader(lines)
+            if (row["version"], row["profile"]) == ("3.7.0", "as-shipped")
+            if row["quantity"] == "pin gap"
+        }
+    assert better[SCENE] > 5.0
+    flat = " ".join(output.getvalue().split())
+    assert "3.7.0 is better than 3.6.0 by" in flat
+    assert "on the pin gap of" in flat
+    assert "3.7.0 is within tolerance where 3.6.0 was out of it" in flat

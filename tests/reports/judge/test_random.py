@@ -1,0 +1,163 @@
+"""No false alarm on random mechanisms, whose range `tests.worlds.driven` states.
+
+The mechanisms follow from `SEED` alone: the same command makes the same ones. One that raises an
+alarm is printed as a scene file, with the command that shows it.
+
+Outside of the range an alarm is no false one: pymunk does not come to the solution of its joints
+within the iterations of profile tuned, as the last test shows, and steps too coarse for the
+curvature of the motion are off by what no tolerance grants.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from typer.testing import CliRunner
+
+from analytic.kinematics import solve
+from models.files import load_scene, parse_scene
+from models.scene import span
+from reports.cli import app
+from reports.judge.cell import Cell, Checked, check
+from tests.worlds.driven import ITERATIONS, LEFT, Driven, made, recipes
+
+SEED = 20_261_121
+PARTS, EACH = 20, 50
+ENGINES = ("mujoco", "pymunk")
+
+
+def drawn(first: int, count: int, least: float = 0.0, most: float = LEFT) -> list[Driven]:
+    """So many mechanisms, each another one, and the same ones for the same seed."""
+    asked: list[tuple[tuple[str, ...], int]] = []
+
+    @seed(first)
+    @settings(
+        max_examples=3 * count,  # some come twice, and some are out of the range
+        database=None,
+        deadline=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(recipes())
+    def collect(recipe: tuple[tuple[str, ...], int]) -> None:
+        asked.append(recipe)
+
+    collect()
+    found: list[Driven] = []
+    for forms, number in dict.fromkeys(asked):
+        try:
+            found.append(made(forms, first << 64 | number, least, most))
+        except LookupError:
+            continue
+        if len(found) == count:
+            break
+    assert len({one.text for one in found}) == count
+    return found
+
+
+def checked(one: Driven, engine: str, **settings: int) -> Checked:
+    """One period in an engine under profile tuned, as `crankcheck verify` checks it."""
+    dt_s = one.scene.driver.law.period_s / one.steps_per_turn
+    return check(Cell(one.scene, engine, "tuned", dt_s, one.steps_per_turn, settings=settings))
+
+
+def alarms(found: list[Driven]) -> list[str]:
+    """What fails, with the scene file and the command that show it."""
+    texts = []
+    for one in found:
+        for engine in ENGINES:
+            seen = checked(one, engine)
+            if seen.verdict != "within":
+                told = "\n".join(f"{finding.rule} {finding.text}" for finding in seen.failures)
+                command = f"verify {one.scene.name}.toml --engine {engine} --turns 1"
+                command += f" --steps-per-turn {one.steps_per_turn}"
+                texts.append(f"{told}\ncrankcheck {command}\n{one.text}")
+    return texts
+
+
+def test_forty_random_mechanisms_raise_no_alarm() -> None:
+    found = drawn(SEED, 40)
+    raised = alarms(found)
+    assert not raised, "\n\n".join(raised)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(1, PARTS + 1))
+def test_a_thousand_random_mechanisms_raise_no_alarm(part: int) -> None:
+    found = drawn(SEED + part, EACH)
+    assert sum(one.turns_round for one in found) >= 0.9 * EACH
+    raised = alarms(found)
+    assert not raised, "\n\n".join(raised)
+
+
+def test_a_printed_scene_file_is_the_mechanism(tmp_path: Path) -> None:
+    for one in drawn(SEED, 3):
+        path = tmp_path / f"{one.scene.name}.toml"
+        path.write_text(one.text)
+        assert load_scene(str(path)) == one.scene
+        steps = ["--steps-per-turn", str(one.steps_per_turn), "--turns", "1"]
+        done = CliRunner().invoke(app, ["verify", str(path), "--engine", "pymunk", *steps])
+        assert done.exit_code == 0, done.output
+
+
+FAR = """
+name = "far"
+source = "a random mechanism, rounded"
+[ground]
+points = { A = [-0.1329, -0.1310] }
+[links.crank]
+points = { A = [0.0, 0.0], B = [0.2839, 0.5677] }
+[links.rod]
+points = { B = [-0.5843, -0.7475], C = [-0.7181, -1.5770] }
+mass_kg = 7.4
+centre_m = [-0.02, 0.154]
+inertia_kg_m2 = 8.6
+[links.ram]
+points = { D = [-0.3986, -0.5098] }
+mass_kg = 0.58
+centre_m = [-0.3986, -0.5098]
+inertia_kg_m2 = 0.002
+[sliders]
+C = { on = "ground", through_m = [1.809, -0.7473], direction_deg = -15.2, mass_kg = 0.42 }
+[sliders.block]
+point = "D"
+on = "rod"
+through_m = [0.0282, 0.1949]
+direction_deg = 68.97
+mass_kg = 0.47
+[sliders.line]
+point = "D"
+on = "ground"
+through_m = [-0.1715, 1.5572]
+direction_deg = 43.33
+link = "ram"
+angle_deg = 90.3
+[driver]
+link = "crank"
+speed_rad_s = 4.75
+start_deg = -31.7
+"""
+
+
+def test_a_slider_may_travel_further_than_all_links_together_are_long() -> None:
+    scene = parse_scene(FAR, "FAR")
+    period = scene.driver.law.period_s
+    travel = solve(scene, np.linspace(0.0, period, 91)).sliders["line"].displacement
+    assert np.ptp(travel) > 2.0 * sum(span(link.points) for link in scene.links.values())
+    cell = Cell(scene, "pymunk", "tuned", period / 360, 360, settings={"iterations": 1000})
+    assert check(cell).failures == ()
+
+
+@pytest.mark.slow
+def test_what_tuned_iterations_do_not_solve_comes_apart_and_holds_with_more() -> None:
+    """Measured: of 30 mechanisms each with 0.2 to 0.3, 0.4, 0.5, 0.7 of an error left by the 150
+    iterations of profile tuned, 0, 4, 12, 22 are out of tolerance; with 151 to 674 none is."""
+    found = drawn(SEED, 20, least=0.5, most=0.9)
+    assert sum(checked(one, "pymunk").verdict == "out" for one in found) >= 10
+    for one in found:
+        iterations = math.ceil(ITERATIONS * math.log(LEFT) / math.log(one.left))
+        assert not checked(one, "pymunk", iterations=iterations).failures, one.text

@@ -1,0 +1,130 @@
+"""Files are refused before the work, and written whole or not at all after it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from models.errors import CrankcheckError
+from reports.output.write import check_different, check_file, check_folder, write
+
+NOT_ROOT = pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere"
+)
+
+
+def test_a_file_is_replaced_whole_and_nothing_is_left_beside_it(tmp_path: Path) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old and much longer than the new one")
+    write(target, "new")
+    assert target.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_write_that_fails_leaves_the_old_file_and_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "out.csv"
+    target.write_text("old")
+
+    def full(self: Path, target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(CrankcheckError, match="No space left"):
+        write(target, "new")
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_link_keeps_pointing_at_the_file_that_is_written(tmp_path: Path) -> None:
+    real, link = tmp_path / "real.csv", tmp_path / "link.csv"
+    real.write_text("old")
+    link.symlink_to(real)
+    write(link, "new")
+    assert link.is_symlink()
+    assert real.read_text() == "new"
+
+
+@pytest.mark.skipif(not Path("/dev/null").exists(), reason="no devices here")
+def test_a_device_is_written_to_and_not_replaced() -> None:
+    write(Path("/dev/null"), "gone")
+    assert not Path("/dev/null").is_file()
+
+
+def test_folders_on_the_way_are_made(tmp_path: Path) -> None:
+    write(tmp_path / "a" / "b" / "c.txt", b"raw")
+    assert (tmp_path / "a" / "b" / "c.txt").read_bytes() == b"raw"
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("folder", "a folder; name a file in it"),
+        ("nowhere/out.csv", "there is no folder"),
+        ("file.csv/out.csv", "there is no folder"),
+        ("out.txt", "found '.txt'; use .csv"),
+        ("out", "found no ending; use .csv"),
+    ],
+)
+def test_a_file_that_can_not_be_written_is_refused(tmp_path: Path, name: str, message: str) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file.csv").touch()
+    endings = (".csv",) if "out." in name or name == "out" else ()
+    with pytest.raises(CrankcheckError, match=message):
+        check_file(tmp_path / name, "-o", endings)
+
+
+def test_a_folder_below_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(CrankcheckError, match="is a file; name a folder"):
+        check_folder(tmp_path / "file" / "deep" / "out", "-o")
+
+
+def test_a_folder_that_has_to_be_made_is_fine_and_is_not_made_yet(tmp_path: Path) -> None:
+    check_folder(tmp_path / "a" / "b", "-o")
+    assert not (tmp_path / "a").exists()
+
+
+def test_a_place_that_may_not_be_looked_at_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def locked(self: Path, **_: object) -> object:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "stat", locked)
+    for check in (check_file, check_folder):
+        with pytest.raises(CrankcheckError, match=r"-o .*Permission denied; choose another place"):
+            check(tmp_path / "locked" / "out", "-o")
+
+
+def test_a_file_of_a_folder_that_may_not_be_replaced_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "cells.csv").touch()
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path).name != "cells.csv")
+    with pytest.raises(CrankcheckError, match=r"-o .*cells.csv: no right to write it"):
+        check_folder(tmp_path, "-o", ["cells.csv", "other.csv"])
+    check_folder(tmp_path, "-o", ["other.csv"])
+
+
+def test_one_file_for_two_outputs_is_refused_unless_it_is_a_device(tmp_path: Path) -> None:
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "out")
+    with pytest.raises(CrankcheckError, match="--csv and --json: both name"):
+        check_different([("--csv", tmp_path / "out"), ("--json", link)])
+    check_different([("--csv", Path("/dev/null")), ("--json", Path("/dev/null"))])
+
+
+@NOT_ROOT
+def test_a_folder_without_the_right_to_write_is_refused(tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(CrankcheckError, match="no right to write"):
+            check_folder(tmp_path / "out", "-o")
+        with pytest.raises(CrankcheckError, match="no right to write"):
+            check_file(tmp_path / "out.csv", "-o")
+    finally:
+        tmp_path.chmod(0o700)

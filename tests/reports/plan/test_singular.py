@@ -1,0 +1,158 @@
+"""Positions in which the motion is not determined are named, before any engine runs."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from analytic.kinematics import reach
+from models.errors import CrankcheckError
+from models.files import load_scene, shipped
+from models.laws import Oscillating
+from reports.cli import app
+from reports.plan.singular import passage_note, refuse_singular
+
+Edit = Callable[..., str]
+
+
+@pytest.fixture
+def edited(tmp_path: Path) -> Edit:
+    """A shipped scene with some of its text changed, as a file."""
+
+    def edit(name: str, *changes: tuple[str, str]) -> str:
+        text = shipped()[name].read_text(encoding="utf-8")
+        for old, new in changes:
+            text, count = re.subn(old, new, text)
+            assert count
+        path = tmp_path / "edited.toml"
+        path.write_text(text, encoding="utf-8")
+        return str(path)
+
+    return edit
+
+
+RHOMBUS = (r"length_m = 0\.\d+", "length_m = 0.3")
+NEARLY = (r"(crank = .*length_m = )0\.3", r"\g<1>0.2999999999999")
+"""Not in a change point, and too near to one for any rates in double precision."""
+
+
+def crank(*args: str) -> Result:
+    return CliRunner().invoke(app, list(args), catch_exceptions=False)
+
+
+@pytest.mark.parametrize("start", ["90.0", "90.137"])
+def test_verify_refuses_a_run_through_a_singular_position_also_between_two_samples(
+    edited: Edit, monkeypatch: pytest.MonkeyPatch, start: str
+) -> None:
+    monkeypatch.setattr("reports.cli.commands.verify.check_all", None)  # no engine may run
+    path = edited(
+        "fourbar-lecture-1", RHOMBUS, NEARLY, ("start_deg = 90.0", f"start_deg = {start}")
+    )
+    result = crank("verify", path, "--steps-per-turn", "360")
+    assert result.exit_code == 2
+    text = " ".join(result.stderr.split())
+    for part in ("fourbar-lecture-1", "driver 360 deg", "dyad of C", "not determined", "choose"):
+        assert part in text
+
+
+def test_a_run_that_ends_before_the_singular_position_is_free_to_go(edited: Edit) -> None:
+    scene = load_scene(edited("fourbar-lecture-1", RHOMBUS, NEARLY))
+    period = scene.driver.law.period_s
+    refuse_singular(scene, 0.74 * period)
+    with pytest.raises(CrankcheckError, match="driver 360 deg"):
+        refuse_singular(scene, 0.76 * period)
+
+
+def test_a_swing_through_a_singular_position_is_refused(edited: Edit) -> None:
+    """The lines of the two blocks are parallel at 90 deg: the crossing runs to infinity."""
+    path = edited("tangent", ("amplitude_deg = 40.0", "amplitude_deg = 100.0"))
+    scene = load_scene(path)
+    with pytest.raises(CrankcheckError, match="90 deg the dyad of P"):
+        refuse_singular(scene, scene.driver.law.period_s)
+
+
+def test_a_limit_position_is_no_change_point(edited: Edit) -> None:
+    scene = load_scene("fourbar-double-rocker")
+    low, high = reach(scene)[-1]
+    swing = Oscillating(0.5 * (low + high), 0.5 * (high - low), 1.0)
+    moved = replace(scene, driver=replace(scene.driver, law=swing))
+    with pytest.raises(CrankcheckError, match="dyad of C is singular"):
+        refuse_singular(moved, swing.period_s)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "places"),
+    [
+        ("fourbar-lecture-1", RHOMBUS, "points of C at driver 0, 180 deg"),
+        ("slider-crank-excel-210", ("length_m = 2.1", "length_m = 2.0"), "C at driver 90, 270 deg"),
+        ("whitworth", (r"-0\.1\]", "-0.2]"), "point of B at driver 270 deg"),
+    ],
+)
+def test_a_run_through_change_points_is_let_go_and_told(
+    edited: Edit, name: str, change: tuple[str, str], places: str
+) -> None:
+    scene = load_scene(edited(name, change))
+    period = scene.driver.law.period_s
+    refuse_singular(scene, 3 * period)
+    note = passage_note(scene, 3 * period)
+    assert note.startswith(f"{name}: passes the change point")
+    assert f"{places}; the reference continues the smooth branch" in note
+
+
+def test_a_note_tells_only_what_is_passed(edited: Edit) -> None:
+    scene = load_scene(edited("fourbar-lecture-1", RHOMBUS))  # starts at 90 deg
+    period = scene.driver.law.period_s
+    assert passage_note(scene, 0.24 * period) == ""
+    assert "of C at driver 180 deg;" in passage_note(scene, 0.26 * period)
+
+
+def test_verify_prints_the_note_once_and_runs(edited: Edit) -> None:
+    path = edited("fourbar-lecture-1", RHOMBUS)
+    result = crank("verify", path, "--steps-per-turn", "90", "--engine", "mujoco")
+    assert result.exit_code in (0, 1)
+    assert result.stderr.count("passes the change points of C at driver 0, 180 deg") == 1
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_no_shipped_scene_is_refused(name: str) -> None:
+    scene = load_scene(name)
+    refuse_singular(scene, 2 * scene.driver.law.period_s)
+
+
+def test_near_is_not_at(edited: Edit) -> None:
+    path = edited("slider-crank-excel-210", ("length_m = 2.1", "length_m = 2.0000001"))
+    scene = load_scene(path)
+    refuse_singular(scene, scene.driver.law.period_s)
+
+
+def test_solve_shows_a_dash_for_the_rates_of_a_singular_position_and_names_it(
+    edited: Edit,
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = crank("solve", edited("fourbar-lecture-1", RHOMBUS, NEARLY))
+    assert result.exit_code == 0
+    assert "singular at 360 deg (C)" in result.output
+    assert "rates are not determined there" in result.output
+    rows = [line.split() for line in result.output.splitlines() if "360" in line]
+    assert any("-" in row for row in rows)
+    assert result.stderr == ""
+
+
+@pytest.mark.parametrize("args", [[], ["--at-deg", "180"]])
+def test_solve_goes_through_a_change_point_and_says_so(edited: Edit, args: list[str]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = crank("solve", edited("fourbar-lecture-1", RHOMBUS), *args)
+    assert result.exit_code == 0
+    assert "continued smoothly through the change point" in result.output
+    assert "singular at" not in result.output
+    table = result.output.partition("theta")[2]
+    assert "180" in table
+    assert "-" not in table.split()

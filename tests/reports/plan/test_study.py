@@ -1,0 +1,218 @@
+"""Studies: files, the command line over them, and the grid that they make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from models.errors import CrankcheckError
+from reports.cli.commands.sweep import Request, asked
+from reports.plan.grid import grid
+from reports.plan.study import Study, Variant, load_study
+
+TOML = """
+scenes = ["fourbar-lecture-1"]
+steps_per_turn = [90, 180.0]
+turns = 3
+[[variants]]
+name = "stiff"
+engine = "mujoco"
+profile = "as-shipped"
+settings = { solref_timeconst_steps = [2, 4], solimp_dmin = 0.9999 }
+[[variants]]
+engine = "pymunk"
+profile = "tuned"
+"""
+YAML = """
+scenes: [fourbar-lecture-1]
+steps_per_turn: [90, 180.0]
+turns: 3
+variants:
+  - name: stiff
+    engine: mujoco
+    profile: as-shipped
+    settings: {solref_timeconst_steps: [2, 4], solimp_dmin: 0.9999}
+  - {engine: pymunk, profile: tuned}
+"""
+
+
+def written(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_toml_and_yaml_say_the_same(tmp_path: Path) -> None:
+    left = load_study(written(tmp_path, "study.toml", TOML))
+    assert left == load_study(written(tmp_path, "study.yaml", YAML))
+    assert left.turns == 3
+    assert [v.name for one in left.variants for v in one.each()] == [
+        "stiff, solref_timeconst_steps=2",
+        "stiff, solref_timeconst_steps=4",
+        "tuned",
+    ]
+
+
+def test_the_shipped_study_is_large_enough_to_choose_from() -> None:
+    laid = grid(load_study(None))
+    cells = [task.cell for task in laid.tasks]
+    assert len({cell.scene.name for cell in cells}) >= 6
+    for engine in ("mujoco", "pymunk"):
+        assert len({task.variant for task in laid.tasks if task.cell.engine == engine}) >= 4
+    assert len({cell.steps_per_turn for cell in cells if cell.scene.name == "shaper"}) >= 6
+    assert len({task.key for task in laid.tasks}) == len(laid.tasks)
+    assert set(laid.texts) == {cell.scene.name for cell in cells}
+
+
+def test_a_line_holds_the_cells_that_differ_in_step_only() -> None:
+    tasks = grid(load_study(None)).tasks
+    lines: dict[str, set[tuple[str, str, str]]] = {}
+    for task in tasks:
+        lines.setdefault(task.line, set()).add(
+            (task.cell.scene.name, task.cell.engine, task.variant)
+        )
+    assert all(len(members) == 1 for members in lines.values())
+    assert len(lines) * 7 == len(tasks)
+
+
+def test_the_same_settings_under_two_names_are_one_cell() -> None:
+    twice = Study(
+        scenes=["fourbar-lecture-1"],
+        variants=[
+            Variant(engine="pymunk", profile="tuned"),
+            Variant(engine="pymunk", profile="tuned", settings={"iterations": 150}, name="same"),
+        ],
+        steps_per_turn=[90.0],
+    )
+    assert [task.variant for task in grid(twice).tasks] == ["tuned"]
+
+
+def test_options_take_the_place_of_what_the_study_says() -> None:
+    base = Request(Path("x"))
+    study = asked(Request(Path("x"), scenes=["shaper"], engines=["pymunk"], steps_per_turn="90,99"))
+    assert study.scenes == ["shaper"]
+    assert study.steps_per_turn == [90.0, 99.0]
+    assert {variant.engine for variant in study.variants} == {"pymunk"}
+    assert len(study.variants) == 4
+    assert asked(base) == load_study(None)
+    profiles = asked(Request(Path("x"), profiles=["tuned"])).variants
+    assert [(v.engine, v.profile) for v in profiles] == [("mujoco", "tuned"), ("pymunk", "tuned")]
+
+
+def test_set_makes_one_variant_for_each_value() -> None:
+    study = asked(Request(Path("x"), settings=["mujoco.iterations=1,2", "mujoco.solver=CG"]))
+    each = [one for variant in study.variants for one in variant.each()]
+    assert [v.name for v in each] == [
+        "tuned, iterations=1, solver=CG",
+        "tuned, iterations=2, solver=CG",
+        "tuned",
+    ]
+    tasks = grid(study.model_copy(update={"scenes": ["fourbar-lecture-1"]})).tasks
+    assert {task.settings["iterations"] for task in tasks if task.cell.engine == "mujoco"} == {1, 2}
+
+
+@pytest.mark.parametrize(
+    ("request_", "words"),
+    [
+        (Request(Path("x"), settings=["iterations=2"]), "write it like --set mujoco.iterations"),
+        (Request(Path("x"), settings=["bullet.iterations=2"]), "'bullet' is no engine of this"),
+        (Request(Path("x"), settings=["mujoco.iterations="]), "write it like"),
+        (Request(Path("x"), settings=["mujoco.iteratoins=2"]), "did you mean iterations"),
+        (Request(Path("x"), settings=["mujoco.iterations=some"]), "it takes a whole number"),
+        (Request(Path("x"), steps_per_turn="90;180"), "numbers with commas"),
+        (Request(Path("x"), steps_per_turn=""), "numbers with commas"),
+        (Request(Path("x"), steps_per_turn="4"), "a turn needs at least 8"),
+        (Request(Path("x"), steps_per_turn="nan"), "--steps-per-turn nan"),
+        (Request(Path("x"), turns=0.0), "--turns 0"),
+        (Request(Path("x"), scenes=["fourbar"]), "Did you mean fourbar"),
+        (Request(Path("x"), engines=["mujoko"]), "did you mean mujoco"),
+        (Request(Path("x"), profiles=["tunde"]), "none of that name"),
+    ],
+)
+def test_what_can_not_be_run_is_said_before(request_: Request, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        grid(asked(request_))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("s.json", "{}", r"use \.toml, \.yaml or \.yml"),
+        ("s.toml", "scenes = [", "not valid TOML"),
+        ("s.yaml", "a: [", "not valid YAML"),
+        ("s.yaml", "- 1", "a table of scenes, variants and steps_per_turn is needed"),
+        ("s.toml", TOML.replace("turns", "truns"), r"truns: unknown key; did you mean turns\?"),
+        ("s.toml", TOML.replace('"pymunk"', "3"), r"variants\.1\.engine"),
+        ("s.toml", "scenes = []\nvariants = []\nsteps_per_turn = [1]", "variants"),
+    ],
+)
+def test_a_faulty_study_file_is_named_with_its_fault(
+    tmp_path: Path, name: str, text: str, words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        load_study(written(tmp_path, name, text))
+
+
+def test_a_study_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(CrankcheckError, match="cannot be read"):
+        load_study(tmp_path / "none.toml")
+
+
+def test_turns_that_the_steps_do_not_divide_leave_one_line() -> None:
+    study = Study(
+        scenes=["fourbar-lecture-1"],
+        variants=[Variant(engine="pymunk", profile="tuned")],
+        steps_per_turn=[90.0, 185.0, 365.0],
+        turns=1.23,
+    )
+    tasks = grid(study).tasks
+    assert len({task.cell.turns for task in tasks}) == 3
+    assert len({task.line for task in tasks}) == 1
+    longer = grid(study.model_copy(update={"turns": 1.24})).tasks
+    assert {task.line for task in longer} != {task.line for task in tasks}
+
+
+@pytest.mark.parametrize(
+    ("variants", "words"),
+    [
+        ([("x", "tuned", {}), ("x", "as-shipped", {})], "two of pymunk have that name"),
+        ([("tuned", "as-shipped", {})], "that is the name of a profile"),
+        ([("as-shipped", "as-shipped", {"iterations": 9})], "that is the name of a profile"),
+        ([("x", "tuned", {"iterations": -1})], "it takes 1 to 1e"),
+        ([("x", "tuned", {"lines": "loose"})], "use groove or exact"),
+    ],
+)
+def test_variants_that_would_mislead_are_refused(
+    variants: list[tuple[str, str, dict[str, int | float | str]]], words: str
+) -> None:
+    study = Study(
+        scenes=["fourbar-lecture-1"],
+        variants=[
+            Variant(engine="pymunk", name=name, profile=profile, settings=dict(settings))
+            for name, profile, settings in variants
+        ],
+        steps_per_turn=[90.0],
+    )
+    with pytest.raises(CrankcheckError, match=words):
+        grid(study)
+
+
+@pytest.mark.parametrize("values", ["[]", "true", "[1, false]"])
+def test_a_setting_has_values_and_no_switches(tmp_path: Path, values: str) -> None:
+    text = TOML.replace("solref_timeconst_steps = [2, 4]", f"iterations = {values}")
+    with pytest.raises(CrankcheckError, match=r"settings\.iterations"):
+        load_study(written(tmp_path, "s.toml", text))
+
+
+def test_the_order_of_links_makes_another_scene() -> None:
+    from reports.plan.key import digest
+
+    assert digest("[a]\nx = 1\n[b]\nx = 2") != digest("[b]\nx = 2\n[a]\nx = 1")
+
+
+def test_comments_in_a_scene_do_not_make_another_scene() -> None:
+    from reports.plan.key import digest
+
+    assert digest("a = 1.0 # one") == digest("# so\na   = 1.0")
+    assert digest("a = 1.0") != digest("a = 1.1")

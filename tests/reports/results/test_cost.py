@@ -1,0 +1,215 @@
+"""Noise, time to a target, fronts and profiles: on errors and costs that are known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from io import StringIO
+
+import pandas as pd
+import pytest
+from rich.console import Console
+
+from reports.results.candidates import candidates
+from reports.results.cost import costs_of, equal, noise, reached, time_to
+from reports.results.lines import Line, lines
+from reports.results.pareto import front, front_over_all, performance_profile
+from reports.results.recommend import recommendations
+from reports.results.table import noise_line, recommendation_table
+from tests.reports.results.made import Row, cell, stored, untimed
+
+STEPS = (90, 180, 360, 720)
+
+
+def second_order(scene: str, variant: str, at_90: float, us: float) -> list[Row]:
+    """Errors that fall as dt^2 from ``at_90``, every step for ``us``."""
+    return [cell(scene, variant, n, at_90 * (90 / n) ** 2, us) for n in STEPS]
+
+
+def line_of(rows: Sequence[Row]) -> Line:
+    (line,) = lines(stored(rows))
+    return line
+
+
+def test_noise_is_what_95_of_100_pairs_stay_below() -> None:
+    rows = [
+        cell("a", "x", 90 + i, 1e-3, 1.0, us_per_step_a=1.0, us_per_step_b=1.0 + 0.001 * i)
+        for i in range(101)
+    ]
+    assert noise(stored(rows)) == pytest.approx(0.095)
+    swapped = [r | {"us_per_step_a": r["us_per_step_b"], "us_per_step_b": 1.0} for r in rows]
+    assert noise(stored(swapped)) == pytest.approx(0.095)
+
+
+def test_noise_is_that_of_the_machine_whose_times_are_compared() -> None:
+    rows = [
+        cell("a", "x", 90, 1e-3, 1.0, us_per_step_b=2.0, processor="old", made="2025-01-01"),
+        cell("a", "x", 180, 1e-3, 1.0, us_per_step_b=1.01),
+    ]
+    assert noise(stored(rows)) == pytest.approx(0.01)
+    assert math.isnan(noise(stored([untimed(rows[0])])))
+
+
+def test_equal_is_a_difference_within_the_noise_whichever_comes_first() -> None:
+    assert equal(1.0, 1.04, 0.05)
+    assert equal(1.04, 1.0, 0.05)
+    assert not equal(1.0, 1.06, 0.05)
+    assert equal(1.0, 1.0, math.nan)
+    assert not equal(1.0, 1.01, math.nan)
+
+
+def test_the_time_to_a_target_is_taken_along_the_fit() -> None:
+    """1e-4 at 90 * sqrt(10) steps a turn of 2 us each."""
+    line = line_of(second_order("a", "x", 1e-3, 2.0))
+    assert time_to(line, 1e-4) == pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3)
+    found = reached(line, 1e-4)
+    assert found is not None
+    assert found.how == "along the fit"
+    assert found.steps_per_turn == pytest.approx(90 * math.sqrt(10), rel=1e-3)
+
+
+def test_nothing_is_extrapolated_to_either_side() -> None:
+    line = line_of(second_order("a", "x", 1e-3, 2.0))
+    assert time_to(line, 1e-6) is None  # 1.6e-5 at the finest step
+    assert reached(line, 1e-6) is None
+    at_most = reached(line, 1e-2)  # 1e-3 at the coarsest
+    assert at_most is not None
+    assert at_most.how == "at the coarsest step"
+    assert at_most.steps_per_turn == pytest.approx(90)
+    assert time_to(line, 1e-2) == pytest.approx(2e-6 * 90)
+
+
+def test_a_line_that_was_not_timed_reaches_a_target_in_no_time_that_is_known() -> None:
+    line = line_of([untimed(row) for row in second_order("a", "x", 1e-3, 2.0)])
+    assert reached(line, 1e-4) is not None
+    assert time_to(line, 1e-4) is None
+
+
+def test_a_step_at_which_a_run_failed_is_not_the_coarsest() -> None:
+    rows = second_order("a", "x", 1e-3, 2.0)
+    line = line_of([rows[0] | {"status": "diverged"}, *rows[1:]])
+    found = reached(line, 1e-2)
+    assert found is not None
+    assert found.steps_per_turn == pytest.approx(180)
+
+
+def test_costs_are_means_over_scenes_of_the_least_and_the_median_repeat() -> None:
+    rows = second_order("a", "x", 1e-3, 2.0) + second_order("b", "x", 1e-3, 8.0)
+    rows += second_order("a", "y", 1e-2, 1.0) + second_order("b", "y", 1e-5, 1.0)
+    x, y = costs_of(lines(stored(rows)), [1e-4])
+    assert (x.us_per_step, x.us_per_step_median) == pytest.approx((4.0, 4.4))
+    assert x.s_to[1e-4] == pytest.approx(4e-6 * 90 * math.sqrt(10), rel=1e-3)
+    assert (x.reached[1e-4], y.reached[1e-4]) == (2, 1)
+    assert math.isnan(y.s_to[1e-4])
+    assert (x.part(x.reached[1e-4]), y.part(y.reached[1e-4])) == ("", "1/2")
+
+
+def test_costs_say_on_how_many_scenes_they_were_timed() -> None:
+    rows = second_order("a", "x", 1e-3, 2.0)
+    rows += [untimed(row) for row in second_order("b", "x", 1e-3, 2.0)]
+    (x,) = costs_of(lines(stored(rows)), [1e-4])
+    assert (x.timed, x.part(x.timed), x.us_per_step) == (1, "1/2", pytest.approx(2.0))
+    assert x.reached[1e-4] == 2
+    assert math.isnan(x.s_to[1e-4])
+    (none,) = costs_of(lines(stored(rows[4:])), [1e-4])
+    assert none.timed == 0
+    assert math.isnan(none.us_per_step)
+
+
+def test_the_front_is_what_nothing_beats_in_both() -> None:
+    rows = [
+        cell("a", "x", 90, 1e-2, 1.0),
+        cell("a", "x", 180, 1e-3, 1.0),
+        cell("a", "beaten", 180, 2e-3, 1.5),
+        cell("a", "exact", 90, 1e-5, 9.0),
+        cell("a", "twin", 90, 1e-5, 9.5),
+        cell("a", "wrong", 90, 1e-9, 0.1, status="diverged"),
+        untimed(cell("a", "untimed", 90, 1e-9, 0.1)),
+        cell("a", "nan", 90, math.nan, 0.1),
+    ]
+    cells = stored(rows).cells
+    keys = front(cells)
+    chosen = cells.set_index("key").loc[keys]
+    assert list(zip(chosen["variant"], chosen["steps_per_turn"], strict=True)) == [
+        ("exact", 90),
+        ("x", 180),
+        ("x", 90),
+    ]
+
+
+def test_within_the_noise_a_saving_is_none() -> None:
+    cells = stored([cell("a", "x", 90, 1e-3, 1.0), cell("a", "y", 90, 1e-4, 1.02)]).cells
+    variants = cells.set_index("key")["variant"]
+    assert [variants[key] for key in front(cells)] == ["y", "x"]
+    assert [variants[key] for key in front(cells, 0.05)] == ["y"]
+    assert [variants[key] for key in front(cells, math.nan)] == ["y", "x"]
+
+
+def test_over_all_scenes_an_error_is_the_worst_and_a_failure_bars() -> None:
+    rows = [
+        cell("a", "x", 90, 1e-3, 1.0),
+        cell("b", "x", 90, 1e-1, 1.0),
+        cell("a", "y", 90, 1e-2, 1.5),
+        cell("b", "y", 90, 1e-2, 1.5),
+        cell("a", "z", 90, 1e-9, 0.1),
+        cell("b", "z", 90, 1e-9, 0.1, status="diverged"),
+        cell("a", "late", 90, 2e-1, 2.0),
+        cell("b", "late", 90, 1e-9, 2.0),
+    ]
+    found = front_over_all(candidates(lines(stored(rows))))
+    assert [(one.variant, one.worst_error) for one in found] == [("y", 1e-2), ("x", 1e-1)]
+
+
+def share(profile: pd.DataFrame, variant: str, factor: float) -> float:
+    """The height of a stair at a factor."""
+    own = profile[(profile["variant"] == variant) & (profile["factor"] <= factor)]
+    return float(own["share"].iloc[-1])
+
+
+def test_a_performance_profile_counts_scenes_within_a_factor_of_the_fastest() -> None:
+    rows = second_order("a", "x", 1e-3, 1.0) + second_order("b", "x", 1e-3, 3.0)
+    rows += second_order("a", "y", 1e-3, 2.0) + second_order("b", "y", 1e-3, 1.0)
+    # On the third scene only y comes to the target, on the fourth, where y was not run, nothing.
+    rows += [cell("c", "x", n, 0.5, 1.0) for n in STEPS] + second_order("c", "y", 1e-3, 1.0)
+    rows += [cell("d", name, n, 0.5, 1.0) for name in ("x", "never") for n in STEPS]
+    found = performance_profile(lines(stored(rows)), 1e-4)
+    assert [share(found, "x", f) for f in (1.0, 2.9, 3.1, 99.0)] == [0.25, 0.25, 0.5, 0.5]
+    assert [share(found, "y", f) for f in (1.0, 1.9, 2.1, 99.0)] == [0.5, 0.5, 0.75, 0.75]
+    assert share(found, "never", 99.0) == 0.0
+    assert found.groupby("variant")["factor"].min().eq(1.0).all()
+
+
+def test_a_performance_profile_calls_times_within_the_noise_equal() -> None:
+    rows = second_order("a", "x", 1e-3, 1.0) + second_order("a", "y", 1e-3, 1.03)
+    every = lines(stored(rows))
+    assert share(performance_profile(every, 1e-4), "y", 1.0) == 0.0
+    assert share(performance_profile(every, 1e-4, 0.05), "y", 1.0) == 1.0
+
+
+def printed(what: object, width: int) -> str:
+    console = Console(file=StringIO(), width=width)
+    console.print(what)
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+def test_the_table_fits_and_says_what_there_is_not(width: int) -> None:
+    rows = second_order("a", "name [of] some length", 1e-3, 2.0)
+    store = stored([*rows, cell("a", "name [of] some length", 1440, 9.0, 2.0, status="diverged")])
+    text = printed(recommendation_table(recommendations(store), width), width)
+    assert max(map(len, text.splitlines())) <= width
+    flat = " ".join(text.split())
+    assert "not at 1440 steps a turn: a diverged" in flat
+    assert "none [2]" in flat
+    assert "nearest is name [of] some length at 720 steps a turn" in flat
+    assert (" on scene " in flat) == (width == 120)
+
+
+def test_the_noise_line_tells_share_number_and_machines() -> None:
+    rows = [cell("a", "x", 90 + i, 1e-3, 1.0, us_per_step_b=1.02) for i in range(3)]
+    rows.append(cell("a", "x", 99, 1e-3, 1.0, processor="loom", made="2025-01-01"))
+    text = noise_line(stored(rows))
+    assert "Noise of costs on abacus: 95% of 3 A/A pairs differ by less than 2.0%" in text
+    assert "Times of loom are not compared" in text
+    assert noise_line(stored([untimed(rows[0])])).startswith("No cell was timed")

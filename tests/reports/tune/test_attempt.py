@@ -1,0 +1,156 @@
+"""One set of settings in a real engine, in a process of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.scene import Scene
+from reports.sweep.measured import measured
+from reports.tune.attempt import (
+    DEARER,
+    NONE_KNOWN,
+    Attempt,
+    Bench,
+    Goal,
+    LostError,
+    Row,
+    error_of,
+)
+from reports.tune.cost import Settings, mujoco_work
+from reports.tune.timing import times
+from reports.workers.isolated import Limits
+from sim.engine import SettingValue
+from sim.mujoco.settings import TUNED
+
+SETTINGS: dict[str, SettingValue] = {name: s.value for name, s in TUNED.settings.items()}
+SCENES = ("fourbar-lecture-1", "slider-crank-excel-210")
+
+
+def goal_of(*names: str, target: float = 1e-4) -> Goal:
+    scenes: tuple[Scene, ...] = tuple(load_scene(name) for name in names)
+    return Goal(scenes, "mujoco", "tuned", target, turns=2.0)
+
+
+def bench_of(goal: Goal, limits: Limits | None = None) -> Bench:
+    return Bench(goal, [mujoco_work(scene) for scene in goal.scenes], limits or Limits())
+
+
+@pytest.fixture(scope="module")
+def two() -> Iterator[Bench]:
+    bench = bench_of(goal_of(*SCENES))
+    yield bench
+    bench.close()
+
+
+def error(bench: Bench, index: int, steps: int) -> float:
+    cell = bench.goal.cell(bench.goal.scenes[index], SETTINGS, steps)
+    return error_of(measured(cell, False).row)
+
+
+def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench) -> None:
+    found = two.attempt(SETTINGS, None)
+    assert found.steps_per_turn is not None
+    each = [error(two, index, found.steps_per_turn) for index in (0, 1)]
+    assert found.error == max(each) <= 1e-4
+    assert found.scene == SCENES[each.index(max(each))]
+    per_step = sum(mujoco_work(scene)(SETTINGS) for scene in two.goal.scenes)
+    assert found.cost_us == pytest.approx(found.steps_per_turn * per_step)
+    assert found.runs % 2 == 0
+
+
+def test_a_coarser_step_misses_the_target(two: Bench) -> None:
+    found = two.attempt(SETTINGS, None)
+    assert found.steps_per_turn is not None
+    coarser = math.floor(found.steps_per_turn / 1.03)
+    assert max(error(two, index, coarser) for index in (0, 1)) > 1e-4
+
+
+def test_settings_with_a_floor_reach_nothing_and_say_how_far_they_are(two: Bench) -> None:
+    soft = {**SETTINGS, "solref_timeconst_steps": 0.0, "solimp_dmin": 0.9, "solimp_dmax": 0.9}
+    found = two.attempt(soft, None)
+    assert not found.reached
+    assert found.error > 1e-4
+    assert 0.0 < found.over(1e-4) < NONE_KNOWN
+
+
+def test_settings_are_given_up_where_they_can_not_win(two: Bench) -> None:
+    best = two.attempt(SETTINGS, None)
+    coarse = {**SETTINGS, "integrator": "implicitfast", "solref_timeconst_steps": 2.0}
+    found = two.attempt(coarse, Attempt(SETTINGS, 60, 60, 1e-5, "", best.cost_us / 8.0, 1))
+    assert not found.reached
+    assert found.tried * two.us_per_step(coarse) <= DEARER * best.cost_us / 8.0
+    assert found.runs <= 6
+
+
+def test_a_run_that_takes_too_long_costs_one_attempt(two: Bench) -> None:
+    bench = bench_of(goal_of("fourbar-lecture-1"), Limits(time_s=1e-4))
+    try:
+        found = bench.attempt(SETTINGS, None)
+        assert not found.reached
+        assert found.reason == "fourbar-lecture-1: timeout: no end within 0.0001 s"
+        assert found.over(1e-4) == NONE_KNOWN
+        assert found.runs == 1
+        assert found.timed_out
+        with pytest.raises(LostError, match="timeout"):
+            bench.row(bench.goal.scenes[0], SETTINGS, 90)
+    finally:
+        bench.close()
+
+
+def test_settings_that_the_engine_refuses_cost_one_attempt(two: Bench) -> None:
+    found = two.attempt({**SETTINGS, "solimp_dmin": 2.0}, None)
+    assert not found.reached
+    assert found.reason.startswith("fourbar-lecture-1: unsupported: setting solimp_dmin: found 2")
+    assert not found.timed_out
+    assert two.attempt(SETTINGS, None).reached
+
+
+class Planted(Bench):
+    """A bench whose errors follow a law, not an engine."""
+
+    def row(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Row:
+        lucky = steps_per_turn == 160
+        return {"status": "ok", "place_pure": 1e-9 if lucky else 1e-3 + 1.0 / steps_per_turn**2}
+
+
+def test_an_error_that_was_small_by_luck_is_not_told_as_the_nearest() -> None:
+    found = Planted(goal_of("fourbar-lecture-1"), [lambda settings: 1.0], Limits()).attempt(
+        SETTINGS, None
+    )
+    assert not found.reached
+    assert found.error == pytest.approx(1e-3, rel=1e-3)
+    assert found.over(1e-4) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_a_run_that_came_apart_has_no_error() -> None:
+    assert error_of({"status": "diverged", "place_pure": 1e-9}) == math.inf
+    assert error_of({"status": "ok", "place_pure": math.nan}) == math.inf
+    assert error_of({"status": "ok", "place_pure": None}) == math.inf
+    assert error_of({"status": "ok", "place_pure": 1e-9}) == 1e-9
+
+
+def test_an_engine_that_can_not_hold_the_scene_is_told_before_the_search() -> None:
+    heavy = load_scene("scotch-yoke")
+    massless = {name: replace(slider, mass_kg=0.0) for name, slider in heavy.sliders.items()}
+    goal = Goal((replace(heavy, sliders=massless),), "mujoco", "tuned", 1e-4, turns=2.0)
+    bench = Bench(goal, [lambda settings: 1.0], Limits())
+    try:
+        with pytest.raises(CrankcheckError, match=r"scotch-yoke, mujoco, tuned: .*mass"):
+            bench.refuse_unsupported(SETTINGS)
+    finally:
+        bench.close()
+
+
+def test_times_are_sums_over_the_scenes_at_the_step_that_was_found(two: Bench) -> None:
+    found = two.attempt(SETTINGS, None)
+    taken = times(two.goal, [found], Limits())
+    assert taken is not None
+    assert taken[0].s_per_turn == pytest.approx(1e-6 * taken[0].us_per_step * found.tried)
+    assert taken[0].noise >= 0.0
+    assert times(two.goal, [found], Limits(time_s=1e-4)) is None

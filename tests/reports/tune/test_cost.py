@@ -1,0 +1,80 @@
+"""The model of cost: what it counts, and that its constants can be found again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.step_cost import fit, mujoco, points, pymunk
+from models.files import load_scene, shipped
+from reports.tune.cost import (
+    EVALUATIONS,
+    MUJOCO_BODY,
+    MUJOCO_LOOP,
+    MUJOCO_STEP,
+    PYMUNK_BODY,
+    PYMUNK_PASS,
+    PYMUNK_RAIL,
+    PYMUNK_STEP,
+    mujoco_work,
+    pymunk_work,
+)
+from sim.engine import SettingValue
+from sim.mujoco.settings import INTEGRATORS, TUNED
+from sim.pymunk.settings import TUNED as PYMUNK_TUNED
+
+MUJOCO = {name: setting.value for name, setting in TUNED.settings.items()}
+PYMUNK: dict[str, SettingValue] = {k: s.value for k, s in PYMUNK_TUNED.settings.items()}
+
+
+def test_every_integrator_has_its_cost() -> None:
+    assert set(EVALUATIONS) == set(INTEGRATORS)
+
+
+def test_more_evaluations_bodies_and_loops_cost_more() -> None:
+    four, six = (mujoco_work(load_scene(n)) for n in ("fourbar-lecture-1", "sixbar-watt"))
+    assert six(MUJOCO) > four(MUJOCO) > 3.0 * four({**MUJOCO, "integrator": "implicitfast"})
+
+
+def test_every_joint_costs_at_every_iteration() -> None:
+    work = pymunk_work(load_scene("fourbar-lecture-1"))
+    slope = work({**PYMUNK, "iterations": 101}) - work({**PYMUNK, "iterations": 100})
+    assert slope == pytest.approx(3 * PYMUNK_PASS["PivotJoint"])
+
+
+def test_a_rail_costs_its_own_and_only_where_there_is_one() -> None:
+    exact, groove = ({**PYMUNK, "iterations": 1, "lines": each} for each in ("exact", "groove"))
+    fourbar, massless = (
+        pymunk_work(load_scene(name)) for name in ("fourbar-lecture-1", "slider-crank-excel-210")
+    )
+    assert fourbar(exact) == fourbar(groove)
+    assert massless(exact) - massless(groove) == pytest.approx(PYMUNK_RAIL, rel=0.01)
+
+
+def test_calibration_times_every_engine_on_every_steady_scene() -> None:
+    named = {(scene.name, engine) for scene, engine, _ in points()}
+    assert {name for name, _ in named} < set(shipped())
+    assert len(named) == 2 * len({name for name, _ in named})
+
+
+def test_calibration_finds_what_a_machine_of_known_costs_takes() -> None:
+    names = ("fourbar-lecture-1", "sixbar-watt", "shaper", "slider-crank-excel-210")
+    what = [p for p in points() if p[0].name in names]
+    us = [
+        mujoco_work(scene)({**MUJOCO, **settings})
+        if engine == "mujoco"
+        else pymunk_work(scene)({**PYMUNK, **settings})
+        for scene, engine, settings in what
+    ]
+    lines = [*mujoco(what, us), *pymunk(what, us)]
+    steps = f"{MUJOCO_STEP:.3f}, {MUJOCO_BODY:.3f}, {MUJOCO_LOOP:.3f}"
+    assert f"EVALUATIONS = {EVALUATIONS}" in lines
+    assert f"MUJOCO_STEP, MUJOCO_BODY, MUJOCO_LOOP = {steps}" in lines
+    steps = f"{PYMUNK_STEP:.3f}, {PYMUNK_BODY:.3f}, {PYMUNK_RAIL:.3f}"
+    assert f"PYMUNK_STEP, PYMUNK_BODY, PYMUNK_RAIL = {steps}" in lines
+    assert f"PYMUNK_PASS = {PYMUNK_PASS}" in lines
+
+
+def test_a_fit_returns_the_costs_that_were_put_in() -> None:
+    counts = np.array([[1.0, 2.0], [1.0, 5.0], [1.0, 9.0]])
+    assert fit(counts.tolist(), (counts @ [3.0, 0.5]).tolist()) == pytest.approx([3.0, 0.5])

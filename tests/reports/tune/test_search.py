@@ -1,0 +1,279 @@
+"""The search over the knobs, on settings whose cost and error are known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import optuna
+import pytest
+from optuna.trial import TrialState
+
+from reports.tune.attempt import Attempt
+from reports.tune.cost import Settings
+from reports.tune.knobs import Knob, Space
+from reports.tune.search import Plan, Try, attempts, best_of, nearest_of, plainer, search
+from reports.tune.storage import study_in
+from reports.workers.signals import Stopped
+
+PROFILE = {"stiffness": 10.0, "idle": 3, "kind": "slow", "fixed": 7}
+SPACE = Space(
+    knobs=(
+        Knob("stiffness", tuple(float(x) for x in range(1, 41))),
+        Knob("idle", (1, 2, 3, 4, 5)),
+        Knob("kind", ("slow", "fast", "wrong")),
+    ),
+    starts=({"kind": "wrong"},),
+    work=lambda scene: lambda settings: 1.0,
+).around(PROFILE)
+
+
+def known(settings: Settings, best: Attempt | None) -> Attempt:
+    """The best stiffness is 23; ``idle`` does nothing; ``wrong`` is cheap, and never reaches the
+    target."""
+    off = abs(float(settings["stiffness"]) - 23.0)
+    cost = (100.0 + off) * {"fast": 1.0, "slow": 4.0, "wrong": 0.5}[str(settings["kind"])]
+    reached = settings["kind"] != "wrong"
+    steps = 100 if reached else None
+    return Attempt(dict(settings), steps, 100, 0.9 if reached else 5.0, "a scene", cost, 3)
+
+
+def plan(budget: int = 14, seed: int = 0) -> Plan:
+    return Plan(SPACE, PROFILE, target=1.0, budget=budget, seed=seed)
+
+
+def done(budget: int = 14, seed: int = 0, attempt: Try = known) -> list[Attempt]:
+    with study_in(None, {}) as study:
+        return search(study, plan(budget, seed), attempt)
+
+
+def test_one_seed_finds_the_same_settings_and_another_tries_others() -> None:
+    assert done(seed=1) == done(seed=1)
+    assert [a.settings for a in done(seed=1)] != [a.settings for a in done(seed=2)]
+
+
+def test_the_profile_is_tried_first_so_that_nothing_found_is_dearer() -> None:
+    found = done(budget=5)
+    assert found[0].settings == PROFILE
+    assert found[1].settings == {**PROFILE, "kind": "wrong"}
+    best = best_of(found)
+    assert best is not None
+    assert best.cost_us <= found[0].cost_us
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_search_beats_as_many_guesses(seed: int) -> None:
+    best = best_of(done(budget=40, seed=seed))
+    assert best is not None
+    assert best.settings["kind"] == "fast"
+    assert abs(float(best.settings["stiffness"]) - 23.0) <= 1.0
+
+
+def test_cheap_settings_that_miss_the_target_are_soon_left_alone() -> None:
+    kinds = [a.settings["kind"] for a in done(budget=40)]
+    assert kinds[12:].count("fast") > 2 * kinds[12:].count("wrong")
+
+
+def test_settings_outside_the_knobs_stay_those_of_the_profile() -> None:
+    assert {a.settings["fixed"] for a in done()} == {7}
+
+
+def test_settings_that_were_tried_are_not_run_again() -> None:
+    ran: list[dict[str, object]] = []
+
+    def counted(settings: Settings, best: Attempt | None) -> Attempt:
+        ran.append(dict(settings))
+        return known(settings, best)
+
+    space = replace(SPACE, knobs=SPACE.knobs[1:], starts=SPACE.starts)
+    with study_in(None, {}) as study:
+        found = search(study, replace(plan(40), space=space), counted)
+    assert len(found) == 40
+    assert len(ran) == len({str(settings) for settings in ran}) <= 15
+    assert sum(a.runs for a in found) == 3 * len(ran)
+
+
+def test_every_attempt_is_told_the_best_so_far() -> None:
+    told: list[float] = []
+
+    def counted(settings: Settings, best: Attempt | None) -> Attempt:
+        told.append(best.cost_us if best else float("inf"))
+        return known(settings, best)
+
+    done(attempt=counted)
+    assert told[0] == float("inf")
+    assert told == sorted(told, reverse=True)
+    assert told[-1] < told[1]
+
+
+def interrupted(after: int) -> Try:
+    """Settings that are tried well ``after`` times; the next time Ctrl-C comes."""
+    count = 0
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        nonlocal count
+        count += 1
+        if count > after:
+            raise Stopped(2)
+        return known(settings, best)
+
+    return attempt
+
+
+@pytest.mark.parametrize("at", [0, 7, 12])
+def test_a_search_that_was_cut_short_goes_on_to_what_a_whole_one_finds(
+    tmp_path: Path, at: int
+) -> None:
+    path = tmp_path / "kept.db"
+    with pytest.raises(Stopped), study_in(path, {}) as study:
+        search(study, plan(), interrupted(at))
+    calls: list[Settings] = []
+
+    def counted(settings: Settings, best: Attempt | None) -> Attempt:
+        calls.append(settings)
+        return known(settings, best)
+
+    with study_in(path, {}) as study:
+        states = [trial.state for trial in study.trials]
+        assert states == [TrialState.COMPLETE] * at + [TrialState.FAIL]
+        found = search(study, plan(), counted)
+    whole = done()
+    assert [a.settings for a in found] == [a.settings for a in whole]
+    assert found == whole
+    assert len(calls) == sum(a.runs > 0 for a in whole) - at
+
+
+def test_a_larger_budget_begins_with_the_trials_of_a_smaller_one(tmp_path: Path) -> None:
+    path = tmp_path / "kept.db"
+    for budget in (7, 14):
+        with study_in(path, {}) as study:
+            found = search(study, plan(budget), known)
+            assert len(found) == budget
+    assert found == done(14)
+    with study_in(path, {}) as study:
+        assert search(study, plan(7), interrupted(0)) == found
+
+
+def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> None:
+    path = tmp_path / "kept.db"
+    with study_in(path, {}) as study:
+        found = search(study, plan(), known)
+    own = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    best = best_of(found)
+    assert best is not None
+    assert own.best_value == best.cost_us
+    assert {t.state for t in own.trials} == {TrialState.COMPLETE}
+
+
+def test_the_nearest_is_told_where_nothing_reaches() -> None:
+    def never(settings: Settings, best: Attempt | None) -> Attempt:
+        assert best is None
+        far = 2.0 + float(settings["stiffness"])
+        return replace(known(settings, best), steps_per_turn=None, error=far)
+
+    found = done(attempt=never)
+    assert best_of(found) is None
+    assert nearest_of(found).error == min(a.error for a in found)
+
+
+def test_what_gains_nothing_is_set_back_to_the_profile() -> None:
+    best = known({**PROFILE, "kind": "fast", "idle": 5, "stiffness": 23.0}, None)
+    found, tried = plainer(SPACE, known(PROFILE, None), best, known)
+    assert found.settings == {**PROFILE, "kind": "fast", "stiffness": 23.0}
+    assert len(tried) == 3
+
+
+def test_many_small_losses_do_not_add_up_when_set_back() -> None:
+    knobs = tuple(Knob(f"k{i}", (0, 1)) for i in range(4))
+    profile = dict.fromkeys((k.name for k in knobs), 0)
+
+    def each_a_bit(settings: Settings, best: Attempt | None) -> Attempt:
+        cost = 100.0 + 0.6 * sum(settings[k.name] == 0 for k in knobs)
+        return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
+
+    best = each_a_bit(dict.fromkeys(profile, 1), None)
+    found, _ = plainer(replace(SPACE, knobs=knobs), each_a_bit(profile, None), best, each_a_bit)
+    assert found.cost_us <= 1.01 * best.cost_us
+    assert found.settings["k0"] == 0
+
+
+def test_a_profile_that_is_as_cheap_is_taken_as_it_is() -> None:
+    """A knob set back alone may cost more than the profile does, and still be as good as equal."""
+
+    def costs(settings: Settings, best: Attempt | None) -> Attempt:
+        cost = {"k0 0 k1 0": 100.5, "k0 1 k1 1": 100.0}.get(
+            " ".join(f"{name} {settings[name]}" for name in ("k0", "k1")), 100.9
+        )
+        return Attempt(dict(settings), 100, 100, 0.9, "a scene", cost, 1)
+
+    space = replace(SPACE, knobs=(Knob("k0", (0, 1)), Knob("k1", (0, 1))))
+    first, best = (costs(dict.fromkeys(("k0", "k1"), k), None) for k in (0, 1))
+    assert plainer(space, first, best, costs) == (first, [])
+
+
+def clocked(*late: int) -> Try:
+    """The clock ends these of the attempts."""
+    count = 0
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        nonlocal count
+        count += 1
+        found = known(settings, best)
+        if count - 1 in late:
+            return replace(found, steps_per_turn=None, reason="timeout", timed_out=True)
+        return found
+
+    return attempt
+
+
+@pytest.mark.parametrize("late", [(0,), (1,), (9,), (0, 5, 13)])
+def test_what_the_clock_ended_is_not_kept_and_tried_again(
+    tmp_path: Path, late: tuple[int, ...]
+) -> None:
+    path = tmp_path / "kept.db"
+    with study_in(path, {}) as study:
+        once = search(study, plan(), clocked(*late))
+        kept = attempts(study)
+    assert len(once) == 14
+    lost = [a for a in once if a.timed_out]
+    assert len(lost) >= len(late)
+    assert kept == [a for a in once if not a.timed_out]
+    ran: list[Settings] = []
+
+    def counted(settings: Settings, best: Attempt | None) -> Attempt:
+        ran.append(settings)
+        return known(settings, best)
+
+    with study_in(path, {}) as study:
+        again = search(study, plan(), counted)
+        assert attempts(study) == again
+        assert search(study, plan(), interrupted(0)) == again
+    assert ran == [a.settings for a in lost if a.runs]
+    assert not any(a.timed_out for a in again)
+    assert [a.settings for a in again] == [a.settings for a in once]
+
+
+def test_settings_that_the_clock_ends_are_not_tried_twice_in_one_search() -> None:
+    ran: list[str] = []
+
+    def attempt(settings: Settings, best: Attempt | None) -> Attempt:
+        ran.append(str(settings))
+        return replace(known(settings, best), steps_per_turn=None, timed_out=True)
+
+    space = replace(SPACE, knobs=SPACE.knobs[1:])
+    with study_in(None, {}) as study:
+        assert len(search(study, replace(plan(40), space=space), attempt)) == 40
+        assert attempts(study) == []
+    assert len(ran) == len(set(ran)) <= 15
+
+
+def test_progress_is_told_after_each_trial() -> None:
+    count = 0
+
+    def advance() -> None:
+        nonlocal count
+        count += 1
+
+    with study_in(None, {}) as study:
+        search(study, plan(9), known, advance)
+        assert count == len(attempts(study)) == 9

@@ -1,0 +1,281 @@
+"""The command as a whole, with real engines and small budgets."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import optuna
+import pytest
+from optuna.trial import TrialState
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from models.files import shipped
+from reports.cli.commands.tune import Request, run_tune
+from reports.tune.cost import EVALUATIONS
+from reports.tune.knobs import Knob, space_of
+
+SMALL = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
+Tell = Callable[[Request], tuple[int, str]]
+
+
+def told(request: Request) -> tuple[int, str]:
+    """Exit code and output, but for the time of day."""
+    output = io.StringIO()
+    quiet = Console(file=io.StringIO())
+    code = run_tune(request, Console(file=output, width=100), quiet)
+    return code, "\n".join(line for line in output.getvalue().splitlines() if "made" not in line)
+
+
+def line(text: str, label: str) -> list[str]:
+    """The cells of a row of the table."""
+    return next(row for row in text.splitlines() if row.startswith(label))[len(label) :].split()
+
+
+@pytest.fixture(scope="module")
+def whole() -> tuple[int, str]:
+    return told(SMALL)
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a search that was begun."""
+    path = tmp_path_factory.mktemp("kept") / "kept.db"
+    told(replace(SMALL, budget=1, output=path))
+    return path
+
+
+def test_one_seed_gives_the_same_settings_twice(whole: tuple[int, str]) -> None:
+    assert told(SMALL) == whole
+    assert told(replace(SMALL, seed=4)) != whole
+
+
+def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
+    whole: tuple[int, str],
+) -> None:
+    code, text = whole
+    assert code == 0
+    tuned, found = line(text, "error of place")
+    assert max(float(tuned), float(found)) <= 1e-5
+    assert line(text, "solref_timeconst_steps")[0] == "5"
+    cost = [
+        EVALUATIONS[integrator] * int(steps)
+        for integrator, steps in zip(
+            line(text, "integrator"), line(text, "steps per turn"), strict=True
+        )
+    ]
+    assert cost[1] <= cost[0]
+    told_ratio = re.search(r"found over profile tuned: (\S+) by the model", text)
+    assert told_ratio is not None
+    assert float(told_ratio[1]) == pytest.approx(cost[1] / cost[0], abs=0.0051)
+
+
+def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    knob = Knob("iterations", (160, 170, 180))
+    space = replace(space_of("pymunk"), knobs=(knob,), starts=())
+    monkeypatch.setattr("reports.cli.commands.tune.space_of", lambda name: space)
+    code, text = told(replace(SMALL, engine="pymunk", target=1e-3, budget=8))
+    assert code == 0
+    assert line(text, "iterations") == ["150", "150"]
+    assert "found over profile tuned: 1.00 by the model" in text
+    assert re.search(r"8 trials, of which [5-8] reach", text)
+
+
+def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) -> None:
+    _, text = whole
+    steps = line(text, "steps per turn")[1]
+    assert f"{steps} steps a turn" in text
+    assert f'integrator="{line(text, "integrator")[1]}"' in text
+    ratio = line(text, "solref_dampratio")[1]
+    assert f' {ratio}" solimp=' in text
+
+
+def test_a_search_in_two_halves_finds_what_a_whole_one_does(
+    tmp_path: Path, whole: tuple[int, str]
+) -> None:
+    path = tmp_path / "kept.db"
+    told(replace(SMALL, budget=4, output=path))
+    assert told(replace(SMALL, output=path)) == whole
+    again = told(replace(SMALL, output=path))
+    assert again == whole
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"target": 1e-4}, "holds a search with target 1e-05; asked was target 0.0001"),
+        ({"seed": 9}, "holds a search with seed 3; asked was seed 9"),
+        ({"engine": "pymunk"}, "with engine mujoco; asked was engine pymunk"),
+        ({"scenes": ("whitworth",)}, r'with scene \["fourbar-lecture-1"\]; asked was'),
+        ({"turns": 3.0}, "with turns 2.0; asked was turns 3.0"),
+        ({"limit_s": 5.0}, "with limit_s 20.0; asked was limit_s 5.0"),
+    ],
+)
+def test_a_file_of_another_search_is_refused(
+    kept: Path, change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        told(replace(SMALL, output=kept, **change))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("where", "now", "words"),
+    [
+        ("reports.cli.commands.tune.crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
+        ("reports.cli.commands.tune.version", lambda name: "0.0", "Optuna version 0.0"),
+        (
+            "reports.cli.commands.tune.space_of",
+            lambda name: replace(space_of(name), starts=()),
+            "starts",
+        ),
+    ],
+)
+def test_a_file_of_other_versions_or_starts_is_refused(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, where: str, now: object, words: str
+) -> None:
+    monkeypatch.setattr(where, now)
+    with pytest.raises(CrankcheckError, match=f"asked was {words}"):
+        told(replace(SMALL, output=kept))
+
+
+def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
+    path = tmp_path / "kept.db"
+    request = replace(SMALL, budget=2, limit_s=1e-4, output=path)
+    for _ in range(2):
+        code, text = told(request)
+        assert code == 1
+        assert "The clock ended 2 of what was tried (--limit-s 0.0001)" in " ".join(text.split())
+    study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    assert {trial.state for trial in study.trials} == {TrialState.FAIL}
+    with pytest.raises(CrankcheckError, match=r"with limit_s 0\.0001; asked was limit_s 20"):
+        told(replace(request, limit_s=20.0))
+
+
+def test_nothing_that_reaches_is_told_with_what_came_nearest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("reports.tune.attempt.MOST_STEPS", 4000)
+    request = replace(SMALL, engine="pymunk", target=1e-10, budget=1)
+    code, text = told(request)
+    assert code == 1
+    assert "NOTHING REACHES 1e-10: nearest is" in text
+    assert "steps per turn; take a larger target" in " ".join(text.split())
+    assert "OVER" in text
+    assert "space.iterations" not in text
+
+
+def test_several_scenes_are_tuned_together() -> None:
+    request = replace(
+        SMALL, scenes=("fourbar-lecture-1", "slider-crank-excel-210"), target=1e-4, budget=2
+    )
+    code, text = told(request)
+    assert code == 0
+    assert text.startswith("fourbar-lecture-1, slider-crank-excel-210, mujoco: error of place")
+    assert line(text, "worst in")[0] == "slider-crank-excel-210"
+
+
+def test_measured_cost_is_told_beside_that_of_the_profile() -> None:
+    code, text = told(replace(SMALL, timing=True, budget=1))
+    assert code == 0
+    assert len(line(text, "us per step")) == len(line(text, "ms per turn")) == 2
+    assert "cost of a turn, found over profile tuned: " in text
+    assert "A/A noise" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"target": 0.0}, "--target 0: give an error of place from 1e-11"),
+        ({"target": float("nan")}, "--target nan"),
+        ({"target": 1.0}, "--target 1"),
+        ({"budget": 0}, "--budget 0: give a number of trials"),
+        ({"seed": -1}, "--seed -1: give a whole number"),
+        ({"seed": 2**32}, "--seed 4294967296"),
+        ({"turns": 0.0}, "--turns 0: give a number above 0"),
+        ({"turns": 1e9}, r"--turns 1e\+09: .* take 12500 turns or less"),
+        ({"limit_s": 0.0}, "--limit-s 0"),
+        ({"scenes": ()}, "name a scene"),
+        ({"scenes": ("fourbar-lecture-11",)}, "neither a shipped scene nor a file"),
+        ({"engine": "mujocko"}, "engine 'mujocko': unknown; did you mean mujoco"),
+        ({"output": Path("nowhere/kept.db")}, "there is no folder"),
+    ],
+)
+def test_bad_requests_are_refused_before_anything_runs(
+    change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        told(replace(SMALL, **change))  # type: ignore[arg-type]
+
+
+def test_a_run_through_a_singular_position_is_refused(tmp_path: Path) -> None:
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    text = re.sub(r"length_m = 0\.\d+", "length_m = 0.3", text)
+    nearly = tmp_path / "nearly.toml"  # a rhombus, but for 1e-13 m
+    nearly.write_text(text.replace("0.3 }", "0.2999999999999 }", 1), encoding="utf-8")
+    with pytest.raises(CrankcheckError, match="driver 360 deg"):
+        told(replace(SMALL, scenes=(str(nearly),)))
+
+
+SCRIPT = """
+import os, signal, sys, threading
+from pathlib import Path
+from reports.cli import guarded
+from reports.cli.commands.tune import Request, run_tune
+from reports.workers.signals import install
+from reports.output.console import terminal
+from reports.tune.attempt import Bench
+
+calls = 0
+
+def attempt(bench, settings, best, real=Bench.attempt):
+    global calls
+    calls += 1
+    if calls == 3:
+        threading.Timer(0.01, os.killpg, (os.getpgid(0), signal.SIGINT)).start()
+    return real(bench, settings, best)
+
+if __name__ == "__main__":
+    path = Path(sys.argv[1])
+    Bench.attempt = attempt
+    with guarded():
+        install()
+        request = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=1000, output=path)
+        run_tune(request, terminal(), terminal(stderr=True))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
+def test_ctrl_c_keeps_the_trials_and_leaves_no_process(tmp_path: Path) -> None:
+    path, script = tmp_path / "kept.db", tmp_path / "run.py"
+    script.write_text(SCRIPT, encoding="utf-8")
+    running = subprocess.Popen(
+        [sys.executable, str(script), str(path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
+    )
+    # The pipes end when the last process that holds them does.
+    output, complaint = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert output == ""
+    study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
+    kept = len(study.get_trials(states=(TrialState.COMPLETE,)))
+    assert kept > 0
+    assert complaint.splitlines() == [  # Optuna says nothing
+        f"{kept} of 1000 trials are kept in {path}; the same command goes on from there",
+        "crankcheck: interrupted",
+    ]
+    assert sorted(each.name for each in tmp_path.iterdir()) == [
+        ".kept.db.lock",
+        "kept.db",
+        "run.py",
+    ]

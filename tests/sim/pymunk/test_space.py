@@ -1,0 +1,113 @@
+"""The pymunk space: only what the scene needs, assembled, and what it refuses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pymunk
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.files import load_scene, shipped
+from models.motion import State
+from models.scene import Scene
+from sim.pymunk.space import build
+
+
+def start_of(scene: Scene, time_s: float = 0.0) -> State:
+    return solve(scene, np.array([time_s])).state(0)
+
+
+def kinds(space: pymunk.Space) -> list[str]:
+    return sorted(type(constraint).__name__ for constraint in space.constraints)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_a_space_holds_no_shapes_and_no_body_beyond_links_and_blocks_with_mass(name: str) -> None:
+    scene = load_scene(name)
+    model = build(scene, start_of(scene))
+    assert not model.space.shapes
+    blocks = [s for s in scene.sliders.values() if s.mass_kg > 0.0]
+    assert len(model.bodies) == len(scene.links) + len(blocks)
+    assert not any(constraint.collide_bodies for constraint in model.space.constraints)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_points_stand_and_move_as_in_the_state(name: str) -> None:
+    scene = load_scene(name)
+    state = start_of(scene, 0.1)
+    model = build(scene, state)
+    for link in scene.links.values():
+        body, centre = model.bodies[link.name], model.centre[link.name]
+        for point, (x, y) in link.points.items():
+            local = (x - centre[0], y - centre[1])
+            place, speed = body.local_to_world(local), body.velocity_at_local_point(local)
+            np.testing.assert_allclose(place, state.position[point], atol=1e-13)
+            np.testing.assert_allclose(speed, state.velocity[point], atol=1e-11)
+
+
+def test_the_crank_is_kinematic_or_under_a_servo_dynamic_with_a_motor() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    model = build(scene, start_of(scene))
+    assert model.crank.body_type == pymunk.Body.KINEMATIC
+    assert kinds(model.space) == ["PivotJoint"] * 3
+    servo = build(scene, start_of(scene), servo=True)
+    assert servo.crank.body_type == pymunk.Body.DYNAMIC
+    assert servo.motor is not None
+    assert kinds(servo.space) == ["PivotJoint"] * 4 + ["SimpleMotor"]
+
+
+def test_joints_follow_from_what_slides_on_what() -> None:
+    def made(name: str, **given: bool) -> list[str]:
+        scene = load_scene(name)
+        return kinds(build(scene, start_of(scene), **given).space)
+
+    assert made("slider-crank-excel-350", exact_lines=False) == ["GrooveJoint", "PivotJoint"]
+    assert made("slider-crank-excel-350") == ["PinJoint", "PivotJoint"]
+    assert made("slider-crank-offset") == ["GrooveJoint", "PivotJoint", "PivotJoint"]
+    assert made("slotted-lever") == ["GrooveJoint", "PivotJoint"]
+    assert made("scotch-yoke") == ["GearJoint", "GrooveJoint", "GrooveJoint", "PivotJoint"]
+
+
+def test_what_slides_on_the_ground_cannot_turn() -> None:
+    scene = load_scene("scotch-yoke")
+    model = build(scene, start_of(scene))
+    assert math.isinf(model.bodies["yoke"].moment)
+    assert model.bodies["yoke"].mass == scene.links["yoke"].mass_kg
+    assert model.bodies["block B"].moment == scene.sliders["B"].inertia_kg_m2
+
+
+@pytest.mark.parametrize("joint", ["groove", "rail"])
+def test_only_the_groove_lets_the_sliding_speed_leak_across_the_line(joint: str) -> None:
+    """One rod, its end C on the x-axis, with speeds that keep it there: nothing to correct."""
+    scene = load_scene("slider-crank-excel-350")
+    state = start_of(scene, 0.7)
+    model = build(scene, state, exact_lines=joint == "rail")
+    for constraint in model.space.constraints:
+        constraint.error_bias = 1.0  # correct no positions: only velocities are at stake
+    model.space.iterations = 1000
+    model.space.step(1e-9)
+    rod = model.bodies["rod"]
+    x, y = scene.links["rod"].points["C"]
+    centre = model.centre["rod"]
+    speed = rod.velocity_at_local_point((x - centre[0], y - centre[1]))
+    leak = abs(speed[1]) / abs(speed[0])
+    assert leak > 1e-3 if joint == "groove" else leak < 1e-7
+
+
+def test_a_free_link_without_mass_is_named_but_a_prescribed_crank_needs_none() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = start_of(scene)
+
+    def bare(name: str) -> Scene:
+        link = replace(scene.links[name], mass_kg=0.0, inertia_kg_m2=0.0)
+        return replace(scene, links={**scene.links, name: link})
+
+    with pytest.raises(EngineError, match="rocker: mass_kg 0, inertia_kg_m2 0; pymunk"):
+        build(bare("rocker"), state)
+    build(bare("crank"), state)
+    with pytest.raises(EngineError, match="crank: mass_kg 0"):
+        build(bare("crank"), state, servo=True)

@@ -1,0 +1,196 @@
+"""Random mechanisms for the engines, within the range that profile tuned is meant for.
+
+A crank turns at constant speed, and one or two dyads (three, where the last needs two links to ride
+on) hang on it and on each other, of all kinds and in all roles. What is random, and the range:
+
+- lengths 0.2 to 2, the whole scaled by 0.01 to 100, turned and moved by up to three lengths;
+- speed 0.1 to 1000 rad/s, either way, from any angle on, at `LEAST_STEPS` to `MOST_STEPS` steps a
+  turn;
+- every sine of a transmission angle at least `MARGIN` over the whole turn. Where no layout out of
+  `TRIES` turns round with that margin the driver swings instead, as far as the margin lets it;
+- links are slender rods as long as what they carry: their pins, and the part of their lines that is
+  travelled; each of a density of its own, within 1 : `DENSITY`; half of the mechanisms have
+  massless blocks, where MuJoCo can hold them;
+- steps fine enough that no cap of a tolerance is in force: a coarser step is out of tolerance by
+  what anyone would call wrong, whatever the theory grants (`reports.judge.tolerance`);
+- joints that pymunk's iterations solve: those of profile tuned leave at most `LEFT` of an error
+  (`tests.worlds.contraction`). From about 0.35 on its mechanisms come apart.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from hypothesis import strategies as st
+
+from analytic.check.moved_scene import moved, scaled
+from analytic.kinematics import solve
+from models.errors import EngineError, ReachError
+from models.files import parse_scene
+from models.laws import ConstantSpeed
+from models.scene import GROUND, Link, Point, Scene, Slider
+from models.tree import plan
+from reports.compare.compare import curvature
+from reports.judge.tolerance import ACCELERATION, PLACE, VELOCITY
+from sim.pymunk.settings import TUNED
+from tests.worlds.contraction import contraction
+from tests.worlds.layouts import Layout
+from tests.worlds.scene_text import scene_text
+from tests.worlds.strategies import FORMS, MARGIN, Designed, swinging, with_dyads
+
+CROSSED = tuple(form for form in FORMS if form.startswith("PRP"))
+"""Two lines that may not become parallel: not one of the crank with one of the ground."""
+BASES = tuple(f for f in FORMS if f not in CROSSED and not f.endswith("on guide"))
+"""What they may ride on: something that does not turn with the crank."""
+TRIES, MOST_TRIES = 40, 200
+LOOKS = 181
+LEAST_STEPS, MOST_STEPS = 180, 1440
+DENSITY = 100.0
+ROD_M, BLOCK_M, BLOCK_KG = 0.2, 0.1, 0.1
+"""Length of the shortest rod, side of a block, and its mass at density 1."""
+ITERATIONS = int(TUNED.settings["iterations"].value)
+LEFT = 0.2
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A random mechanism as its scene file says it, and how to run a period of it.
+
+    ``left`` is what the iterations of profile tuned leave of an error of the joints.
+    """
+
+    scene: Scene
+    text: str
+    forms: tuple[str, ...]
+    steps_per_turn: int
+    turns_round: bool
+    left: float
+
+
+@st.composite
+def recipes(draw: st.DrawFn) -> tuple[tuple[str, ...], int]:
+    """Forms of one or two dyads, and a seed for the rest: what `made` makes a mechanism of."""
+    forms = draw(st.lists(st.sampled_from(FORMS), min_size=1, max_size=2))
+    if forms[0] in CROSSED:
+        forms = [draw(st.sampled_from(BASES)), forms[0]]
+    return tuple(forms), draw(st.integers(0, 2**64 - 1))
+
+
+def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT) -> Driven:
+    """The mechanism of a seed: laid out and weighed anew until it is within the range, which is one
+    that the iterations of profile tuned leave ``least`` to ``most`` of.
+
+    Raises LookupError where that does not come about.
+    """
+    chance = random.Random(f"{seed}: {'; '.join(forms)}")
+    name = f"random-{chance.getrandbits(64):x}"
+    speed = chance.choice((1, -1)) * 10 ** chance.uniform(-1.0, 3.0)
+    stuck = 0
+    for _ in range(MOST_TRIES):
+        designed = _laid_out(chance, forms, speed)
+        turns_round = stuck < TRIES
+        if not turns_round:
+            designed = swinging(designed, abs(speed))
+        elif _least_sine(designed.scene) < MARGIN:
+            stuck += 1
+            continue
+        scene = _weighed(chance, designed.scene)
+        left = contraction(scene) ** ITERATIONS
+        fewest = _fewest_steps(scene)
+        if least <= left <= most and fewest <= MOST_STEPS:
+            break
+    else:
+        raise LookupError(f"{forms}: none of {MOST_TRIES} layouts is within the range")
+    shift = (chance.uniform(-3.0, 3.0), chance.uniform(-3.0, 3.0))
+    scene = scaled(moved(scene, shift), 10 ** chance.uniform(-2.0, 2.0))
+    text = scene_text(replace(scene, name=name))
+    steps = round(fewest * (MOST_STEPS / fewest) ** chance.random())
+    return Driven(parse_scene(text, name), text, designed.forms, steps, turns_round, left)
+
+
+def _laid_out(chance: random.Random, forms: Sequence[str], speed: float) -> Designed:
+    """A crank with the dyads of the forms, anywhere."""
+    at = Layout(chance.uniform, chance.choice)
+    pivot = at.arm(0.0, 1.0)
+    crank = at.link(pivot)
+    at.frames[crank] = (pivot, at.frames[crank][1])  # about its pivot: it has to come round
+    at.reach[crank] = chance.uniform(0.2, 1.0)
+    at.pin(pivot, GROUND, crank)
+    at.pin(pivot + at.arm(0.1, 0.8), crank)
+    return with_dyads(at, forms, crank, ConstantSpeed(at.frames[crank][1], speed))
+
+
+def _period(scene: Scene) -> np.ndarray:
+    return np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+
+
+def _least_sine(scene: Scene) -> float:
+    """The worst conditioning over a turn; 0 where it does not close."""
+    try:
+        motion = solve(scene, _period(scene), links=(), points=(), sliders=(), bound=False)
+    except ReachError:
+        return 0.0
+    return min(float(sine.min()) for sine in motion.conditioning.values())
+
+
+def _fewest_steps(scene: Scene) -> float:
+    """Steps a turn from which on no cap of a tolerance is in force, `LEAST_STEPS` at least."""
+    motion = solve(scene, _period(scene), bound=False)
+    sine = min(float(sine.min()) for sine in motion.conditioning.values())
+    bend, law = curvature(scene, motion), scene.driver.law
+    longest = min(
+        (quantity.cap * sine / quantity.coefficient / bend**quantity.power) ** 0.5
+        for quantity in (PLACE, VELOCITY, ACCELERATION)
+    )
+    return max(law.peak_speed_rad_s * law.period_s / longest, LEAST_STEPS)
+
+
+def _weighed(chance: random.Random, scene: Scene) -> Scene:
+    """The scene with random masses."""
+
+    def density() -> float:
+        return float(DENSITY ** chance.random())
+
+    def block(slider: Slider) -> Slider:
+        mass = BLOCK_KG * density()
+        return replace(slider, mass_kg=mass, inertia_kg_m2=mass * BLOCK_M**2 / 6)
+
+    carried = _carried(scene)
+    links = {name: _rod(link, carried[name], density()) for name, link in scene.links.items()}
+    light = replace(scene, links=links)
+    blocks = {n: s if s.link else block(s) for n, s in scene.sliders.items()}
+    if chance.random() < 0.5:
+        try:
+            plan(light, solve(light, np.zeros(1), bound=False).state())
+        except EngineError:
+            return replace(light, sliders=blocks)  # MuJoCo closes no loop at a massless block
+        return light
+    return replace(light, sliders=blocks)
+
+
+def _carried(scene: Scene) -> Mapping[str, list[Point]]:
+    """What each link has to reach, in its frame [m]: its pins, and where others slide on it."""
+    motion = solve(scene, _period(scene), links=(), points=(), bound=False)
+    found = {name: list(link.points.values()) for name, link in scene.links.items()}
+    for slider in scene.sliders.values():
+        if slider.on != GROUND:
+            travel = motion.sliders[slider.name].displacement
+            c, s = math.cos(slider.direction_rad), math.sin(slider.direction_rad)
+            x, y = slider.through_m
+            ends = (float(travel.min()), float(travel.max()))
+            found[slider.on] += [(x + c * end, y + s * end) for end in ends]
+    return found
+
+
+def _rod(link: Link, places: Sequence[Point], density: float) -> Link:
+    """The link as a slender rod between the two places that are farthest apart."""
+    pairs = itertools.combinations_with_replacement(places, 2)
+    (ax, ay), (bx, by) = max(pairs, key=lambda pair: math.dist(*pair))
+    length = max(math.hypot(bx - ax, by - ay), ROD_M)
+    centre = ((ax + bx) / 2, (ay + by) / 2)
+    return Link(link.name, link.points, density * length, centre, density * length**3 / 12)
