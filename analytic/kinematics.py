@@ -17,11 +17,12 @@ from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import Passage
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import OpenError
-from analytic.dyads.plane import EPS, STEADY, AngleError, Array, Real
+from analytic.dyads.plane import EPS, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import Result, Wanted
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Crossing, Motion

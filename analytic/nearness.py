@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.plane import Array
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import Array
+from models.array import Array
 from models.scene import Scene
 
 SCAN = 1440

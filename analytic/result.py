@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import EPS, Array, BodyKinematics, PointKinematics, Real
+from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene

@@ -11,7 +11,6 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
@@ -23,7 +22,6 @@ from reports.tune.timing import GUESS_US
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import SettingValue
 
-Array = NDArray[np.float64]
 ROUNDS = 12
 STEPS_PER_TURN = 720.0
 ITERATIONS = (2, 10, 50, 150)

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
+from models.array import Array
 from models.scene import Point
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

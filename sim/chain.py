@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from models.array import Array
 from models.scene import GROUND, Point
 from models.tree import Freedom, Limb
 from sim.engine import BodyPose
 
-Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
 
 

@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from models.array import Array
 from models.laws import ConstantSpeed, Law
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive
-
-Array = NDArray[np.float64]
 
 
 def angles(law: Law, start_s: float, dt_s: float, first: int, last: int) -> Array:

@@ -10,13 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from models.array import Array
 from models.motion import Motion, State
 from models.scene import Point, Scene
 
-Array = NDArray[np.float64]
 Status = Literal["ok", "diverged", "locked", "branch-changed", "timeout", "crashed", "unsupported"]
 Drive = Literal["prescribed", "servo", "free"]
 """Prescribed: the crank is where the driver's law has it, whatever the mechanism does. Servo: a

@@ -6,14 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from models.array import Array
 from models.joints import block_name, blocks, carriers, local_point, sliding_angle
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Point, Scene, Slider
 from sim.engine import BodyPose, Poses
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

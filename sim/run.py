@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.errors import EngineError
 from models.motion import State
@@ -35,7 +34,6 @@ from sim.measure import gaps, motion
 from sim.registry import engine as engine_of
 from sim.settings import SettingError, profile_of, resolved
 
-Array = NDArray[np.float64]
 LEAST_STEPS_PER_PERIOD = 8
 CHUNK_STEPS = 4000
 """Steps between two looks at whether the run has diverged."""

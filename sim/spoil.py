@@ -14,14 +14,13 @@ from itertools import pairwise
 from typing import Protocol, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from models.array import Array
 from models.motion import State
 from models.scene import Point, Scene
 from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, SettingValue
 from sim.run import joined, stretch
 
-Array = NDArray[np.float64]
 SPOILERS: Mapping[str, str] = {"mujoco": "sim.mujoco.spoil", "pymunk": "sim.pymunk.spoil"}
 """Engine to module; each module has a ``SPOILER``."""
 

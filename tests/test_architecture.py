@@ -1,33 +1,78 @@
-"""The arrows of the house: who may import whom, and what may be imported only where."""
+"""The arrows of the house: who may import whom, and what may be imported only where.
+
+`FLOORS` is the plan: each line a floor, the highest first. A room imports itself and what stands on
+lower floors, never a neighbour on its own; each package, only the packages that `ARROWS` gives it.
+"""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
-ALLOWED = {
-    "models": {"models"},
-    "analytic": {"models", "analytic"},
-    "sim": {"models", "sim"},
-    "reports": {"models", "analytic", "sim", "reports"},
+ARROWS: Mapping[str, set[str]] = {
+    "models": set(),
+    "analytic": {"models"},
+    "sim": {"models"},
+    "reports": {"models", "analytic", "sim"},
 }
-ENGINES = {
-    "mujoco": "sim/mujoco",
-    "pymunk": "sim/pymunk",
+FLOORS: Mapping[str, str] = {
+    "reports": """
+        cli
+        page figures diff tune history verify selftest
+        sweep stability
+        results
+        store
+        plan
+        judge describe drawing
+        compare
+        workers output
+    """,
+    "analytic": """
+        mechanism
+        nearness kinematics
+        forces free change_points check reach result
+        dyads
+        structure
+    """,
+    "sim": """
+        mujoco pymunk
+        spoil
+        run
+        check energy registry
+        measure drive chain settings
+        engine
+    """,
 }
+"""A file that stands in a package itself is a room of its own; of `reports` there is none."""
+LOOSE = {"analytic", "sim"}
+HOMES = {"mujoco": "sim.mujoco", "pymunk": "sim.pymunk"}
+"""Each engine's package, and the one room that imports it."""
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 
 
-def modules() -> list[Path]:
-    return [path for package in ALLOWED for path in sorted((ROOT / package).rglob("*.py"))]
+@dataclass(frozen=True)
+class Import:
+    """A module, by dotted name, that imports another; ``late`` where a function does, or where only
+    a type checker does."""
+
+    by: str
+    of: str
+    late: bool = False
 
 
-def imported(path: Path) -> Iterator[tuple[str, bool]]:
-    """The modules that a file imports, and whether it does so when it is imported itself."""
+def name_of(path: Path, root: Path = ROOT) -> str:
+    """The dotted name of a file."""
+    return ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
+
+
+def imports(path: Path, root: Path = ROOT) -> Iterator[Import]:
+    """What a file imports, also inside functions."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     late = {
         id(inner)
@@ -36,44 +81,172 @@ def imported(path: Path) -> Iterator[tuple[str, bool]]:
         or (isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test))
         for inner in ast.walk(node)
     }
+    by = name_of(path, root)
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, id(node) not in late) for alias in node.names)
+            yield from (Import(by, alias.name, id(node) in late) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: import by full name"
-            yield node.module or "", id(node) not in late
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                module = whole if _is_module(whole, root) else str(node.module)
+                yield Import(by, module, id(node) in late)
 
 
-def package_of(path: Path) -> str:
-    return path.relative_to(ROOT).parts[0]
+def _is_module(name: str, root: Path) -> bool:
+    path = root.joinpath(*name.split("."))
+    return path.with_suffix(".py").is_file() or (path / "__init__.py").is_file()
 
 
-def name_of(path: Path) -> str:
-    return str(path.relative_to(ROOT))
+def all_imports(root: Path = ROOT) -> list[Import]:
+    """What the files of all packages import."""
+    files = [path for package in ARROWS for path in sorted((root / package).rglob("*.py"))]
+    return [each for path in files for each in imports(path, root)]
 
 
-@pytest.mark.parametrize("path", modules(), ids=name_of)
-def test_imports_follow_the_arrows(path: Path) -> None:
-    for module, _ in imported(path):
-        root = module.split(".")[0]
-        if root in ALLOWED:
-            assert root in ALLOWED[package_of(path)], f"imports {module}"
+def package_of(name: str) -> str:
+    return name.split(".")[0]
 
 
-@pytest.mark.parametrize("path", modules(), ids=name_of)
-def test_engines_stay_in_their_adapter_and_builder(path: Path) -> None:
-    for module, _ in imported(path):
-        home = ENGINES.get(module.split(".")[0])
-        assert home is None or name_of(path.parent) == home, f"imports {module}"
+def room_of(name: str) -> str:
+    """The room in its package, empty for the package itself."""
+    return [*name.split("."), ""][1]
 
 
-@pytest.mark.parametrize("path", modules(), ids=name_of)
-def test_tables_and_plots_stay_in_reports(path: Path) -> None:
-    for module, _ in imported(path):
-        assert module.split(".")[0] not in REPORTS_ONLY or package_of(path) == "reports"
+def floors() -> dict[tuple[str, str], int]:
+    """The number of each room's floor, from the highest."""
+    return {
+        (package, room): number
+        for package, plan in FLOORS.items()
+        for number, line in enumerate(plan.strip().splitlines())
+        for room in line.split()
+    }
 
 
-def test_walk_sees_imports_inside_functions(tmp_path: Path) -> None:
-    path = tmp_path / "probe.py"
-    path.write_text("import sim.run\n\ndef f():\n    from analytic import reach\n")
-    assert list(imported(path)) == [("sim.run", True), ("analytic", False)]
+def up_arrows(found: list[Import]) -> list[str]:
+    """Imports that the plan does not allow."""
+    level, faults = floors(), []
+    for each in found:
+        by, of = package_of(each.by), package_of(each.of)
+        if of not in ARROWS or by not in ARROWS:
+            continue
+        if by != of:
+            if of not in ARROWS[by]:
+                faults.append(f"{each.by} imports {each.of}: {by} may not import {of}")
+        elif by in FLOORS and room_of(each.by) != room_of(each.of):
+            own, other = level.get((by, room_of(each.by))), level.get((of, room_of(each.of)))
+            if own is None or other is None or own >= other:
+                faults.append(f"{each.by} imports {each.of}: not on a lower floor")
+    return faults
+
+
+def circles(found: list[Import]) -> list[str]:
+    """Files that import each other in a ring when they are imported."""
+    graph: dict[str, set[str]] = {}
+    for each in found:
+        if not each.late and package_of(each.of) in ARROWS and each.by != each.of:
+            graph.setdefault(each.by, set()).add(each.of)
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return [" -> ".join(error.args[1])]
+    return []
+
+
+def misplaced(root: Path = ROOT) -> list[str]:
+    """Rooms that the plan does not know, rooms of it that are gone, and loose files."""
+    level, faults = floors(), []
+    for package in FLOORS:
+        rooms = {path.stem for path in (root / package).glob("*.py")} - {"__init__"}
+        if package not in LOOSE:
+            faults += [f"{package}/{room}.py belongs into a room" for room in sorted(rooms)]
+        rooms |= {path.parent.name for path in (root / package).glob("*/__init__.py")}
+        planned = {room for own, room in level if own == package}
+        faults += [f"{package}/{room} has no floor" for room in sorted(rooms - planned)]
+        faults += [f"{package}/{room} is planned and gone" for room in sorted(planned - rooms)]
+    return faults
+
+
+def strangers(found: list[Import]) -> list[str]:
+    """Engines outside their room, tables and plots outside reports."""
+    faults = []
+    for each in found:
+        outside = package_of(each.of)
+        home = HOMES.get(outside)
+        if home and not each.by.startswith(f"{home}."):
+            faults.append(f"{each.by} imports {outside}, whose room is {home}")
+        if outside in REPORTS_ONLY and package_of(each.by) != "reports":
+            faults.append(f"{each.by} imports {outside}, which stays in reports")
+    return faults
+
+
+def test_the_house_stands_as_planned() -> None:
+    found = all_imports()
+    assert len(found) > 1000
+    faults = [*misplaced(), *up_arrows(found), *circles(found), *strangers(found)]
+    assert not faults, "\n".join(faults)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """A house with every room of the plan, and nothing in them."""
+    for package in ARROWS:
+        (tmp_path / package).mkdir()
+        (tmp_path / package / "__init__.py").touch()
+    for package, room in floors():
+        (tmp_path / package / room).mkdir()
+        (tmp_path / package / room / "__init__.py").touch()
+    assert not [*misplaced(tmp_path), *all_imports(tmp_path)]
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("analytic/dyads/a.py", "import sim.run"),
+        ("models/a.py", "def f():\n    from analytic import reach"),
+        ("reports/compare/a.py", "from reports.judge import cell"),
+        ("reports/page/a.py", "from reports.figures.marks import marks"),
+        ("reports/store/a.py", "if TYPE_CHECKING:\n    import reports.cli"),
+        ("analytic/structure/a.py", "import analytic.dyads.rrr"),
+        ("sim/measure/a.py", "from sim import run"),
+        ("reports/judge/a.py", "import reports.unplanned"),
+    ],
+)
+def test_an_up_arrow_is_seen(house: Path, file: str, text: str) -> None:
+    (house / file).write_text(text + "\n")
+    (fault,) = up_arrows(all_imports(house))
+    assert fault.startswith(file.removesuffix(".py").replace("/", "."))
+
+
+def test_a_circle_is_seen(house: Path) -> None:
+    for name, other in (("a", "b"), ("b", "c"), ("c", "a")):
+        text = f"from reports.judge.{other} import x\n"
+        (house / "reports" / "judge" / f"{name}.py").write_text(text)
+    assert not up_arrows(all_imports(house))
+    (fault,) = circles(all_imports(house))
+    assert all(f"reports.judge.{name}" in fault for name in "abc")
+
+
+def test_a_loose_file_an_unplanned_room_and_a_lost_one_are_seen(house: Path) -> None:
+    (house / "reports" / "helpers.py").touch()
+    (house / "analytic" / "attic").mkdir()
+    (house / "analytic" / "attic" / "__init__.py").touch()
+    (house / "reports" / "tune").rename(house / "reports" / "tuning")
+    assert set(misplaced(house)) == {
+        "reports/helpers.py belongs into a room",
+        "reports/helpers has no floor",
+        "analytic/attic has no floor",
+        "reports/tuning has no floor",
+        "reports/tune is planned and gone",
+    }
+
+
+def test_an_engine_and_a_table_outside_their_rooms_are_seen(house: Path) -> None:
+    (house / "sim" / "mujoco" / "a.py").write_text("import mujoco\n")
+    (house / "reports" / "page" / "a.py").write_text("import mujoco, pandas\n")
+    (house / "analytic" / "dyads" / "a.py").write_text("def f():\n    import pandas\n")
+    assert strangers(all_imports(house)) == [
+        "analytic.dyads.a imports pandas, which stays in reports",
+        "reports.page.a imports mujoco, whose room is sim.mujoco",
+    ]

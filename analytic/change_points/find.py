@@ -27,8 +27,9 @@ import numpy as np
 
 from analytic.change_points.sign import AT_START, SIDE, Mask, Passage, whole_turns_off
 from analytic.dyads.parts import CLOSED
-from analytic.dyads.plane import Array, Real
+from analytic.dyads.plane import Real
 from analytic.dyads.steps import Step, stretched
+from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import Law
 from models.motion import Crossing

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from analytic.change_points.smooth import WINDOW, Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, OpenError
-from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Array
+from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError
 from analytic.dyads.steps import Step
+from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 

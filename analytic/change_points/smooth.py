@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.dyads.parts import SlideError, Sliding, Turning
-from analytic.dyads.plane import EPS, AngleError, Array, Real, Vec
+from analytic.dyads.plane import EPS, AngleError, Real, Vec
+from models.array import Array
 
 COUNT, FEWER = 24, 20
 """Nodes of an interpolation, and of the one that it is compared with; even, so none is central."""

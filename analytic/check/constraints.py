@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.structure.mobility import sliding_body
+from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import block_name, local_point
 from models.scene import GROUND, Point, Scene, Slider
-
-Array = NDArray[np.float64]
 
 
 class Constraints:

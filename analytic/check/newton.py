@@ -17,15 +17,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.check.constraints import Constraints
+from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import GROUND, Point, Scene, Slider
-
-Array = NDArray[np.float64]
 
 LONGEST_STEP_RAD = 0.05
 """The driver turns at most so far between two positions: the predictor stays on its branch."""

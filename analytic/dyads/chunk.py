@@ -11,7 +11,6 @@ import numpy as np
 from analytic.dyads.parts import Closure, Dyad, Sliding
 from analytic.dyads.plane import (
     AngleError,
-    Array,
     BodyKinematics,
     PointKinematics,
     Real,
@@ -19,6 +18,7 @@ from analytic.dyads.plane import (
     fixed_body,
     fixed_point,
 )
+from models.array import Array
 from models.joints import local_point
 from models.scene import GROUND, Scene
 

@@ -7,14 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.dyads.plane import (
-    EPS,
-    AngleError,
-    Array,
-    PointKinematics,
-    Real,
-    Vec,
-)
+from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
+from models.array import Array
 
 CLOSED = 16 * EPS
 """A dyad open by no more than this, over the lengths in its closure, is closed but for rounding."""

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.scene import Point
 
-Array = NDArray[np.float64]
 Real = Any
 """An array of one chunk, or a float: the type checker cannot do arithmetic with that union."""
 

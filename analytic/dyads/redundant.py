@@ -22,10 +22,11 @@ import numpy as np
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Turning
-from analytic.dyads.plane import EPS, AngleError, Array, BodyKinematics, PointKinematics, Real, Vec
+from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointKinematics, Real, Vec
 from analytic.dyads.riding import known_at, turning_body
 from analytic.structure.groups import Bridge
 from analytic.structure.mobility import Structure
+from models.array import Array
 from models.errors import StructureError
 from models.joints import less, local_point
 from models.scene import Scene

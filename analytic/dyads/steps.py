@@ -12,7 +12,7 @@ import numpy as np
 from analytic.dyads import prp, rpp, rpr, rrp, rrr
 from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.parts import Sliding, Turning
-from analytic.dyads.plane import Array, Vec, direction
+from analytic.dyads.plane import Vec, direction
 from analytic.dyads.redundant import BridgeStep
 from analytic.dyads.riding import (
     RidingLine,
@@ -26,6 +26,7 @@ from analytic.dyads.riding import (
 )
 from analytic.structure.groups import Bridge, Group
 from analytic.structure.mobility import Structure, sliding_body
+from models.array import Array
 from models.joints import less, local_point, turned
 from models.scene import GROUND, Scene
 

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from analytic.dyads.plane import Array
+from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 

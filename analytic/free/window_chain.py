@@ -20,12 +20,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion
 from models.window_chain import UPRIGHT, Chain
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

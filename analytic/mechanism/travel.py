@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.dyads.plane import Array
 from analytic.kinematics import repeats_after, solve_driven
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene

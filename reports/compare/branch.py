@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.errors import Departure
-from reports.compare.series import Array
 from reports.compare.tracks import Track
 from sim.engine import Run
 

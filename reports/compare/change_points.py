@@ -24,8 +24,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from models.array import Array
 from models.motion import Crossing, Motion
-from reports.compare.series import Array
 
 WINDOW_RAD = 0.5
 """Of the driver, on both sides of a change point."""

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from analytic.forces.jolts import jolts, mass_ratio
 from analytic.kinematics import solve, solve_driven
+from models.array import Array
 from models.errors import ReachError
 from models.joints import joints
 from models.motion import Motion
@@ -27,7 +28,7 @@ from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, Errors, Kind, Quantity, Source
-from reports.compare.series import Array, angle_error, length, rate, second_rate, size
+from reports.compare.series import angle_error, length, rate, second_rate, size
 from reports.compare.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
 from sim.engine import Run
 

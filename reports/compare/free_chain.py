@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.free.window_chain import Turning
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.window_chain import Chain
 from reports.compare.branch import AWAY_RAD, CLOSED, HERE_RAD
 from reports.compare.errors import Departure
-from reports.compare.series import Array
 from sim.engine import Engine, Run, SettingValue
 from sim.run import run
 

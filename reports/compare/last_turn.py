@@ -16,10 +16,11 @@ from typing import TypeVar
 import numpy as np
 
 from analytic.kinematics import solve, solve_driven
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
-from reports.compare.series import Array, angle_error
+from reports.compare.series import angle_error
 from reports.compare.tracks import tracks
 from sim.engine import Run
 

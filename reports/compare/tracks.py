@@ -8,10 +8,11 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
+from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
 from reports.compare.errors import BodyKind, Quantity
-from reports.compare.series import Array, angle_error
+from reports.compare.series import angle_error
 
 Order = Literal[0, 1, 2]
 ORDERS: tuple[Order, ...] = (0, 1, 2)

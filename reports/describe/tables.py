@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from rich.table import Table
 
+from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.series import Array
 
 WIDE = 100
 Columns = list[tuple[str, Array]]

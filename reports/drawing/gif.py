@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
-from reports.compare.series import Array
 
 FRAMES = 60
 STRIP = 6

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.compare.series import Array
+from models.array import Array
 
 CLEAR = 0.05
 """More room than this to the nearest obstacle is no better [inch]."""

@@ -14,10 +14,11 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
-from reports.compare.series import Array, angle_error
+from reports.compare.series import angle_error
 from reports.drawing.packed import packed
 
 Trace = Mapping[str, Array]

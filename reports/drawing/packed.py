@@ -9,7 +9,7 @@ import json
 import numpy as np
 from markupsafe import Markup
 
-from reports.compare.series import Array
+from models.array import Array
 from reports.output.numbers import plain
 
 LEVELS = 32767

@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from reports.compare.series import Array
+from models.array import Array
 from reports.figures.grids import grid
-from reports.figures.marks import label
 from reports.figures.style import INK, TINY, power_of_ten
 from reports.results.error_parts import Parts, Split, split, worst_body
 from reports.results.fits.words import short
 from reports.results.lines import Line, named
+from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.points import ends

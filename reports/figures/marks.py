@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from reports.results.lines import Line, Named, called, named
+from reports.results.lines import Line, Named, named
 
 MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "X", "P", "h", "*")
 DASHES: tuple[tuple[float, ...], ...] = (
@@ -65,12 +65,6 @@ class Mark:
             "markeredgecolor": self.colour,
             "markeredgewidth": 0.8,
         }
-
-
-def label(name: Named) -> str:
-    """A variant as a legend calls it; the drive where it is not the usual one."""
-    engine, variant, drive = name
-    return f"{engine} {called(variant, drive)}"
 
 
 def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:

@@ -15,10 +15,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
-from reports.cli.commands.solve import describe_law
-from reports.compare.series import Array
+from reports.describe.law import describe_law
 from reports.drawing.gif import (
     GUIDE,
     MARGIN,

@@ -15,9 +15,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from reports.figures.grids import grid
-from reports.figures.marks import Mark, label, marks
+from reports.figures.marks import Mark, marks
 from reports.figures.style import power_of_ten
 from reports.results.lines import named
+from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.pareto import performance_profile

@@ -16,10 +16,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from reports.figures.grids import grid
-from reports.figures.marks import Mark, label, marks
+from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
 from reports.results.lines import Line, Named, named
+from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.pareto import front, front_over_all

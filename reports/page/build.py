@@ -14,7 +14,7 @@ from markupsafe import Markup
 from reports.drawing.packed import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text
 from reports.page.sections import SECTIONS
-from reports.page.sections.base import Section
+from reports.page.sections.base import PageReport, Section
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.thinning import BUDGET
@@ -54,7 +54,7 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
     CrankcheckError
         A store that can not be read, part by part.
     """
-    report = Report(stored, matrix)
+    report = PageReport(stored, matrix)
     found = {name: build(report) for name, build in SECTIONS.items()}
     text = _rendered(report, found)
     over = len(text.encode()) - MOST_BYTES
@@ -90,7 +90,7 @@ def _stability_head(matrix: Matrix) -> Head:
     )
 
 
-def _rendered(report: Report, found: Mapping[str, Section | None]) -> str:
+def _rendered(report: PageReport, found: Mapping[str, Section | None]) -> str:
     """The page of the sections that have something to show."""
     return render(report, [section for section in found.values() if section is not None])
 

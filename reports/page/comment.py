@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from reports.figures.marks import label
 from reports.judge.rules import RULES
 from reports.output.markdown import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed
@@ -14,6 +13,7 @@ from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
 from reports.results.fits.words import short
 from reports.results.lines import named
+from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.kinematics import repeats_after, solve, solve_driven
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Crossing, Motion
 from models.scene import Scene
 from reports.compare.change_points import near
-from reports.compare.series import Array
 
 Mask = NDArray[np.bool_]
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.compare.series import Array
+from models.array import Array
 from reports.results.fits.line import LineFit
 from reports.results.lines import Line
 

@@ -59,3 +59,9 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             size=SIZES[place % len(SIZES)],
         )
     return found
+
+
+def label(name: Named) -> str:
+    """A variant as a legend calls it; the drive where it is not the usual one."""
+    engine, variant, drive = name
+    return f"{engine} {called(variant, drive)}"

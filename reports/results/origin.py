@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from reports.figures.marks import label
 from reports.output.numbers import count
 from reports.results.lines import Line, named
+from reports.results.looks import label
 from reports.results.one_processor import machine
 from reports.results.overview import Report
 from reports.results.settings_text import OWN

@@ -1,4 +1,4 @@
-"""What all sections of a page are built from: a store, and what was chosen from it, once."""
+"""What pages, figures and tables are built from: a store, and what was chosen from it, once."""
 
 from __future__ import annotations
 
@@ -17,19 +17,14 @@ from reports.results.lines import Line, Named, lines, named
 from reports.results.looks import Look, looks
 from reports.results.recommend import TARGETS, Recommendation, recommendations
 from reports.results.settings_text import settings_told
-from reports.stability.matrix import Matrix
 from reports.store.reader import Stored
 
 
 @dataclass(frozen=True)
 class Report:
-    """A store as the page sees it: its newest lines, and the cells of those.
-
-    ``matrix`` are the hard cases that were run beside it, if any.
-    """
+    """A store as its readers see it: its newest lines, and the cells of those."""
 
     stored: Stored
-    matrix: Matrix | None = None
 
     @cached_property
     def lines(self) -> tuple[Line, ...]:

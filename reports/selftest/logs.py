@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion
 from models.scene import Scene
 from sim.engine import Run
 
-Array = NDArray[np.float64]
 Part = TypeVar("Part")
 Rows = slice | Array | NDArray[np.intp]
 WHEN = 100

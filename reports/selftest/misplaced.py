@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.motion import PointMotion
 from models.scene import Scene
 from reports.judge.cell import Runner
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_log, in_scene, switched
-from reports.selftest.logs import Array, every_series, last, moved, with_points
+from reports.selftest.logs import every_series, last, moved, with_points
 from reports.selftest.mechanism import other_branch
 from sim.engine import Run
 

@@ -6,18 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from models.array import Array
 from models.scene import Scene
 from reports.selftest.fault import Fault, Plant, in_log
-from reports.selftest.logs import (
-    WHEN,
-    Array,
-    every_series,
-    last,
-    moved,
-    output,
-    spoilt,
-    with_link,
-)
+from reports.selftest.logs import WHEN, every_series, last, moved, output, spoilt, with_link
 from sim.engine import Run
 from sim.spoil import rounded
 

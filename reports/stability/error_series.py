@@ -9,13 +9,14 @@ import numpy as np
 
 from analytic.kinematics import solve
 from analytic.nearness import nearness
+from models.array import Array
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.branch import HERE_RAD, departure
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Departure
-from reports.compare.series import Array, angle_error, length
+from reports.compare.series import angle_error, length
 from reports.compare.tracks import tracks
 from sim.engine import Run
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.free.window_chain import Turning
+from models.array import Array
 from models.motion import Motion
 from reports.compare.free_chain import Held, compared
-from reports.compare.series import Array
 from reports.stability.case import Trial
 from reports.stability.error_series import Seen, lacking, worst_of
 from sim.engine import Run

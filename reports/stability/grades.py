@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from models.array import Array
 from reports.compare.branch import CLOSED
-from reports.compare.series import Array
 from reports.stability.error_series import Seen
 from reports.stability.matrix import Outcome
 

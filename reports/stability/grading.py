@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.motion import Motion
-from reports.compare.series import Array
 from reports.stability.case import Case, Judge, Trial, label
 from reports.stability.error_series import Seen, seen
 from reports.stability.free import falling, freely

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.kinematics import solve_driven
+from models.array import Array
 from models.motion import Motion
-from reports.compare.series import Array
 from reports.stability.case import Trial
 from reports.stability.error_series import Seen, lacking, worst_of
 from sim.engine import Run

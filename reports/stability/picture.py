@@ -8,9 +8,9 @@ from typing import cast
 
 import numpy as np
 
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
-from reports.compare.series import Array
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
 from reports.output.numbers import plain
 from reports.stability.case import Case, Trial

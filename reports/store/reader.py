@@ -12,8 +12,8 @@ import pandas as pd
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
+from models.array import Array
 from models.errors import CrankcheckError
-from reports.compare.series import Array
 from reports.store.damage import BUSY, Damage, notice
 from reports.store.examine import LACKING, STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of

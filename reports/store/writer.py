@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
+from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
-from reports.compare.series import Array
 from reports.describe.frame import motion_frame
 from reports.judge.frames import parquet
 from reports.output.write import check_folder, write

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.motion import Motion
 from reports.compare.last_turn import trace
-from reports.compare.series import Array
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows
 from reports.output.provenance import crankcheck_version

@@ -9,26 +9,12 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import TypeVar
 
-from reports.judge.cell import Cell, Checked, check, unfinished
 from reports.workers.signals import Stopped, held_back, leave_to_parent
 
 FEW = 4
-"""Up to so many cells are done in this process: a second one takes longer to start."""
+"""Up to so many items are done in this process: a second one takes longer to start."""
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-
-
-def check_all(
-    cells: Sequence[Cell], jobs: int, done: Callable[[Checked], None] = lambda _: None
-) -> list[Checked]:
-    """Check all cells, in the order of ``cells``; ``done`` hears of each as it ends.
-
-    Parameters
-    ----------
-    jobs : int
-        Processes; 0 for one per processor.
-    """
-    return do_all(check, cells, jobs, _lost, done)
 
 
 def do_all(
@@ -106,10 +92,6 @@ def _alone(work: Callable[[Item], Result], item: Item, lost: Callable[[Item], Re
             return future.result()
         except BrokenProcessPool:
             return lost(item)
-
-
-def _lost(cell: Cell) -> Checked:
-    return unfinished(cell, "crashed", "the engine ended its process")
 
 
 def _tell(result: Result, done: Callable[[Result], None]) -> Result:

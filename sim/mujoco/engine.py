@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
+from models.array import Array
+
 # Nothing is drawn here: without this, importing MuJoCo loads a window library by way of a process
 # of its own, which takes longer than the rest and outlives a worker that is told to end.
 os.environ.setdefault("MUJOCO_GL", "disable")
@@ -15,7 +17,6 @@ os.environ.setdefault("MUJOCO_GL", "disable")
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 from mujoco import rollout
-from numpy.typing import NDArray
 
 from models.errors import EngineError
 from models.joints import blocks
@@ -45,7 +46,6 @@ from sim.mujoco.settings import (
 )
 from sim.settings import SettingError
 
-Array = NDArray[np.float64]
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
 DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,

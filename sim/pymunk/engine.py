@@ -9,8 +9,8 @@ from collections.abc import Mapping
 import numpy as np
 import pymunk
 import pymunk.batch
-from numpy.typing import NDArray
 
+from models.array import Array
 from models.joints import block_name, blocks
 from models.laws import ConstantSpeed
 from models.motion import State
@@ -20,7 +20,6 @@ from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines
 from sim.pymunk.space import SpaceModel, build
 
-Array = NDArray[np.float64]
 FIELDS = (
     pymunk.batch.BodyFields.POSITION
     | pymunk.batch.BodyFields.ANGLE

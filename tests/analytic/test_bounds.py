@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from numpy.typing import NDArray
 
 from analytic.check.moved_scene import moved
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
@@ -22,7 +22,6 @@ from tests.analytic.chain import Chain, Solved, coordinates
 from tests.analytic.change_points.jets import Jet
 from tests.worlds.strategies import FORMS, Designed, mechanisms
 
-Array = NDArray[np.float64]
 NOTHING = 1e-38
 """What is left of an error of the oracle itself."""
 

@@ -8,18 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analytic.check import moved_scene as transform
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
 from tests.worlds.strategies import swing_times
-
-Array = NDArray[np.float64]
 
 
 def _allowed(a: Array, b: Array) -> Array:

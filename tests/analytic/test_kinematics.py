@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene
 from tests.worlds.strategies import FORMS, mechanisms
-
-Array = NDArray[np.float64]
 
 
 @pytest.mark.parametrize(

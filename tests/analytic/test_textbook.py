@@ -6,13 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene, shipped
 
-Array = NDArray[np.float64]
 SLIDER_CRANKS = [name for name in shipped() if name.startswith("slider-crank")]
 
 

@@ -12,14 +12,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.motion import State
 from models.scene import Scene
 from sim.pymunk.space import build
 
-Array = NDArray[np.float64]
 LOOKS = 16
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from models.array import Array
 from models.errors import EngineError
 from models.joints import blocks, bodies, sliding_angle
 from models.motion import Motion, State
@@ -24,7 +25,6 @@ from sim.engine import (
     SettingValue,
 )
 
-Array = NDArray[np.float64]
 TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there has to be one")})
 
 

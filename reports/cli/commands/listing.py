@@ -16,7 +16,7 @@ from models.errors import harmless
 from models.files import load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
-from reports.cli.commands.solve import describe_law
+from reports.describe.law import describe_law
 from reports.output.write import check_file, write
 from sim.registry import available, engine
 

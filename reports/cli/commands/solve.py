@@ -21,6 +21,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import facts
 from reports.describe.frame import cleaned, motion_frame
+from reports.describe.law import describe_law
 from reports.describe.tables import certainty, motion_tables, position_tables
 from reports.output.provenance import crankcheck_version
 from reports.output.write import check_file, clean, write
@@ -90,19 +91,6 @@ def heading(scene: Scene, structure: Structure) -> str:
         *facts(scene, structure),
     ]
     return "\n".join(lines) + "\n"
-
-
-def describe_law(scene: Scene) -> str:
-    """The driver's law in a few words."""
-    law = scene.driver.law
-    if isinstance(law, ConstantSpeed):
-        return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
-    if isinstance(law, FromRest):
-        return f"from rest to {law.speed_rad_s:g} rad/s in {law.rise_s:g} s"
-    if isinstance(law, Oscillating):
-        centre, swing = math.degrees(law.centre_rad), math.degrees(law.amplitude_rad)
-        return f"swings {centre:g} +- {abs(swing):g} deg at {law.frequency_rad_s:g} rad/s"
-    return type(law).__name__
 
 
 def _at(scene: Scene, at_deg: float) -> Motion:

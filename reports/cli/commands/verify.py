@@ -28,9 +28,9 @@ from reports.output.write import check_different, check_file, check_folder, writ
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
+from reports.verify.all_cells import check_all
 from reports.verify.junit import junit
 from reports.verify.table import show
-from reports.workers.pool import check_all
 from sim.engine import Drive
 from sim.registry import engine
 

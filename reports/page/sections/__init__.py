@@ -1,14 +1,14 @@
 """The sections of the page, one file each, in the order in which they stand.
 
-A section is built by a function from the `Report`; None where the store has nothing for it. Another
-one is another file here, a template beside the others, and a line in `SECTIONS`.
+A section is built by a function from the `PageReport`; None where the store has nothing for it.
+Another one is another file here, a template beside the others, and a line in `SECTIONS`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from reports.page.sections.base import Section
+from reports.page.sections.base import PageReport, Section
 from reports.page.sections.convergence import build as convergence
 from reports.page.sections.fairness import build as fairness
 from reports.page.sections.hard import build as hard
@@ -18,9 +18,8 @@ from reports.page.sections.provenance import build as provenance
 from reports.page.sections.recommendation import build as recommendation
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
-from reports.results.overview import Report
 
-SECTIONS: dict[str, Callable[[Report], Section | None]] = {
+SECTIONS: dict[str, Callable[[PageReport], Section | None]] = {
     "verdict": verdict,
     "recommendation": recommendation,
     "precision": precision,

@@ -1,9 +1,19 @@
-"""What a section of the page is."""
+"""What a section of the page is, and what it is built from."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from reports.results.overview import Report
+from reports.stability.matrix import Matrix
+
+
+@dataclass(frozen=True)
+class PageReport(Report):
+    """A store as the page shows it, with the hard cases that were run beside it, if any."""
+
+    matrix: Matrix | None = None
 
 
 @dataclass(frozen=True)

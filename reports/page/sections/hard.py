@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 from reports.drawing.packed import embedded
 from reports.output.numbers import count, error_text
 from reports.page.heat import SHADES, amount, heat, kind, outcomes_seen, same, shade, sign
-from reports.page.sections.base import Section
+from reports.page.sections.base import PageReport, Section
 from reports.page.thinning import fitting
-from reports.results.overview import Report
 from reports.stability.critical import command
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Picture
@@ -20,7 +19,7 @@ ROOM = 800_000
 SCRIPTS = ("mechanism.js", "stage.js", "copying.js", "map.js", "hard.js")
 
 
-def build(report: Report) -> Section | None:
+def build(report: PageReport) -> Section | None:
     """The section; None for a store without hard cases beside it."""
     return None if report.matrix is None else hard(report.matrix)
 

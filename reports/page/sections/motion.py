@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.cli.commands.solve import describe_law
-from reports.compare.series import Array
 from reports.describe.facts import facts
+from reports.describe.law import describe_law
 from reports.drawing.moving import displacements, drawing, drawn_links, instants, moving_points
 from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.results.fits.curves import Allowed, Array, Curve
+from models.array import Array
+from reports.results.fits.curves import Allowed, Curve
 
 ALIGNMENTS = np.linspace(-0.8, 1.0, 10)
 ORDERS = np.linspace(0.5, 3.0, 51)

@@ -16,7 +16,8 @@ import math
 
 import numpy as np
 
-from reports.results.fits.curves import Allowed, Array, Curve
+from models.array import Array
+from reports.results.fits.curves import Allowed, Curve
 
 ORDERS = np.linspace(0.3, 5.0, 48)
 """Orders that are tried for an error over a floor."""

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from models.array import Array
 from reports.results.fits.bent import ORDERS, bent, bent_within
-from reports.results.fits.curves import Allowed, Array, Curve, curvature, straight
+from reports.results.fits.curves import Allowed, Curve, curvature, straight
 from reports.results.fits.opposed import opposed, opposed_within
 
 LEAST_SCATTER = 0.02

@@ -16,10 +16,11 @@ from typing import Literal
 
 import numpy as np
 
+from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
 from reports.results.fits.aligned import aligned_within
 from reports.results.fits.bent import ORDERS
-from reports.results.fits.curves import Array, Curve, straight
+from reports.results.fits.curves import Curve, straight
 from reports.results.fits.forms import (
     FLAT,
     FLOOR,

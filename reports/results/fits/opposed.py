@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.results.fits.curves import Allowed, Array, Curve
+from models.array import Array
+from reports.results.fits.curves import Allowed, Curve
 
 ORDERS = np.linspace(0.5, 3.0, 101)
 

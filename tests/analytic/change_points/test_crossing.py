@@ -11,11 +11,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from numpy.typing import NDArray
 
 from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.travel import travel
+from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.files import parse_scene
 from models.laws import FromRest, Law, Oscillating, SpeedChange
@@ -27,7 +27,6 @@ from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
 from tests.analytic.change_points.jets import Jet
 
-Array = NDArray[np.float64]
 Exact = Mapping[str, Jet]
 """Links by name, sliders by "s NAME", in fifty digits."""
 

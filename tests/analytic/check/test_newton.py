@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 import analytic
 from analytic import kinematics
@@ -20,6 +19,7 @@ from analytic.check.newton import Guess
 from analytic.dyads.parts import MovingLine
 from analytic.dyads.plane import EPS, Real, Vec
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.motion import Motion
@@ -27,7 +27,6 @@ from models.scene import Scene
 from tests.analytic.chain import coordinates
 from tests.worlds.strategies import FORMS, Designed, mechanisms, swing_times
 
-Array = NDArray[np.float64]
 SAMPLES = 73
 ROUNDINGS = 30.0
 

@@ -18,9 +18,10 @@ from analytic.dyads.parts import Dyad
 from analytic.dyads.plane import (
     Vec,
 )
+from models.array import Array
 from tests.analytic import oracle
 from tests.analytic.change_points.jets import Jet, Number
-from tests.analytic.dyads.dyad_inputs import BUNCH, CLOSE, Array, Draw, Exact, Moved
+from tests.analytic.dyads.dyad_inputs import BUNCH, CLOSE, Draw, Exact, Moved
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,10 @@ from analytic.dyads.plane import (
     PointKinematics,
     Vec,
 )
+from models.array import Array
 from tests.analytic import oracle
 from tests.analytic.change_points.jets import Jet, Number
 
-Array = NDArray[np.float64]
 BUNCH = 50
 EXACTLY = 0.1
 """Share of the dyads near toggle that stand in it exactly, but for rounding."""

@@ -8,16 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from mpmath import mp
-from numpy.typing import NDArray
 
 from analytic.dyads import rrr
 from analytic.dyads.parts import OpenError, Sliding, Turning
 from analytic.dyads.plane import EPS, ZERO, PointError, PointKinematics, Vec, fixed_point
+from models.array import Array
 from tests.analytic.change_points.jets import Jet
 from tests.analytic.dyads.dyad_cases import KINDS, Bunch
 from tests.analytic.dyads.dyad_inputs import BUNCH, Draw, Exact, Moved
 
-Array = NDArray[np.float64]
 LEVELS = ("position", "rate", "acceleration")
 SURE = 20.0
 """Rates have a bound wherever the sine exceeds so many times the square root of rounding."""

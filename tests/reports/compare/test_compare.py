@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 from models.motion import Motion
 from models.scene import Scene
@@ -23,7 +23,6 @@ from reports.judge.tolerance import limits
 from sim.engine import Poses, Run
 from sim.run import run as run_scene
 
-Array = NDArray[np.float64]
 Find = Callable[..., Errors]
 ROUNDING = 1e-12
 

@@ -21,7 +21,7 @@ from reports.plan.key import digest
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer
 from reports.sweep.measured import measured
-from reports.workers.pool import check_all
+from reports.verify.all_cells import check_all
 from sim.registry import engine
 
 Plant = Callable[[pd.DataFrame], None]

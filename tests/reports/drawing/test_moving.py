@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare.series import Array
 from reports.drawing.moving import displacements, drawing, instants, moving_points
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "shaper", "scotch-yoke", "sixbar-stephenson")

@@ -9,8 +9,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 
 from reports.figures.error_parts import LOOKS
-from reports.figures.marks import COLOURS, label, marks
+from reports.figures.marks import COLOURS, marks
 from reports.results.lines import lines
+from reports.results.looks import label
 from reports.results.overview import Report
 from tests.reports.results.made import cell, stored
 

@@ -14,7 +14,8 @@ from models.files import load_scene
 from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
-from reports.workers import pool
+from reports.verify.all_cells import check_all
+from reports.workers.pool import FEW
 from sim.engine import Run
 from sim.run import run
 
@@ -175,8 +176,8 @@ def test_a_pool_gives_the_same_errors_as_one_process_in_the_same_order(fourbar: 
         for engine in ("mujoco", "pymunk")
     ]
     heard: list[str] = []
-    together = pool.check_all(cells, 2, lambda one: heard.append(one.cell.label))
-    alone = pool.check_all(cells, 1)
+    together = check_all(cells, 2, lambda one: heard.append(one.cell.label))
+    alone = check_all(cells, 1)
     assert [one.cell.label for one in together] == [one.label for one in cells]
     assert sorted(heard) == sorted(one.label for one in cells)
     assert [one.errors for one in together] == [one.errors for one in alone]
@@ -185,10 +186,10 @@ def test_a_pool_gives_the_same_errors_as_one_process_in_the_same_order(fourbar: 
 def test_a_cell_that_kills_its_process_costs_that_cell_alone(
     fourbar: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cells = [replace(cell(fourbar), converge=False) for _ in range(pool.FEW + 2)]
+    cells = [replace(cell(fourbar), converge=False) for _ in range(FEW + 2)]
     cells[2] = replace(cells[2], profile="deadly")
-    monkeypatch.setattr(pool, "check", deadly_check)
-    found = pool.check_all(cells, 2)
+    monkeypatch.setattr("reports.verify.all_cells.check", deadly_check)
+    found = check_all(cells, 2)
     assert [one.status for one in found] == ["ok", "ok", "crashed", "ok", "ok", "ok"]
 
 

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare.series import Array
 from reports.drawing.moving import INSTANTS, displacements, drawing, moving_points
 from reports.output.provenance import provenance
 from reports.stability.matrix import CaseFacts, Critical, Graded, Matrix, Outcome, Picture

@@ -15,9 +15,9 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
+from models.array import Array
 from models.errors import CrankcheckError
 from reports.cli.commands.report import format_of, run_report
-from reports.compare.series import Array
 from reports.page.build import HERE, page
 from reports.page.sections import SECTIONS
 from reports.store.manifest import Manifest

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from reports.compare.series import Array
+from models.array import Array
 from reports.page.build import HERE
 from reports.page.heat import SHADES
 from reports.results.looks import FAMILIES, FAMILY

@@ -12,9 +12,9 @@ import math
 import mujoco
 import numpy as np
 import pymunk
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from models.array import Array
+
 CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
 START = math.pi / 2
 TURNS = 2

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pytest
 
-from reports.compare.series import Array
+from models.array import Array
 from reports.results.error_parts import SHARED, Body, Split, shared, split, worst_body
 from reports.results.lines import Line, lines
 from tests.reports.results.made import PERIOD_S, cell, stored

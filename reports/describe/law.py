@@ -1,0 +1,21 @@
+"""The law of a driver in words."""
+
+from __future__ import annotations
+
+import math
+
+from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.scene import Scene
+
+
+def describe_law(scene: Scene) -> str:
+    """The driver's law in a few words."""
+    law = scene.driver.law
+    if isinstance(law, ConstantSpeed):
+        return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
+    if isinstance(law, FromRest):
+        return f"from rest to {law.speed_rad_s:g} rad/s in {law.rise_s:g} s"
+    if isinstance(law, Oscillating):
+        centre, swing = math.degrees(law.centre_rad), math.degrees(law.amplitude_rad)
+        return f"swings {centre:g} +- {abs(swing):g} deg at {law.frequency_rad_s:g} rad/s"
+    return type(law).__name__
