@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -15,8 +16,15 @@ from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run
+from tests.worlds.small_store import filled
 
 STEPS = 720
+
+
+@pytest.fixture(scope="session")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that is a store of two scenes, four variants and four steps, with made-up times."""
+    return filled(tmp_path_factory.mktemp("small") / "store")
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.commands.figures import run_figures
-from tests.reports.figures.conftest import SCENES
+from tests.worlds.small_store import SCENES
 
 OF_SCENES = ("work-precision", "convergence", "split", "mechanism")
 EACH = {f"{name}-{scene}" for name in OF_SCENES for scene in SCENES}

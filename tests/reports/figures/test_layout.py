@@ -19,8 +19,8 @@ from reports.figures.registry import FIGURES
 from reports.figures.style import cut, styled, width_in
 from reports.results.overview import Report
 from reports.store.manifest import Manifest
-from tests.reports.figures.conftest import SCENES
 from tests.reports.results.made import cell, stored
+from tests.worlds.small_store import SCENES
 
 SHOWN = [(name, scene) for name in FIGURES for scene in (*SCENES, None)]
 
