@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.change_points.find import passages, passed
-from analytic.change_points.sign import Passage
+from analytic.change_points.sign import ChangePoints
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import EPS, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
-from analytic.result import Result, Wanted
+from analytic.result import Result, Selection
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
@@ -70,7 +70,7 @@ def solve(
     time_s = _samples(time_s)
     law = scene.driver.law
     way = _Way.of(scene)
-    result = Result(Wanted.of(scene, links, points, sliders), time_s, way.steps, bound=bound)
+    result = Result(Selection.of(scene, links, points, sliders), time_s, way.steps, bound=bound)
     for first in range(0, len(time_s), CHUNK):
         span = slice(first, first + CHUNK)
         t = time_s[span]
@@ -110,7 +110,7 @@ def solve_driven(
     omega, alpha = np.broadcast_to(omega, theta.shape), np.broadcast_to(alpha, theta.shape)
     labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
     way = _Way.of(scene)
-    result = Result(Wanted.of(scene, links, points, sliders), labels, way.steps, bound=bound)
+    result = Result(Selection.of(scene, links, points, sliders), labels, way.steps, bound=bound)
     for first in range(0, len(theta), CHUNK):
         span = slice(first, first + CHUNK)
         error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
@@ -156,7 +156,7 @@ class _Way:
 
     scene: Scene
     steps: Sequence[Step]
-    passages: Mapping[str, Passage]
+    passages: Mapping[str, ChangePoints]
     low: float
     high: float
 

@@ -18,7 +18,7 @@ from models.scene import Scene
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Selection:
     """The names that a caller asked for; a point goes with the body that carries it."""
 
     links: tuple[str, ...]
@@ -31,12 +31,12 @@ class Wanted:
         links: Iterable[str] | None,
         points: Iterable[str] | None,
         sliders: Iterable[str] | None,
-    ) -> Wanted:
+    ) -> Selection:
         """The chosen names, all of a kind for None. Raises CrankcheckError for an unknown one."""
         carriers = {point: bodies[0] for point, bodies in scene.pins.items()}
         for slider in scene.sliders.values():
             carriers.setdefault(slider.point, f"block {slider.name}")
-        return Wanted(
+        return Selection(
             _chosen("link", links, scene.links),
             {p: carriers[p] for p in _chosen("point", points, carriers)},
             _chosen("slider", sliders, scene.sliders),
@@ -53,7 +53,7 @@ def _chosen(what: str, names: Iterable[str] | None, known: Mapping[str, object])
 
 
 @dataclass(frozen=True)
-class Track:
+class Derivatives:
     """A quantity with its first and second derivative, each (T,) or (T, 2)."""
 
     value: Array
@@ -90,18 +90,18 @@ class _Block:
         self._next += 2
         return self._rows[self._next - 2 : self._next].T
 
-    def track(self) -> Track:
-        return Track(self.row(), self.row(), self.row())
+    def track(self) -> Derivatives:
+        return Derivatives(self.row(), self.row(), self.row())
 
-    def track_of_pairs(self) -> Track:
-        return Track(self.pair(), self.pair(), self.pair())
+    def track_of_pairs(self) -> Derivatives:
+        return Derivatives(self.pair(), self.pair(), self.pair())
 
 
 class Result:
     """The arrays of a motion while they are filled."""
 
     def __init__(
-        self, wanted: Wanted, time_s: Array, steps: Sequence[Step], *, bound: bool
+        self, wanted: Selection, time_s: Array, steps: Sequence[Step], *, bound: bool
     ) -> None:
         self.wanted, self.time_s, self.certified = wanted, time_s, bound
         scalars, pairs = len(wanted.links) + len(wanted.sliders), len(wanted.points)

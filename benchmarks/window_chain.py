@@ -26,7 +26,7 @@ if __name__ == "__main__":  # run as a file: the packages are beside this folder
 # Not above: it imports logging, for which Python would take the file beside this one.
 from concurrent.futures import ProcessPoolExecutor
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from models.window_chain import Chain
 from reports.compare.free_chain import Held, hold
 from reports.output.provenance import processor
@@ -83,7 +83,7 @@ def main() -> int:
 
 def accuracy() -> None:
     """The chain of the benchmark in all cases, two at a time: nothing here is timed."""
-    turning = Turning(Chain(COUNT))
+    turning = ChainMotion(Chain(COUNT))
     print(
         f"N = {COUNT} windows, free from upright, {DURATION_S:g} s, "
         f"{DURATION_S / turning.period_s:.1f} turns of {turning.period_s:.4f} s; "
@@ -155,7 +155,7 @@ def timings() -> None:
 
 def timed(case: Case, count: int) -> float:
     """Microseconds per step of a chain that is about to lie flat."""
-    turning = Turning(Chain(count))
+    turning = ChainMotion(Chain(count))
     times = np.linspace(0.0, turning.period_s / 2.0, 20_001)
     flat = float(np.interp(0.0, -turning.at(times)[0], times))
     start = turning.motion(np.array([flat - BEFORE_FLAT_S])).state(0)

@@ -1,4 +1,4 @@
-"""The one kind of array that is passed about: of double precision, its shape told in words."""
+"""The arrays that are passed about, of double precision or of truths; words tell their shapes."""
 
 from __future__ import annotations
 
@@ -6,3 +6,4 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]

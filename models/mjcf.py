@@ -20,7 +20,7 @@ from models.errors import EngineError
 from models.joints import bodies, local_point
 from models.mjcf_options import (
     Attributes,
-    Value,
+    AttributeValue,
     Writing,
     armature,
     driver_joint,
@@ -34,7 +34,7 @@ from models.tree import Limb, Tree, plan
 
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
-Row = dict[str, Value]
+AttributeRow = dict[str, AttributeValue]
 
 
 def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
@@ -119,7 +119,7 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
     """The bodies that hang on ``parent``."""
     lines: list[str] = []
     for limb in (limb for limb in tree.limbs if limb.parent == parent):
-        place: Row = {"name": limb.body, "pos": (*limb.offset, 0.0)}
+        place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
         if limb.angle_rad:
             place["euler"] = (0.0, 0.0, limb.angle_rad)
         lines.append(f"{pad}<body{_attributes(place)}>")
@@ -135,7 +135,7 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
     """The joints of a body; the driver's hinge carries the flywheel."""
     lines = []
     for freedom in limb.freedoms:
-        row: Row = {"name": freedom.name}
+        row: AttributeRow = {"name": freedom.name}
         if freedom.kind == "slide":
             row |= {"type": "slide", "axis": (*freedom.axis, 0.0)}
         else:
@@ -154,21 +154,21 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
     refuses the flat bodies that would be exact.
     """
     mass, inertia = mass_of(scene, body)
-    row: Row = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
+    row: AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
     row["diaginertia"] = (inertia, inertia, inertia)
     lines = [f"{pad}<inertial{_attributes(row)}/>"]
     if body not in scene.links:
         side = 0.04 * scene.longest_m
         return [*lines, f"{pad}<geom{_attributes({'type': 'box', 'size': (side, side, side)})}/>"]
     points = list(scene.links[body].points.values())
-    bars: list[Row] = [{"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]]
+    bars: list[AttributeRow] = [{"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]]
     return lines + [f"{pad}<geom{_attributes(bar)}/>" for bar in bars]
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
     """The sites of a body where loops close, each at the body's own coordinates of the point."""
     points = dict.fromkeys(c.point for c in tree.closures if body in c.bodies)
-    rows: list[Row] = [
+    rows: list[AttributeRow] = [
         {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
         for point in points
     ]
@@ -212,7 +212,7 @@ def _actuator(scene: Scene, writing: Writing) -> list[str]:
 def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
     """The assembled state; the limbs are in the order in which MuJoCo numbers joints."""
     freedoms = [f for limb in tree.limbs for f in limb.freedoms]
-    row: Row = {
+    row: AttributeRow = {
         "name": "assembled",
         "qpos": tuple(f.ref for f in freedoms),
         "qvel": tuple(f.rate for f in freedoms),
@@ -229,7 +229,7 @@ def _attributes(row: Attributes) -> str:
     return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
 
 
-def _text(value: Value) -> str:
+def _text(value: AttributeValue) -> str:
     """A value as MJCF text."""
     if isinstance(value, str):
         return value

@@ -11,8 +11,8 @@ from models.scene import Scene
 
 FLYWHEEL_RATIO = 1e12
 """Armature of the driven hinge over the inertia scale of the scene."""
-Value = str | float | int | Sequence[float]
-Attributes = Mapping[str, Value]
+AttributeValue = str | float | int | Sequence[float]
+Attributes = Mapping[str, AttributeValue]
 
 
 @dataclass(frozen=True)

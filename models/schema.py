@@ -28,7 +28,7 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, l
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
-Place = tuple[Number, Number]
+Coordinates = tuple[Number, Number]
 MOST_BODIES, MOST_POINTS = 1000, 100
 """Links of a scene (sliders, and points of the ground, too), and points of a link: the distances
 between all points of a link are looked at many times."""
@@ -53,7 +53,7 @@ class Table(BaseModel):
 
 
 class GroundTable(Table):
-    points: dict[Name, Place] = Field(min_length=1, max_length=MOST_BODIES)
+    points: dict[Name, Coordinates] = Field(min_length=1, max_length=MOST_BODIES)
 
 
 class LinkTable(Table):
@@ -61,9 +61,9 @@ class LinkTable(Table):
 
     bar: tuple[Name, Name] | None = None
     length_m: Positive | None = None
-    points: dict[Name, Place] = Field(default_factory=dict, max_length=MOST_POINTS)
+    points: dict[Name, Coordinates] = Field(default_factory=dict, max_length=MOST_POINTS)
     mass_kg: NonNegative | None = None
-    centre_m: Place | None = None
+    centre_m: Coordinates | None = None
     inertia_kg_m2: NonNegative | None = None
 
     @model_validator(mode="after")
@@ -83,7 +83,7 @@ class SliderTable(Table):
     on: Name
     point: Name | None = None
     link: Name | None = None
-    through_m: Place = (0.0, 0.0)
+    through_m: Coordinates = (0.0, 0.0)
     direction_deg: Degrees = 0.0
     angle_deg: Degrees = 0.0
     mass_kg: NonNegative | None = None
@@ -133,7 +133,7 @@ class SceneTable(Table):
     sliders: dict[Name, SliderTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     driver: dict[str, object]
     branch: dict[Name, Literal[-1, 1]] = Field(default_factory=dict)
-    gravity_m_s2: Place = (0.0, 0.0)
+    gravity_m_s2: Coordinates = (0.0, 0.0)
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
 
 

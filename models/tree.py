@@ -62,7 +62,7 @@ class Limb:
 
 
 @dataclass(frozen=True)
-class Closure:
+class LoopPin:
     """A pin that closes a loop: both bodies carry the point."""
 
     point: str
@@ -74,7 +74,7 @@ class Tree:
     """The limbs depth first, as MuJoCo numbers them, and the pins that close the loops."""
 
     limbs: tuple[Limb, ...]
-    closures: tuple[Closure, ...]
+    closures: tuple[LoopPin, ...]
 
 
 @dataclass(frozen=True)
@@ -182,13 +182,13 @@ def _check_close(scene: Scene, close: Sequence[str]) -> None:
             raise EngineError(f"close = {point}: not a pin that can close a loop; one of {able}")
 
 
-def _closures(scene: Scene, at_point: _Groups) -> tuple[Closure, ...]:
+def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
     """The pins that the tree leaves open: one closure between each two groups at a point."""
-    found: list[Closure] = []
+    found: list[LoopPin] = []
     for pin in joints(scene).pins:
         first = pin.bodies[0]
         found += [
-            Closure(pin.point, (first, body))
+            LoopPin(pin.point, (first, body))
             for body in pin.bodies[1:]
             if at_point.join((pin.point, first), (pin.point, body))
         ]

@@ -15,7 +15,7 @@ from sim.engine import BodyPose, Poses
 
 
 @dataclass(frozen=True)
-class _Track:
+class _PointPath:
     """A point over time in the plane: position, velocity, acceleration, each (T, 2)."""
 
     position: Array
@@ -118,7 +118,7 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     return found
 
 
-def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, _Track]]:
+def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, _PointPath]]:
     """Every point as each of the bodies that list it carries it."""
     still = _still(len(poses.time_s))
     bodies = {GROUND: still, **poses.links}
@@ -156,20 +156,20 @@ def _still(samples: int) -> BodyPose:
     return BodyPose(pair, zero, pair, zero, pair, zero)
 
 
-def _carried(body: BodyPose, local: Point) -> _Track:
+def _carried(body: BodyPose, local: Point) -> _PointPath:
     """A point fixed to a body."""
     c, s = np.cos(body.theta), np.sin(body.theta)
     arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
     across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
     omega, alpha = body.omega[:, None], body.alpha[:, None]
-    return _Track(
+    return _PointPath(
         body.origin + arm,
         body.velocity + omega * across,
         body.origin_acceleration + alpha * across - omega**2 * arm,
     )
 
 
-def _seen(slider: Slider, guide: BodyPose, track: _Track) -> _Track:
+def _seen(slider: Slider, guide: BodyPose, track: _PointPath) -> _PointPath:
     """The point as seen from the guide: x along the line from ``through_m``, y off the line."""
     place = track.position - guide.origin
     across = np.stack([-place[:, 1], place[:, 0]], axis=-1)
@@ -188,4 +188,4 @@ def _seen(slider: Slider, guide: BodyPose, track: _Track) -> _Track:
     def split(vector: Array) -> Array:
         return np.stack([(vector * u).sum(axis=1), (vector * n).sum(axis=1)], axis=-1)
 
-    return _Track(split(place) - start, split(drift), split(push))
+    return _PointPath(split(place) - start, split(drift), split(push))

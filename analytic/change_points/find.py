@@ -25,11 +25,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.change_points.sign import AT_START, SIDE, Mask, Passage, whole_turns_off
+from analytic.change_points.sign import AT_START, SIDE, ChangePoints, whole_turns_off
 from analytic.dyads.parts import CLOSED
 from analytic.dyads.plane import Real
 from analytic.dyads.steps import Step, stretched
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.laws import Law
 from models.motion import Crossing
@@ -50,7 +50,7 @@ UNSURE = 64.0
 """How much more than by itself a dyad may be open in a change point of one before it."""
 
 
-def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
+def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
     """The dyads that go through change points, in solving order; none in most scenes.
 
     Raises
@@ -59,7 +59,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
         A dyad is as good as in a change point where one before it goes through its own.
     """
     start = _start(scene.driver.law)
-    found: dict[str, Passage] = {}
+    found: dict[str, ChangePoints] = {}
     period = math.tau
     theta = _grid(start, period)
     chunk = stretched(scene, steps, theta)
@@ -70,21 +70,21 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, Passage]:
         valleys = theta[_valleys(closure.root)]
         if not valleys.size:
             continue
-        look = _Look(scene, steps[: k + 1], found)
+        look = _ValleySearch(scene, steps[: k + 1], found)
         angles = np.sort(start + np.remainder(look.touches(valleys) - start, period))
         angles = angles[np.diff(angles, prepend=-np.inf) > AT_START]  # two valleys, one tip
         if not angles.size:
             continue
         if angles.size % 2:  # as many again, with the other sign
             angles, period = np.concatenate([angles, angles + period]), 2.0 * period
-        found[step.key] = Passage(scene, steps[: k + 1], dict(found), start, period, angles)
+        found[step.key] = ChangePoints(scene, steps[: k + 1], dict(found), start, period, angles)
         # What hangs on this dyad stands differently where the sign is another.
         theta = _grid(start, period)
         chunk = stretched(scene, steps, theta, found)
     return found
 
 
-def passed(found: Mapping[str, Passage], low: float, high: float) -> tuple[Crossing, ...]:
+def passed(found: Mapping[str, ChangePoints], low: float, high: float) -> tuple[Crossing, ...]:
     """The change points, each once, that a driver passes from angle ``low`` to ``high``."""
     crossings = []
     for key, passage in found.items():
@@ -100,12 +100,12 @@ def passed(found: Mapping[str, Passage], low: float, high: float) -> tuple[Cross
 
 
 @dataclass(frozen=True)
-class _Look:
+class _ValleySearch:
     """Looks at one dyad, the last of ``steps``, beside the angles where its root has a valley."""
 
     scene: Scene
     steps: Sequence[Step]
-    found: Mapping[str, Passage]
+    found: Mapping[str, ChangePoints]
 
     def touches(self, theta: Array) -> Array:
         """The angles in which the root touches zero, of those near which it might."""

@@ -7,18 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.change_points.smooth import WINDOW, Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, OpenError
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError
 from analytic.dyads.steps import Step
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.scene import Scene
-
-Mask = NDArray[np.bool_]
 
 SIDE = 1e-3
 """Where a touch must be closed on both sides, and its root be a V [rad]."""
@@ -31,7 +28,7 @@ LEAST_CERTAIN = 1e-3
 
 
 @dataclass
-class Passage:
+class ChangePoints:
     """The change points of one dyad, and the way through them.
 
     ``angles`` are those of a ``period`` from ``start`` on, an even number: after a period all
@@ -40,7 +37,7 @@ class Passage:
 
     scene: Scene
     steps: Sequence[Step]
-    before: Mapping[str, Passage]
+    before: Mapping[str, ChangePoints]
     start: float
     period: float
     angles: Array
@@ -142,7 +139,7 @@ class Passage:
 class _Own:
     """In place of a passage while its own pieces are made: the dyad as its formulas have it."""
 
-    def __init__(self, passage: Passage) -> None:
+    def __init__(self, passage: ChangePoints) -> None:
         self.sign = passage.sign
         self.unknowns: tuple[Unknown, Unknown]
 

@@ -22,7 +22,7 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 
-Place = tuple[float | Array, float | Array]
+BodyPlace = tuple[float | Array, float | Array]
 """A place in the frame of a body [m], the same or another at every sample."""
 
 
@@ -59,7 +59,7 @@ def _pushes(scene: Scene, motion: Motion) -> Iterator[Array]:
         yield push / scene.longest_m
 
 
-def _sides(scene: Scene, motion: Motion, slider: Slider) -> Iterator[tuple[str, Place]]:
+def _sides(scene: Scene, motion: Motion, slider: Slider) -> Iterator[tuple[str, BodyPlace]]:
     """The guide, and the link that slides or carries the block, with the place on each."""
     s = motion.sliders[slider.name].displacement
     x, y = slider.through_m
@@ -70,7 +70,7 @@ def _sides(scene: Scene, motion: Motion, slider: Slider) -> Iterator[tuple[str, 
         yield name, scene.links[name].points[slider.point]
 
 
-def _turning(scene: Scene, motion: Motion, body: str, place: Place) -> Array:
+def _turning(scene: Scene, motion: Motion, body: str, place: BodyPlace) -> Array:
     """The acceleration of a place of a body towards its centre of mass [m/s^2], (T,)."""
     if body == GROUND:
         return np.zeros_like(motion.time_s)

@@ -62,7 +62,7 @@ class Amplitude:
 
 
 @dataclass(frozen=True)
-class Turning:
+class ChainMotion:
     """The turning of all rockers of a chain that is left free at time 0."""
 
     chain: Chain

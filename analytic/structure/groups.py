@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from models.scene import GROUND
 
-Pair = tuple[str, str]
+JointKey = tuple[str, str]
 """R or P, and the name of the pin or the slider."""
 
 
@@ -66,18 +66,18 @@ class Pairs:
     def __init__(
         self, pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
     ) -> None:
-        self._ends: dict[Pair, tuple[str, ...]] = {("R", p): names for p, names in pins.items()}
+        self._ends: dict[JointKey, tuple[str, ...]] = {("R", p): names for p, names in pins.items()}
         self._ends |= {("P", name): ends for name, ends in prismatics.items()}
-        self._of: dict[str, list[Pair]] = {}
+        self._of: dict[str, list[JointKey]] = {}
         for pair, ends in self._ends.items():
             for body in dict.fromkeys(ends):
                 self._of.setdefault(body, []).append(pair)
 
-    def outer(self, body: str, known: set[str]) -> list[Pair]:
+    def outer(self, body: str, known: set[str]) -> list[JointKey]:
         """The pairs between a body and the known ones."""
         return [pair for pair in self._of.get(body, ()) if not known.isdisjoint(self._ends[pair])]
 
-    def inner(self, a: str, b: str, known: set[str]) -> list[Pair]:
+    def inner(self, a: str, b: str, known: set[str]) -> list[JointKey]:
         """The pairs between two bodies that are not pairs to known ones."""
         shared = (pair for pair in self._of[a] if b in self._ends[pair])
         return [pair for pair in shared if known.isdisjoint(self._ends[pair])]
@@ -109,7 +109,7 @@ def decompose(
 
 
 def _dyads(
-    left: list[str], outer: Mapping[str, list[Pair]], known: set[str], pairs: Pairs
+    left: list[str], outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs
 ) -> Iterator[Group]:
     """The class II groups that can be placed next, in the order of the bodies."""
     ready = {body: place for place, body in enumerate(left) if len(outer[body]) == 1}
@@ -122,7 +122,7 @@ def _dyads(
                 yield group
 
 
-def _dyad(a: str, b: str, outer1: Pair, inner: Pair, outer2: Pair) -> Group | None:
+def _dyad(a: str, b: str, outer1: JointKey, inner: JointKey, outer2: JointKey) -> Group | None:
     """The class II group of two bodies with these pairs, if it is one."""
     (ka, na), (ki, ni), (kb, nb) = outer1, inner, outer2
     kind = ka + ki + kb
@@ -133,7 +133,7 @@ def _dyad(a: str, b: str, outer1: Pair, inner: Pair, outer2: Pair) -> Group | No
     return Group(kind, a, b, na, ni, nb)
 
 
-def _bridges(outer: Mapping[str, list[Pair]]) -> Iterator[Bridge]:
+def _bridges(outer: Mapping[str, list[JointKey]]) -> Iterator[Bridge]:
     """The links that known bodies hold at two pins or more."""
     for body, held in outer.items():
         if len(held) > 1 and all(kind == "R" for kind, _ in held):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
@@ -43,7 +43,7 @@ class Held:
 
         Of a chain without weight, over the energy of the start.
         """
-        turning = Turning(self.chain)
+        turning = ChainMotion(self.chain)
         scale = turning.exchanged_j or _start_j(turning)
         return float(np.max(np.abs(self.energy_j))) / scale
 
@@ -83,7 +83,7 @@ def hold(
     Logged is every ``every``-th step. Raises CrankcheckError, as `sim.run.run` does, and for a run
     that did not start.
     """
-    start = Turning(chain).motion(np.array([0.0])).state(0)
+    start = ChainMotion(chain).motion(np.array([0.0])).state(0)
     steps = max(round(duration_s / dt_s / every), 1) * every
     found = run(
         chain.scene(),
@@ -104,7 +104,7 @@ def compared(chain: Chain, found: Run) -> Held:
     if found.motion is None or found.energy is None:
         why = found.reason or f"it was run under the drive {found.drive}"
         raise CrankcheckError(f"{found.scene} in {found.engine}: no free motion to compare: {why}")
-    motion, turning = found.motion, Turning(chain)
+    motion, turning = found.motion, ChainMotion(chain)
     theta, _, _ = turning.at(motion.time_s)
     arm = chain.length_m * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     with np.errstate(all="ignore"):  # what has come apart may overflow
@@ -119,7 +119,7 @@ def compared(chain: Chain, found: Run) -> Held:
         )
 
 
-def _start_j(turning: Turning) -> float:
+def _start_j(turning: ChainMotion) -> float:
     """The energy of the start [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])

@@ -31,8 +31,8 @@ from reports.results.points import ends
 
 STEPS = 720
 """Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""
-Look = dict[str, Any]
-LOOKS: dict[str, tuple[str, Look]] = {
+CurveStyle = dict[str, Any]
+LOOKS: dict[str, tuple[str, CurveStyle]] = {
     "total": ("total", {"color": "#cccccc", "linewidth": 3.0}),
     "drive": ("drive: crank not where it is told to be", {"color": "#2f7d4c", "dashes": (1, 1)}),
     "floor": ("model floor: left at a step of zero", {"color": "#c04a1d", "dashes": (4, 1.5)}),
@@ -69,7 +69,7 @@ def draw(report: Report, scene: str) -> Figure | None:
 
 
 @dataclass(frozen=True)
-class Cell:
+class ShownCell:
     """The cell of a line that is shown, what there is to say of its floor, and the power of ten
     that its errors are drawn in."""
 
@@ -91,7 +91,7 @@ def curves(parts: Parts) -> Iterator[tuple[str, Array]]:
             yield name, curve
 
 
-def _cell(line: Line, found: Split) -> Cell | None:
+def _cell(line: Line, found: Split) -> ShownCell | None:
     """The cell that ended well with the number of steps nearest to `STEPS`; None without one."""
     rows = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(found.cells))]
     if rows.empty:
@@ -102,10 +102,10 @@ def _cell(line: Line, found: Split) -> Cell | None:
         floor = "floor not told apart"
     else:
         floor = f"floor {short(found.floor)}" if found.seen else "no floor seen"
-    return Cell(float(row["steps_per_turn"]), found.cells[str(row["key"])], floor)
+    return ShownCell(float(row["steps_per_turn"]), found.cells[str(row["key"])], floor)
 
 
-def _panel(axes: Axes, cell: Cell, unit: str) -> None:
+def _panel(axes: Axes, cell: ShownCell, unit: str) -> None:
     """The curves of a cell over the angle of the driver, from its first turn on."""
     driver = cell.parts.driver_rad
     turn = np.degrees(driver - math.tau * math.floor(driver[0] / math.tau + 1e-9))
@@ -118,6 +118,6 @@ def _panel(axes: Axes, cell: Cell, unit: str) -> None:
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.16 * (high - low))  # room for the words
     paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}  # over a tick behind
-    words: Look = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
+    words: CurveStyle = {"va": "top", "size": TINY, "transform": axes.transAxes, "bbox": paper}
     axes.text(0.03, 0.96, f"[{power_of_ten(cell.scale)} {unit}]", ha="left", **words)
     axes.text(0.97, 0.96, cell.floor, ha="right", **words)

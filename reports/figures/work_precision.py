@@ -28,7 +28,7 @@ from reports.results.points import PLACE, around, ends, scenes_of, timed
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"
-Point = tuple[float, float]
+CostAndError = tuple[float, float]
 
 
 def draw(report: Report, scene: str) -> Figure | None:
@@ -85,7 +85,7 @@ def _over(axes: Axes, report: Report, known: Mapping[Named, Mark]) -> None:
         axes.plot(*zip(*points, strict=True) if points else ([], []), **mark.style)
 
 
-def _stair(axes: Axes, points: Iterable[Point]) -> None:
+def _stair(axes: Axes, points: Iterable[CostAndError]) -> None:
     """The front: from each point on its error is had, until a slower cell has less."""
     corners = sorted((float(time_s), float(error)) for time_s, error in points)
     if not corners:
@@ -103,7 +103,7 @@ def _stair(axes: Axes, points: Iterable[Point]) -> None:
     )
 
 
-def _points(lines: Sequence[Line]) -> list[Point]:
+def _points(lines: Sequence[Line]) -> list[CostAndError]:
     rows = [timed(line) for line in lines]
     return [
         (float(t), float(e))
@@ -112,7 +112,7 @@ def _points(lines: Sequence[Line]) -> list[Point]:
     ]
 
 
-def _limits(axes: Sequence[Axes], points: Sequence[Point]) -> None:
+def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
     """The same limits for all panels."""
     for one in axes:
         logarithmic(one, "x", *around(time_s for time_s, _ in points))

@@ -25,12 +25,12 @@ SHADES = (1e-6, 1e-4, 1e-2, 1.0)
 """Errors from which on a cell is a shade stronger: pure numbers."""
 LONGEST = 200
 """Characters of a reason in the words of a cell; the whole of it is told where the run is."""
-Line = tuple[str, str]
+HeatKey = tuple[str, str]
 """An engine and its profile: a column of the map."""
 
 
 @dataclass(frozen=True)
-class Cell:
+class HeatCell:
     """One value of a case in one column; ``number`` is that of its run, None where it was not run.
 
     ``kind`` names the outcome for the style sheet, ``shade`` goes from 0 to 4, and is -1 where the
@@ -51,12 +51,12 @@ class Cell:
 class Strip:
     """A case in one column: its cells from easy to hard, and how far it holds in words."""
 
-    cells: tuple[Cell, ...]
+    cells: tuple[HeatCell, ...]
     words: str
 
 
 @dataclass(frozen=True)
-class Row:
+class HeatRow:
     """A case with a strip for each column."""
 
     case: CaseFacts
@@ -65,7 +65,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Column:
+class HeatColumn:
     """An engine with a profile, and in how many cases it holds throughout."""
 
     engine: str
@@ -81,8 +81,8 @@ class Column:
 class Heat:
     """The whole map: columns, and rows by group in the order of the cases."""
 
-    columns: tuple[Column, ...]
-    groups: Mapping[str, tuple[Row, ...]]
+    columns: tuple[HeatColumn, ...]
+    groups: Mapping[str, tuple[HeatRow, ...]]
 
 
 def kind(outcome: str) -> str:
@@ -117,20 +117,20 @@ def same(one: float | None, other: float | None) -> bool:
 def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
     """The map of a matrix; ``pictured`` are the runs that have a moving picture, by number."""
     lines = list(dict.fromkeys((run.engine, run.profile) for run in matrix.runs))
-    numbered: dict[tuple[str, Line], list[tuple[int, Graded]]] = {}
+    numbered: dict[tuple[str, HeatKey], list[tuple[int, Graded]]] = {}
     for number, run in enumerate(matrix.runs):
         numbered.setdefault((run.case, (run.engine, run.profile)), []).append((number, run))
     words = {(one.case, (one.engine, one.profile)): one for one in matrix.critical}
-    groups: dict[str, tuple[Row, ...]] = {}
+    groups: dict[str, tuple[HeatRow, ...]] = {}
     for case in matrix.cases:
         strips = tuple(
             _strip(case, numbered.get((case.name, x), []), words.get((case.name, x)), pictured)
             for x in lines
         )
-        row = Row(case, strips, ", ".join(case.good))
+        row = HeatRow(case, strips, ", ".join(case.good))
         groups[case.group] = (*groups.get(case.group, ()), row)
     rows = [row for group in groups.values() for row in group]
-    columns = [Column(*x, _held([row.strips[i] for row in rows])) for i, x in enumerate(lines)]
+    columns = [HeatColumn(*x, _held([row.strips[i] for row in rows])) for i, x in enumerate(lines)]
     return Heat(tuple(columns), groups)
 
 
@@ -154,16 +154,16 @@ def _strip(
 
 def _cells(
     case: CaseFacts, runs: Sequence[tuple[int, Graded]], pictured: frozenset[int]
-) -> Iterator[Cell]:
+) -> Iterator[HeatCell]:
     """A cell for each value, whether it was run or not."""
     for value, label in zip(case.values, case.labels, strict=True):
         found = [pair for pair in runs if pair[1].grid and same(pair[1].value, value)]
         if not found:
             words = f"{amount(value, case.unit)}: not run"
-            yield Cell(None, label, "\N{MIDDLE DOT}", "none", -1, False, words, False)
+            yield HeatCell(None, label, "\N{MIDDLE DOT}", "none", -1, False, words, False)
             continue
         number, run = found[0]
-        yield Cell(
+        yield HeatCell(
             number=number,
             label=label,
             sign=sign(run.outcome),

@@ -9,16 +9,13 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.kinematics import repeats_after, solve, solve_driven
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Crossing, Motion
 from models.scene import Scene
 from reports.compare.change_points import near
-
-Mask = NDArray[np.bool_]
 
 SINGULAR = 1e-6
 """A sine of a transmission angle below which velocities are lost: rounding is over its square."""

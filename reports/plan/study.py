@@ -32,8 +32,8 @@ from models.files import read_text
 from sim.engine import SettingValue
 
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"
-Value = StrictInt | StrictFloat | str
-Name = Annotated[str, Field(min_length=1, max_length=80)]
+StudyValue = StrictInt | StrictFloat | str
+VariantName = Annotated[str, Field(min_length=1, max_length=80)]
 
 
 class Variant(BaseModel):
@@ -41,11 +41,11 @@ class Variant(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    engine: Name
-    profile: Name
+    engine: VariantName
+    profile: VariantName
     name: str = Field(default="", max_length=80, pattern=r"^[^\x00-\x1f\x7f]*$")
     reason: str = ""
-    settings: dict[str, Value | Annotated[list[Value], Field(min_length=1)]] = Field(
+    settings: dict[str, StudyValue | Annotated[list[StudyValue], Field(min_length=1)]] = Field(
         default_factory=dict
     )
 
@@ -74,7 +74,7 @@ class Study(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    scenes: list[Name] = Field(default_factory=list)
+    scenes: list[VariantName] = Field(default_factory=list)
     variants: list[Variant] = Field(min_length=1)
     steps_per_turn: list[float] = Field(min_length=1)
     turns: float = 2.0

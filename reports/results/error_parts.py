@@ -38,7 +38,7 @@ LEFT = "the logged crank left the reach of the mechanism"
 
 
 @dataclass(frozen=True)
-class Body:
+class CurveBody:
     """The link or slider that a curve is of: the series of its trace, and what it is divided by.
 
     ``scale`` is 1 for a link angle [rad] and the longest link [m] for a slider.
@@ -91,7 +91,7 @@ class Split:
 
 
 @dataclass(frozen=True)
-class _Limit:
+class _Extrapolated:
     """The extrapolated error at the instants ``time_s``, and its doubt."""
 
     time_s: Array
@@ -101,7 +101,7 @@ class _Limit:
 
 def worst_body(
     lines: Sequence[Line], trace: Callable[[str], Trace], longest_m: float
-) -> Body | None:
+) -> CurveBody | None:
     """The link or slider of a scene with the largest error, over all its lines.
 
     Of each line that ended well the finest cell counts, by the logarithm of its largest error: one
@@ -120,10 +120,10 @@ def worst_body(
     if not sums:
         return None
     worst = max(sums, key=lambda name: sums[name])
-    return Body(worst, 1.0 if worst.startswith("angle.") else longest_m)
+    return CurveBody(worst, 1.0 if worst.startswith("angle.") else longest_m)
 
 
-def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: float) -> Split:
+def split(line: Line, trace: Callable[[str], Trace], body: CurveBody, longest_m: float) -> Split:
     """The parts of the error of every cell of a line.
 
     Parameters
@@ -133,7 +133,7 @@ def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: floa
     trace : Callable
         From the key of a cell to its trace (`reports.compare.last_turn`), empty where there is
         none.
-    body : Body
+    body : CurveBody
         What the curves are of.
     longest_m : float
         The longest link, which gaps are divided by [m].
@@ -141,7 +141,7 @@ def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: floa
     traces = {str(key): trace(str(key)) for key in line.cells["key"]}
     traces = {key: one for key, one in traces.items() if body.series in one}
     limit = _limit(line, traces, body)
-    told = limit if isinstance(limit, _Limit) else None
+    told = limit if isinstance(limit, _Extrapolated) else None
     cells = {key: _parts(one, body, longest_m, told, line.period_s) for key, one in traces.items()}
     if told is None:
         return Split(cells, why=str(limit))
@@ -151,7 +151,7 @@ def split(line: Line, trace: Callable[[str], Trace], body: Body, longest_m: floa
     return Split(cells, floor=floor, doubt=doubt)
 
 
-def _limit(line: Line, traces: Mapping[str, Trace], body: Body) -> _Limit | str:
+def _limit(line: Line, traces: Mapping[str, Trace], body: CurveBody) -> _Extrapolated | str:
     """The error at dt = 0 by Richardson's extrapolation, or why there is none."""
     order = _order(line.fit)
     if order is None:
@@ -190,7 +190,7 @@ class _Logged:
 
 def _extrapolated(
     fine: _Logged, coarse: _Logged, order: tuple[float, float], period_s: float
-) -> _Limit | None:
+) -> _Extrapolated | None:
     """Richardson's extrapolation of two runs; None where they share too few instants."""
     here, there = shared(fine.time_s, coarse.time_s, period_s)
     if len(here) < SHARED:
@@ -202,7 +202,7 @@ def _extrapolated(
     # d floor / d p, times what p is uncertain by
     slope = growth * math.log(ratio) / (growth - 1.0) ** 2
     doubt = slope * more * float(np.max(np.abs(step)))
-    return _Limit(fine.time_s[here], fine.error[here] + step / (growth - 1.0), doubt)
+    return _Extrapolated(fine.time_s[here], fine.error[here] + step / (growth - 1.0), doubt)
 
 
 def _order(fit: LineFit) -> tuple[float, float] | None:
@@ -215,7 +215,7 @@ def _order(fit: LineFit) -> tuple[float, float] | None:
 
 
 def _parts(
-    trace: Trace, body: Body, longest_m: float, limit: _Limit | None, period_s: float
+    trace: Trace, body: CurveBody, longest_m: float, limit: _Extrapolated | None, period_s: float
 ) -> Parts:
     """The parts of one cell, at the instants where all of them are known."""
     total = trace[body.series] / body.scale

@@ -13,7 +13,7 @@ from reports.results.candidates import Candidate
 from reports.results.cost import time_to
 from reports.results.lines import Line
 
-Name = TypeVar("Name", bound=Hashable)
+CellKey = TypeVar("CellKey", bound=Hashable)
 
 
 def front(cells: pd.DataFrame, noise: float = 0.0) -> list[str]:
@@ -37,9 +37,9 @@ def front_over_all(candidates: Iterable[Candidate], noise: float = 0.0) -> tuple
     return tuple(every[i] for i in _unbeaten(points, noise))
 
 
-def _unbeaten(points: Iterable[tuple[Name, float, float]], noise: float) -> list[Name]:
+def _unbeaten(points: Iterable[tuple[CellKey, float, float]], noise: float) -> list[CellKey]:
     """Names of (name, error, time) that are faster than all that are as accurate."""
-    found: list[Name] = []
+    found: list[CellKey] = []
     least = math.inf
     finite = [p for p in points if math.isfinite(p[1]) and math.isfinite(p[2])]
     for name, _, time_s in sorted(finite, key=lambda p: (p[1], p[2])):

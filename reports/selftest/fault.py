@@ -24,7 +24,7 @@ FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
 REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], Runner]
-Group = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
+FaultGroup = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Fault:
     """
 
     name: str
-    group: Group
+    group: FaultGroup
     what: str
     rule: str
     plant: Plant

@@ -14,7 +14,7 @@ from models.motion import LinkMotion, Motion, PointMotion
 from models.scene import Scene
 from sim.engine import Run
 
-Part = TypeVar("Part")
+LogPart = TypeVar("LogPart")
 Rows = slice | Array | NDArray[np.intp]
 WHEN = 100
 """The sample that is spoilt where one is: well within the run, behind the start."""

@@ -13,7 +13,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.selftest.fault import Fault
 from reports.selftest.registry import GROUPS
-from reports.selftest.trial import PROFILE, STEPS, Place, Verdict, passes
+from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""
@@ -156,7 +156,7 @@ def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
     return escape("\n".join(lines))
 
 
-def place_row(verdict: Verdict, place: Place) -> dict[str, object]:
+def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:
     """A fault in one place, as plain values."""
     fault, finding = verdict.fault, place.finding
     return {

@@ -30,7 +30,7 @@ NEEDS_FINER_RUNS = "CC110"
 
 
 @dataclass(frozen=True)
-class Place:
+class FaultTrial:
     """A fault in one scene and engine, and what became of it.
 
     ``finding`` is that of the rule that should fail, None where it passed; ``failed`` are all
@@ -53,7 +53,7 @@ class Verdict:
     rule. There are no places where the fault ended the process."""
 
     name: str
-    places: tuple[Place, ...]
+    places: tuple[FaultTrial, ...]
     sound: bool
 
     @property
@@ -110,7 +110,7 @@ def passes(checked: Checked) -> bool:
     return all(finding.level == "pass" for finding in checked.findings)
 
 
-def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) -> Place:
+def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) -> FaultTrial:
     """A fault in one place."""
 
     def planted(size: float) -> Checked:
@@ -120,7 +120,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     full, none = planted(fault.planted), planted(0.0)
     finding = _named(fault, full)
     sized = search and finding is not None and fault.size is not None
-    return Place(
+    return FaultTrial(
         scene=scene.name,
         engine=engine,
         finding=finding,

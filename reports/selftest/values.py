@@ -13,14 +13,14 @@ from reports.selftest.logs import WHEN, every_series, last, moved, output, spoil
 from sim.engine import Run
 from sim.spoil import rounded
 
-Change = Callable[[Array, float], Array]
+Distortion = Callable[[Array, float], Array]
 """A series, changed by a size."""
 SEED = 20240229
 START = slice(5, 39)
 """Samples of the start, in which an engine takes up its pins."""
 
 
-def _angle(change: Change) -> Plant:
+def _angle(change: Distortion) -> Plant:
     """A change of the last link's angle, of the angle and the size."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:
@@ -41,7 +41,7 @@ def _omega(change: Callable[[Array, float, float], Array]) -> Plant:
     return in_log(changed)
 
 
-def _crank(change: Change) -> Plant:
+def _crank(change: Distortion) -> Plant:
     """A change of the driver's angle."""
 
     def changed(scene: Scene, done: Run, size: float) -> Run:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.motion import Motion
 from reports.compare.free_chain import Held, compared
@@ -21,7 +21,7 @@ def freely(trial: Trial, run: Run) -> Seen:
     """
     assert trial.chain is not None
     held = compared(trial.chain, run)
-    theta, _, _ = Turning(trial.chain).at(held.time_s)
+    theta, _, _ = ChainMotion(trial.chain).at(held.time_s)
     return Seen(
         status=run.status,
         reason=run.reason,
@@ -31,7 +31,7 @@ def freely(trial: Trial, run: Run) -> Seen:
         gap=worst_of(held.gap_m / trial.chain.length_m),
         drive=np.zeros_like(theta),
         crank=theta,
-        period_s=Turning(trial.chain).period_s,
+        period_s=ChainMotion(trial.chain).period_s,
         settled=0,
         departure=held.left,
         sine=float(np.min(np.abs(np.sin(theta)))),
@@ -41,11 +41,11 @@ def freely(trial: Trial, run: Run) -> Seen:
 
 def _error(held: Held) -> Array:
     chain = held.chain
-    energy = np.abs(held.energy_j) / Turning(chain).exchanged_j
+    energy = np.abs(held.energy_j) / ChainMotion(chain).exchanged_j
     return np.asarray(np.maximum(held.place_m / chain.length_m, energy))
 
 
 def falling(trial: Trial, time_s: Array) -> Motion:
     """The truth to be drawn."""
     assert trial.chain is not None
-    return Turning(trial.chain).motion(time_s)
+    return ChainMotion(trial.chain).motion(time_s)

@@ -34,7 +34,7 @@ class Ending:
 
 
 @dataclass(frozen=True)
-class Rule:
+class GradeRule:
     """One way to end: what it is called, what is meant, and how it is told.
 
     ``tell`` gives an ending for a run and its class, or None where the rule does not apply.
@@ -153,21 +153,23 @@ def _ok(seen: Seen, _: float) -> Ending:
     return Ending("ok", "")
 
 
-RULES: tuple[Rule, ...] = (
-    Rule(
+RULES: tuple[GradeRule, ...] = (
+    GradeRule(
         "diverged",
         "numbers blow up, a link turns wildly, or a joint is open by a whole link",
         _diverged,
     ),
-    Rule("crashed", "the engine failed, did not end in time, or left a log with holes", _crashed),
-    Rule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
-    Rule("locked", "the loops are closed, and the crank stands short of its command", _locked),
-    Rule(
+    GradeRule(
+        "crashed", "the engine failed, did not end in time, or left a log with holes", _crashed
+    ),
+    GradeRule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
+    GradeRule("locked", "the loops are closed, and the crank stands short of its command", _locked),
+    GradeRule(
         "silently-open", "the driven joint looks fine, and another has come apart", _silently_open
     ),
-    Rule("drifts", "the error is over the class and grows with the turns", _drifts),
-    Rule("degraded", "the error is over the class, and does not blow up", _degraded),
-    Rule("ok", "within the class throughout", _ok),
+    GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
+    GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),
+    GradeRule("ok", "within the class throughout", _ok),
 )
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
     "unsupported": "the engine cannot hold the scene",

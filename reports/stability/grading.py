@@ -23,7 +23,7 @@ from sim.engine import Run
 from sim.run import run
 from sim.settings import SettingError
 
-Found = tuple[Graded, Picture | None]
+GradedPicture = tuple[Graded, Picture | None]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ JUDGES: Mapping[Judge, Truth] = {
 }
 
 
-def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -> Found:
+def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -> GradedPicture:
     """Run a case at one value in one engine, and grade it.
 
     Parameters

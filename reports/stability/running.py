@@ -11,7 +11,7 @@ from models.errors import CrankcheckError
 from reports.stability.case import Case, label
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import critical, line
-from reports.stability.grading import Found, graded
+from reports.stability.grading import GradedPicture, graded
 from reports.stability.matrix import Critical, Graded, Picture
 from reports.workers.isolated import Isolated, Limits, Lost
 
@@ -45,8 +45,8 @@ def run_lines(
 
     ``done`` hears of each as it ends, in this thread.
     """
-    apart = [Isolated[Found | str](limits) for _ in range(max(min(jobs, len(lines)), 1))]
-    free: queue.SimpleQueue[Isolated[Found | str]] = queue.SimpleQueue()
+    apart = [Isolated[GradedPicture | str](limits) for _ in range(max(min(jobs, len(lines)), 1))]
+    free: queue.SimpleQueue[Isolated[GradedPicture | str]] = queue.SimpleQueue()
     for one in apart:
         free.put(one)
     pool = ThreadPoolExecutor(len(apart))
@@ -70,7 +70,7 @@ def run_lines(
 
 def run_one(given: Line, value: float, limits: Limits) -> Graded:
     """One run in a process apart. Raises CrankcheckError where it cannot be asked for."""
-    isolated = Isolated[Found | str](limits)
+    isolated = Isolated[GradedPicture | str](limits)
     try:
         return _graded(given, value, isolated, grid=False)[0]
     finally:
@@ -82,7 +82,7 @@ def _work(case: Case) -> int:
     return sum(case.trial(value).steps for value in case.values)
 
 
-def _line(given: Line, free: queue.SimpleQueue[Isolated[Found | str]]) -> Held:
+def _line(given: Line, free: queue.SimpleQueue[Isolated[GradedPicture | str]]) -> Held:
     """One line, in a child process that is free."""
     case, isolated = CATALOGUE[given.case], free.get()
     pictures: list[Picture] = []
@@ -100,7 +100,9 @@ def _line(given: Line, free: queue.SimpleQueue[Isolated[Found | str]]) -> Held:
     return Held(given, tuple(runs), critical(case, runs), tuple(pictures))
 
 
-def _graded(given: Line, value: float, isolated: Isolated[Found | str], *, grid: bool) -> Found:
+def _graded(
+    given: Line, value: float, isolated: Isolated[GradedPicture | str], *, grid: bool
+) -> GradedPicture:
     """A run in the child process, with its picture where it is of the grid."""
     answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
     if isinstance(answer, Lost):
@@ -111,7 +113,9 @@ def _graded(given: Line, value: float, isolated: Isolated[Found | str], *, grid:
     return replace(found, grid=grid), drawn
 
 
-def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> Found | str:
+def graded_by_name(
+    case: str, engine: str, profile: str, value: float, draw: bool
+) -> GradedPicture | str:
     """As `grading.graded`, for a case by its name: what travels to the child process is small.
 
     What has no reference, or cannot be asked of the engine, is no fault of the engine: its message.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
@@ -30,7 +30,7 @@ DT_S = 1e-3
 
 
 def start_of(chain: Chain) -> State:
-    return Turning(chain).motion(np.array([0.0])).state(0)
+    return ChainMotion(chain).motion(np.array([0.0])).state(0)
 
 
 def ran(chain: Chain, engine: Any, profile: str = "tuned", **given: Any) -> Run:
@@ -44,7 +44,7 @@ def angle_error(chain: Chain, dt_s: float, name: str) -> float:
     result = ran(chain, name, dt_s=dt_s, steps=round(0.4 / dt_s))
     assert (result.status, result.reason) == ("ok", "")
     assert result.motion is not None
-    exact = Turning(chain).motion(result.motion.time_s)
+    exact = ChainMotion(chain).motion(result.motion.time_s)
     rods = result.motion.links.items()
     return max(float(np.abs(rod.theta - exact.links[k].theta).max()) for k, rod in rods)
 
@@ -55,7 +55,7 @@ def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
     name = str(request.param)
     if name in ENGINES:
         return engine(name)
-    exact = Turning(Chain(2))
+    exact = ChainMotion(Chain(2))
     made: Engine = fake_engine.FakeEngine(lambda _, t: exact.motion(t), velocity_shift=0.5)
     return made
 
@@ -123,15 +123,15 @@ def test_the_mass_of_the_crank_counts(name: str) -> None:
     assert result.motion is not None
     weight, inertia = 10.0 / 2 + 1.0 / 2 + 1.0, 10.0 / 3 + 1.0 / 3 + 1.0
     kappa = 9.81 * weight / inertia
-    found, lighter = result.motion.links["rocker1"].theta[-1], Turning(chain).stiffness
+    found, lighter = result.motion.links["rocker1"].theta[-1], ChainMotion(chain).stiffness
     assert abs(found - pendulum(kappa, 0.4)) < 1e-4
     assert abs(pendulum(kappa, 0.4) - pendulum(lighter, 0.4)) > 0.02
 
 
 def pendulum(kappa: float, time_s: float) -> float:
     """The angle of the rods after a fall under kappa: that of a chain under another gravity."""
-    turning = Turning(Chain(1))
-    like = Turning(Chain(1, gravity_m_s2=9.81 * kappa / turning.stiffness))
+    turning = ChainMotion(Chain(1))
+    like = ChainMotion(Chain(1, gravity_m_s2=9.81 * kappa / turning.stiffness))
     return float(like.at(np.array([time_s]))[0][0])
 
 
@@ -152,7 +152,7 @@ def test_the_law_of_the_driver_plays_no_part(name: str) -> None:
 
 def test_what_hangs_on_the_crank_of_a_free_model_is_refused(fake_engine: ModuleType) -> None:
     chain = Chain(1)
-    fake = fake_engine.FakeEngine(lambda _, t: Turning(chain).motion(t))
+    fake = fake_engine.FakeEngine(lambda _, t: ChainMotion(chain).motion(t))
     facts = opened(fake, chain).facts()
     told = (chain.scene(), start_of(chain))
     without = {k: v for k, v in facts.mass_kg.items() if k != "rocker0"}
@@ -170,7 +170,7 @@ def test_velocities_other_than_the_state_s_are_refused_whatever_the_law(
 ) -> None:
     chain = Chain(1)
     fast = replace(chain.scene(), driver=Driver("rocker0", ConstantSpeed(0.0, 1e3)))
-    fake = fake_engine.FakeEngine(lambda _, t: Turning(chain).motion(t))
+    fake = fake_engine.FakeEngine(lambda _, t: ChainMotion(chain).motion(t))
     facts = opened(fake, chain).facts()
     refuse_other_model(fast, start_of(chain), facts, DT_S, "free")
     rod = facts.start.links["rocker1"]
@@ -254,7 +254,7 @@ def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None
             at = np.where(poses.time_s > 0.2, by, rod.omega)
             return replace(poses, links={**poses.links, "rocker1": replace(rod, omega=at)})
 
-        exact = Turning(Chain(1))
+        exact = ChainMotion(Chain(1))
         return fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=faster)
 
     assert ran(Chain(1), spun(2e6)).status == "ok"
@@ -277,7 +277,7 @@ def test_the_energy_of_a_run_is_that_of_the_closed_form_at_the_instants_of_the_v
     name: str, profile: str
 ) -> None:
     """MuJoCo's Euler steps have velocities half a step early, pymunk's are half a step late."""
-    turning, offs = Turning(Chain(0)), []
+    turning, offs = ChainMotion(Chain(0)), []
     for dt_s in (4e-3, 1e-3):
         result = ran(Chain(0), name, profile, dt_s=dt_s, steps=round(0.4 / dt_s))
         assert result.energy is not None

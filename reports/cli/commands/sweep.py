@@ -15,7 +15,7 @@ from reports.output.notice import tell
 from reports.output.provenance import provenance
 from reports.plan.chosen import chosen_engines
 from reports.plan.grid import Grid, grid
-from reports.plan.study import Study, Value, Variant, load_study
+from reports.plan.study import Study, StudyValue, Variant, load_study
 from reports.results.lines import lines
 from reports.results.recommend import recommendations
 from reports.results.table import noise_line, recommendation_table
@@ -125,9 +125,9 @@ def asked(request: Request) -> Study:
 
 def _overrides(
     texts: Sequence[str], engines: Sequence[str]
-) -> dict[str, dict[str, Value | list[Value]]]:
+) -> dict[str, dict[str, StudyValue | list[StudyValue]]]:
     """`mujoco.iterations=2,10` and the like, by engine."""
-    found: dict[str, dict[str, Value | list[Value]]] = {}
+    found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
     for text in texts:
         name, equals, values = text.partition("=")
         owner, dot, setting = name.strip().partition(".")
@@ -139,7 +139,7 @@ def _overrides(
             raise CrankcheckError(
                 f"--set {text!r}: {owner!r} is no engine of this sweep; it has {', '.join(engines)}"
             )
-        several: list[Value] = [value.strip() for value in values.split(",")]
+        several: list[StudyValue] = [value.strip() for value in values.split(",")]
         found.setdefault(owner, {})[setting.strip()] = several
     return found
 

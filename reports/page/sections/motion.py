@@ -21,7 +21,7 @@ from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
 from reports.page.sections.base import Section
 from reports.page.thinning import BUDGET, chosen, steps_held
-from reports.results.error_parts import Body, Parts, Split, split, worst_body
+from reports.results.error_parts import CurveBody, Parts, Split, split, worst_body
 from reports.results.lines import Line
 from reports.results.overview import Report
 
@@ -46,7 +46,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "held": held,
         },
         embedded={
-            "scenes": [_Drawn(report, scene, sizes, held).embedded() for scene in scenes],
+            "scenes": [_DrawnScene(report, scene, sizes, held).embedded() for scene in scenes],
             "judged": sorted({report.look(x).number for x in report.lines if _judged(x)}),
         },
         scripts=("legend.js", "charts.js", "mechanism.js", "stage.js", "parts.js", "motion.js"),
@@ -85,7 +85,7 @@ def _told(scene: Scene) -> dict[str, object]:
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _DrawnScene:
     """A scene on its way into the page. Cells that share their instants share one axis."""
 
     report: Report
@@ -118,7 +118,7 @@ class _Drawn:
         longest = max(found, key=len, default=np.zeros(0))
         return longest if len(longest) > 1 else instants(self.scene)
 
-    def _line(self, line: Line, time_s: Array, body: Body | None) -> dict[str, object]:
+    def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
         """A line: what it is off by in the drawing and over the crank angle, at some steps."""
         trace = self.report.stored.trace
         found = None if body is None else split(line, trace, body, self.scene.longest_m)

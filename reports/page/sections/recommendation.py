@@ -12,7 +12,7 @@ from reports.results.lines import called
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 
-Row = dict[str, object]
+RecommendationRow = dict[str, object]
 
 
 def build(report: Report) -> Section:
@@ -40,14 +40,14 @@ def _usual_period(report: Report) -> float:
     return Counter(line.period_s for line in report.lines).most_common(1)[0][0]
 
 
-def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Row]:
+def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[RecommendationRow]:
     """A recommendation, and after it the one that is steadier."""
     yield {**_row(report, one, period_s), "cheapest": _cheapest(report, one)}
     if one.steadier is not None:
         yield {**_row(report, one.steadier, period_s), "steadier": True}
 
 
-def _row(report: Report, one: Recommendation, period_s: float) -> Row:
+def _row(report: Report, one: Recommendation, period_s: float) -> RecommendationRow:
     """A recommendation with its look and its text to be copied."""
     name = (one.engine, one.variant or one.nearest, one.drive)
     return {

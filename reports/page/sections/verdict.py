@@ -20,7 +20,7 @@ ASKED = 1e-4
 
 
 @dataclass(frozen=True)
-class Row:
+class VerdictRow:
     """An engine with its settings over all scenes."""
 
     look: Look
@@ -93,7 +93,7 @@ def verdict(gated: pd.DataFrame) -> str:
     )
 
 
-def sentence(engine: str, rows: Sequence[Row], chosen: Sequence[Recommendation]) -> str:
+def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommendation]) -> str:
     """What a user takes away of an engine."""
     own = [row for row in rows if row.look.engine == engine]
     told = [_held(row) for row in own if row.gated]
@@ -102,7 +102,7 @@ def sentence(engine: str, rows: Sequence[Row], chosen: Sequence[Recommendation])
     return " ".join(text for text in told if text)
 
 
-def _held(row: Row) -> str:
+def _held(row: VerdictRow) -> str:
     """Whether an engine holds with settings that are judged."""
     text = f"With {row.look.variant} settings it is within tolerance in {_share(row)}"
     if row.failed:
@@ -114,7 +114,7 @@ def _held(row: Row) -> str:
     return f"{text}, no floor seen." if row.told else f"{text}; too few steps to tell of a floor."
 
 
-def _shipped(row: Row) -> str:
+def _shipped(row: VerdictRow) -> str:
     """What an engine does as it comes."""
     text = f"As shipped it is within tolerance in {_share(row)}"
     told = []
@@ -142,7 +142,7 @@ def _cheapest(chosen: Sequence[Recommendation]) -> str:
     )
 
 
-def _share(row: Row) -> str:
+def _share(row: VerdictRow) -> str:
     return f"{row.within} of {count(row.cells, 'cell')}"
 
 
@@ -160,11 +160,11 @@ def _by_look(report: Report) -> list[tuple[Look, list[Line]]]:
     ]
 
 
-def _row(look: Look, lines: Sequence[Line]) -> Row:
+def _row(look: Look, lines: Sequence[Line]) -> VerdictRow:
     """The numbers of one engine with its settings."""
     cells = pd.concat([line.cells for line in lines])
     finest = [_finest(line) for line in lines]
-    return Row(
+    return VerdictRow(
         look=look,
         gated=bool(cells["gated"].all()),
         cells=len(cells),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from models.hard import double_parallelogram
 from models.window_chain import SOURCE, Chain
 from reports.stability.case import Case, Trial
@@ -29,7 +29,7 @@ def _windows(value: float) -> Trial:
         steps_per_turn=period / DT_S,
         turns=DURATION_S / period,
         drive="free",
-        start=Turning(chain).motion(np.zeros(1)).state(),
+        start=ChainMotion(chain).motion(np.zeros(1)).state(),
         chain=chain,
     )
 

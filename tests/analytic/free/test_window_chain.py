@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analytic.check.constraints import Constraints
-from analytic.free.window_chain import Amplitude, Turning
+from analytic.free.window_chain import Amplitude, ChainMotion
 from analytic.kinematics import solve_driven
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
@@ -74,7 +74,7 @@ def taylor(theta: mpmath.mpf, omega: mpmath.mpf, gain: mpmath.mpf) -> Iterator[t
 @pytest.mark.parametrize("chain", CHAINS)
 def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: Chain) -> None:
     """From the equation and the start alone, over more than a turn."""
-    n, turning = chain.count, Turning(chain)
+    n, turning = chain.count, ChainMotion(chain)
     times = 0.05 * np.arange(101)
     theta, omega, alpha = turning.at(times)
     assert abs(theta[-1] - theta[0]) > min(math.tau, 5.0 / chain.length_m) - 1e-9
@@ -90,7 +90,7 @@ def test_closed_form_solves_the_reduced_equation_by_series_in_30_digits(chain: C
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_energy_over_all_bodies_is_that_of_the_closed_form_and_constant(chain: Chain) -> None:
-    turning, times = Turning(chain), np.linspace(0.0, 20.0, 401)
+    turning, times = ChainMotion(chain), np.linspace(0.0, 20.0, 401)
     theta, omega, _ = turning.at(times)
     energy = turning.energy(theta, omega)
     scale = turning.exchanged_j + energy[0]
@@ -98,7 +98,7 @@ def test_energy_over_all_bodies_is_that_of_the_closed_form_and_constant(chain: C
     assert np.abs(energy - summed(chain.scene(), turning, times)).max() < 1e-14 * scale
 
 
-def summed(scene: Scene, turning: Turning, times: np.ndarray) -> np.ndarray:
+def summed(scene: Scene, turning: ChainMotion, times: np.ndarray) -> np.ndarray:
     """Kinetic and potential energy, body by body, from the motion of their points."""
     motion, total = turning.motion(times), np.zeros_like(times)
     for name, link in scene.links.items():
@@ -116,7 +116,7 @@ def summed(scene: Scene, turning: Turning, times: np.ndarray) -> np.ndarray:
 def test_the_equation_of_motion_follows_from_newton_euler_of_all_bodies(count: int) -> None:
     """M q'' + Phi_q^T lambda = F, Phi_q q'' = gamma, without the driver's equation."""
     chain = Chain(count)
-    scene, turning = chain.scene(), Turning(chain)
+    scene, turning = chain.scene(), ChainMotion(chain)
     system = Constraints(scene)
     for t in (0.0, 0.3, 0.7):
         motion = turning.motion(np.array([t]))
@@ -146,7 +146,7 @@ def test_the_equation_of_motion_follows_from_newton_euler_of_all_bodies(count: i
 
 
 def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> None:
-    turning, times = Turning(Chain(2)), np.linspace(0.0, 0.5, 11)
+    turning, times = ChainMotion(Chain(2)), np.linspace(0.0, 0.5, 11)
     found = turning.motion(times)
     rocker = found.links["rocker0"]
     other = solve_driven(windows(2), rocker.theta, rocker.omega, rocker.alpha)
@@ -159,7 +159,7 @@ def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> N
 
 
 def test_a_period_is_a_whole_turn_against_the_sense_of_the_axes() -> None:
-    turning = Turning(Chain(40))
+    turning = ChainMotion(Chain(40))
     theta, omega, alpha = turning.at(turning.period_s * np.array([0.0, 0.5, 1.0, 5.0]))
     assert theta == pytest.approx(UPRIGHT - math.tau * np.array([0.0, 0.5, 1.0, 5.0]), abs=1e-12)
     assert omega == pytest.approx([-1.0, -turning.fastest_rad_s, -1.0, -1.0], abs=1e-12)

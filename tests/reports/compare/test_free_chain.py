@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.free.window_chain import Turning
+from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
@@ -26,7 +26,7 @@ def held(
     fake_engine: ModuleType, disturb: Callable[[Poses], Poses] = lambda poses: poses, **given: Any
 ) -> Held:
     """The chain for 2 s in an engine that follows the closed form but for what is told."""
-    exact = Turning(CHAIN)
+    exact = ChainMotion(CHAIN)
     fake = fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=disturb, **given)
     return hold(CHAIN, fake, dt_s=1e-3, duration_s=2.0, every=5)
 
@@ -72,7 +72,7 @@ def test_a_rod_that_leaves_the_others_is_seen_where_it_began(
     assert found.left is not None
     assert found.left.link == name
     assert found.left.time_s == pytest.approx(1.02, abs=0.006)
-    truth = Turning(CHAIN).at(np.array([found.left.time_s]))[0]
+    truth = ChainMotion(CHAIN).at(np.array([found.left.time_s]))[0]
     assert found.left.driver_rad == pytest.approx(truth[0], abs=0.03)
 
 
@@ -91,7 +91,7 @@ def test_energy_that_is_lost_is_measured_over_what_a_turn_exchanges(
 
         return replace(poses, links={name: less(rod) for name, rod in poses.links.items()})
 
-    turning, found = Turning(CHAIN), held(fake_engine, slowed)
+    turning, found = ChainMotion(CHAIN), held(fake_engine, slowed)
     kinetic = 0.5 * turning.inertia * turning.at(found.time_s)[1] ** 2
     lost = (1.0 - 0.99**2) * kinetic.max()
     assert found.energy_drift == pytest.approx(lost / turning.exchanged_j, rel=1e-9)
@@ -126,7 +126,7 @@ def test_a_run_that_was_driven_or_never_started_is_not_compared(fake_engine: Mod
 
 def test_mujoco_tuned_falls_through_both_flat_positions_with_the_rods_parallel() -> None:
     found = hold(CHAIN, "mujoco", dt_s=1e-3, duration_s=2.0, every=10)
-    assert Turning(CHAIN).period_s < 2.0
+    assert ChainMotion(CHAIN).period_s < 2.0
     assert (found.run.status, found.left) == ("ok", None)
     assert found.place_until(2.0) < 1e-4
     assert found.energy_drift < 1e-5

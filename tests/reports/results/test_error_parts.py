@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from models.array import Array
-from reports.results.error_parts import SHARED, Body, Split, shared, split, worst_body
+from reports.results.error_parts import SHARED, CurveBody, Split, shared, split, worst_body
 from reports.results.lines import Line, lines
 from tests.reports.results.made import PERIOD_S, cell, stored
 
 LENGTH = 0.25
-BODY = Body("angle.rocker", 1.0)
+BODY = CurveBody("angle.rocker", 1.0)
 STEPS = (90, 180, 360, 720)
 Trace = Mapping[str, Array]
 Traces = dict[str, Trace]
@@ -253,7 +253,7 @@ def test_sliders_are_over_the_longest_link() -> None:
         }
         for key, trace in traces.items()
     }
-    found = split(line, of(slid), Body("displacement.C", LENGTH), LENGTH)
+    found = split(line, of(slid), CurveBody("displacement.C", LENGTH), LENGTH)
     for key, parts in found.cells.items():
         np.testing.assert_allclose(parts.total, slid[key]["displacement.C"] / LENGTH)
 
@@ -272,7 +272,7 @@ def test_the_worst_body_is_not_decided_by_one_line_that_is_far_off() -> None:
                 "geometric.angle.coupler": np.array([9.0, 9.0, 9.0]),
             }
     body = worst_body(found, of(traces), LENGTH)
-    assert body == Body("angle.rocker", 1.0)
+    assert body == CurveBody("angle.rocker", 1.0)
     assert body is not None
     assert body.name == "angle of rocker"
 

@@ -17,7 +17,7 @@ from reports.judge.rules import RULES
 from reports.judge.rules.base import Evidence, Finding
 from reports.selftest.registry import FAULTS
 from reports.selftest.table import show
-from reports.selftest.trial import Place, Verdict, healthy
+from reports.selftest.trial import FaultTrial, Verdict, healthy
 
 ENGINES = ("mujoco", "pymunk")
 Crank = Callable[..., Result]
@@ -135,13 +135,13 @@ def every_fault() -> list[Verdict]:
         finding = Finding(fault.rule, "fail", "seen")
         least = fault.size if fault.whole or fault.shown or not fault.size else 1.2345e-12
         places = [
-            Place(scene, engine, finding, (fault.rule,), (), least)
+            FaultTrial(scene, engine, finding, (fault.rule,), (), least)
             for scene in fault.scenes
             for engine in fault.engines
         ]
         found.append(Verdict(fault.name, tuple(places), sound=True))
     found[2] = Verdict(found[2].name, (), sound=False)
-    lost = Place("fourbar-lecture-1", "mujoco", None, ("CC101", "CC103"), ("CC114",), None)
+    lost = FaultTrial("fourbar-lecture-1", "mujoco", None, ("CC101", "CC103"), ("CC114",), None)
     found[5] = Verdict(found[5].name, (lost, *found[5].places[1:]), sound=True)
     return found
 
