@@ -14,16 +14,23 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 
-.PHONY: verify test browser report hard slow benchmarks models format clean
+.PHONY: verify test lint pytest browser report hard slow benchmarks models format clean
 
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
 
 test: $(VENV)/test browser
+	$(MAKE) --no-print-directory --jobs 2 lint pytest
+
+lint: | $(VENV)/test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest -q -n 2 -m "not slow" $(PYTEST)
+
+# Stolen work keeps both processes busy to the end, and the tests of a folder, which share what is
+# made for them, mostly in one of them.
+pytest: | $(VENV)/test
+	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m "not slow" $(PYTEST)
 
 # The page of `crankcheck report` is tested in a real browser: installed where that can be done
 # without asking (as root on Debian); elsewhere its tests are skipped and say how to install it.
@@ -42,7 +49,7 @@ hard: $(VENV)/crankcheck
 	$(BIN)/crankcheck stability -o out/hard
 
 slow: $(VENV)/test
-	$(BIN)/python -m pytest -q -n 2 -m slow $(PYTEST)
+	$(BIN)/python -m pytest -q -n 2 --dist worksteal -m slow $(PYTEST)
 
 benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/reference.py

@@ -23,3 +23,8 @@ def fake_engine() -> ModuleType:
         sys.modules[name] = module
         spec.loader.exec_module(module)
     return sys.modules[name]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest test first: at the end, one process would wait for the other to be done with it."""
+    items.sort(key=lambda item: "readme" not in item.nodeid)
