@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import inspect
 import os
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import typer
 
@@ -29,6 +31,16 @@ app = typer.Typer(
 )
 BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
 TRACEBACK = "CRANKCHECK_TRACEBACK"
+Request = TypeVar("Request")
+
+Engines = Annotated[Sequence[str], typer.Option("--engine", help="Engine; may be repeated.")]
+StepS = Annotated[float | None, typer.Option("--dt", metavar="SECONDS", help="Time step.")]
+StepsPerTurn = Annotated[
+    float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
+]
+Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
+Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")]
+"""Options that several commands have."""
 
 
 def main() -> None:
@@ -73,6 +85,41 @@ def guarded() -> Iterator[None]:
             f"internal error: {type(error).__name__}: {first}; please report it; "
             f"--traceback or {TRACEBACK}=1 shows where it is",
         )
+
+
+def command(run: Callable[[Request], int]) -> Callable[[Request], int]:
+    """Make a command of a function: its name, its docstring as help, and of its request, a frozen
+    dataclass, an argument or option for each field; what it returns is the exit code.
+
+    A field is annotated with its `typer.Argument` or `typer.Option`. What is not given keeps the
+    field's default.
+    """
+    hints = get_type_hints(run)
+    request = hints[next(iter(inspect.signature(run).parameters))]
+
+    def typed(**options: object) -> None:
+        given = {name: value for name, value in options.items() if value is not None}
+        with guarded():
+            code = run(request(**given))
+        raise typer.Exit(code)
+
+    notes = get_type_hints(request, include_extras=True)
+    parameters = [_parameter(field, notes[field.name]) for field in dataclasses.fields(request)]
+    typed.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # read by typer
+    app.command(run.__name__, help=run.__doc__)(typed)
+    return run
+
+
+def _parameter(field: dataclasses.Field[Any], note: object) -> inspect.Parameter:
+    """A field as typer takes it: several texts as a list, None where none is given."""
+    kind, option = get_args(note)
+    default = inspect.Parameter.empty if field.default is dataclasses.MISSING else field.default
+    if kind == Sequence[str]:
+        kind, default = list[str], default or None
+    note = Annotated[kind, option]
+    return inspect.Parameter(
+        field.name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=note
+    )
 
 
 def _end(code: int, text: str) -> NoReturn:

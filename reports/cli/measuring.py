@@ -2,111 +2,91 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from reports.cli.base import app, guarded
+from reports.cli.base import Engines, Jobs, app, command, guarded
 from reports.output.console import terminal
 
 
-@app.command()
-def sweep(
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder of the results.")],
+@dataclass(frozen=True)
+class SweepRequest:
+    """What `sweep` was asked for, as given."""
+
+    folder: Annotated[Path, typer.Option("-o", "--output", help="Folder of the results.")]
     scenes: Annotated[
-        list[str] | None,
+        Sequence[str],
         typer.Argument(metavar="SCENE", help="Shipped names or scene files; those of the study."),
-    ] = None,
+    ] = ()
     study: Annotated[
         Path | None, typer.Option(help="Study file (.toml, .yaml); the shipped one if none.")
-    ] = None,
-    engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
-    profile: Annotated[
-        list[str] | None, typer.Option(help="Profile, in place of the study's variants.")
-    ] = None,
+    ] = None
+    engines: Engines = ()
+    profiles: Annotated[
+        Sequence[str], typer.Option("--profile", help="Profile, in place of the study's variants.")
+    ] = ()
     steps_per_turn: Annotated[
         str | None, typer.Option(metavar="N,N,...", help="Steps in a turn, with commas.")
-    ] = None,
-    turns: Annotated[float | None, typer.Option(help="Turns of the driver.")] = None,
+    ] = None
+    turns: Annotated[float | None, typer.Option(help="Turns of the driver.")] = None
     settings: Annotated[
-        list[str] | None,
+        Sequence[str],
         typer.Option("--set", metavar="ENGINE.SETTING=A,B", help="One variant per value."),
-    ] = None,
-    limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0,
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
+    ] = ()
+    limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0
+    memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0
+    jobs: Jobs = 0
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Run on the cluster of this scheduler.")
-    ] = None,
-    timing: Annotated[bool, typer.Option(help="Time the cells after the error runs.")] = True,
+    ] = None
+    timing: Annotated[bool, typer.Option(help="Time the cells after the error runs.")] = True
     keep_trajectories: Annotated[
         bool, typer.Option("--keep-trajectories", help="Keep the whole motion of every cell.")
-    ] = False,
+    ] = False
     again: Annotated[
         bool, typer.Option("--again", help="Run cells again that timed out or crashed.")
-    ] = False,
-) -> None:
+    ] = False
+
+
+@command
+def sweep(request: SweepRequest) -> int:
     """Run a grid of scenes, engines, settings and steps; keep and time every cell."""
-    with guarded():
-        from reports.cli.commands import sweep as command
+    from reports.cli.commands import sweep as verb
 
-        request = command.Request(
-            folder=output,
-            study=study,
-            scenes=scenes or (),
-            engines=engine or (),
-            profiles=profile or (),
-            steps_per_turn=steps_per_turn,
-            turns=turns,
-            settings=settings or (),
-            limit_s=limit_s,
-            memory_gb=memory_gb,
-            jobs=jobs,
-            dask=dask,
-            timing=timing,
-            keep_trajectories=keep_trajectories,
-            again=again,
-        )
-        code = command.sweep(request, terminal(), terminal(stderr=True))
-    raise typer.Exit(code)
+    return verb.sweep(request, terminal(), terminal(stderr=True))
 
 
-@app.command()
-def tune(
+@dataclass(frozen=True)
+class TuneRequest:
+    """What `tune` was asked for, as given."""
+
     scenes: Annotated[
-        list[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
-    ],
-    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")],
+        Sequence[str], typer.Argument(metavar="SCENE", help="Shipped names or scene files.")
+    ]
+    engine: Annotated[str, typer.Option(help="Engine whose settings are searched.")]
     target: Annotated[
         float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
-    ],
-    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60,
-    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0,
-    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0,
+    ]
+    budget: Annotated[int, typer.Option(help="Trials in all, also of a resumed search.")] = 60
+    seed: Annotated[int, typer.Option(help="The same seed finds the same settings.")] = 0
+    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 2.0
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Keep the search (.db), to go on later.")
-    ] = None,
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0,
-    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True,
-) -> None:
-    """Search an engine's settings for the cheapest that reach a target error."""
-    with guarded():
-        from reports.cli.commands import tune as command
+    ] = None
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 20.0
+    timing: Annotated[bool, typer.Option(help="Time what was found beside the profile.")] = True
 
-        request = command.Request(
-            scenes=scenes,
-            engine=engine,
-            target=target,
-            budget=budget,
-            seed=seed,
-            turns=turns,
-            output=output,
-            limit_s=limit_s,
-            timing=timing,
-        )
-        code = command.run_tune(request, terminal(), terminal(stderr=True))
-    raise typer.Exit(code)
+
+@command
+def tune(request: TuneRequest) -> int:
+    """Search an engine's settings for the cheapest that reach a target error."""
+    from reports.cli.commands import tune as verb
+
+    return verb.run_tune(request, terminal(), terminal(stderr=True))
 
 
 @app.command()
@@ -149,39 +129,34 @@ def figures(
     raise typer.Exit(code)
 
 
-@app.command()
-def stability(
+@dataclass(frozen=True)
+class StabilityRequest:
+    """What the user asked for; ``at`` is one value of one case."""
+
     cases: Annotated[
-        list[str] | None, typer.Argument(metavar="CASE", help="Hard cases; all if none.")
-    ] = None,
-    engine: Annotated[list[str] | None, typer.Option(help="Engine; may be repeated.")] = None,
-    profile: Annotated[list[str] | None, typer.Option(help="Profile; may be repeated.")] = None,
+        Sequence[str], typer.Argument(metavar="CASE", help="Hard cases; all if none.")
+    ] = ()
+    engines: Engines = ()
+    profiles: Annotated[
+        Sequence[str], typer.Option("--profile", help="Profile; may be repeated.")
+    ] = ()
     at: Annotated[
         float | None, typer.Option(help="Only this value of the one case that is named.")
-    ] = None,
-    output: Annotated[
+    ] = None
+    folder: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
-    ] = None,
-    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0,
-    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")] = 0,
-) -> None:
+    ] = None
+    limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
+    memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
+    jobs: Jobs = 0
+
+
+@command
+def stability(request: StabilityRequest) -> int:
     """Grade the engines on hard cases, and find how far each holds them.
 
     The exit code is 0; with --at it is 1 where the value is not held.
     """
-    with guarded():
-        from reports.cli.commands import stability as command
+    from reports.cli.commands import stability as verb
 
-        request = command.Request(
-            cases=cases or (),
-            engines=engine or (),
-            profiles=profile or (),
-            at=at,
-            folder=output,
-            jobs=jobs,
-            limit_s=limit_s,
-            memory_gb=memory_gb,
-        )
-        code = command.stability(request, terminal(), terminal(stderr=True))
-    raise typer.Exit(code)
+    return verb.stability(request, terminal(), terminal(stderr=True))

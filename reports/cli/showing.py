@@ -2,39 +2,44 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from reports.cli.base import app, guarded
+from reports.cli.base import app, command, guarded
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
 
 
-@app.command()
-def solve(
-    scene: SceneName,
+@dataclass(frozen=True)
+class SolveRequest:
+    """What `solve` was asked for, as given."""
+
+    scene: SceneName
     at_deg: Annotated[
         float | None, typer.Option(metavar="DEG", help="One position: the driver's angle.")
-    ] = None,
+    ] = None
     turns: Annotated[
         float | None, typer.Option(help="A motion over so many turns (default 1).")
-    ] = None,
+    ] = None
     steps_per_turn: Annotated[
         int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
-    ] = None,
+    ] = None
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
-    ] = None,
-) -> None:
-    """Show the closed-form reference alone: angles, points and sliders with all their rates."""
-    with guarded():
-        from reports.cli.commands import solve as command
+    ] = None
 
-        request = command.Request(scene, at_deg, turns, steps_per_turn, output)
-        command.run_solve(request, terminal())
+
+@command
+def solve(request: SolveRequest) -> int:
+    """Show the closed-form reference alone: angles, points and sliders with all their rates."""
+    from reports.cli.commands import solve as verb
+
+    verb.run_solve(request, terminal())
+    return 0
 
 
 @app.command()

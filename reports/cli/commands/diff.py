@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.diff.changes import FACTOR, compare
+from reports.cli.checking import DiffRequest
+from reports.diff.changes import compare
 from reports.diff.junit import junit
 from reports.diff.markdown import markdown
 from reports.diff.reading import read_run
@@ -19,27 +17,7 @@ from reports.output.write import check_different, check_file, write
 FORMATS = ("text", "md")
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `diff` was asked for, as given.
-
-    ``old`` and ``new`` are folders of `sweep -o` or of `verify -o`, in any combination: a profile
-    is the variant of its name. ``format`` is what is printed, or what goes to ``output``, which
-    is Markdown in any case.
-    """
-
-    old: Path
-    new: Path
-    factor: float = FACTOR
-    strict: bool = False
-    old_version: str | None = None
-    new_version: str | None = None
-    format: str = "text"
-    output: Path | None = None
-    junit: Path | None = None
-
-
-def run_diff(request: Request, console: Console) -> int:
+def run_diff(request: DiffRequest, console: Console) -> int:
     """Do it; returns the exit code.
 
     0: nothing is worse. 1: some error grew past the factor, or a cell that ended well does not

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
+from reports.cli.checking import HistoryRequest, VerifyRequest
 from reports.cli.commands import verify
 from reports.diff.reading import scene_digests
 from reports.history.cache import alone, cache_folder
@@ -28,24 +28,7 @@ from sim.registry import ENGINES, engine
 FILES = ("history.csv", "history.md")
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `history` was asked for, as given; as of `verify` where the names are the same."""
-
-    engine: str
-    versions: Sequence[str]
-    scenes: Sequence[str] = ()
-    profiles: Sequence[str] = ()
-    dt_s: float | None = None
-    steps_per_turn: float | None = None
-    turns: float = 2.0
-    jobs: int = 0
-    cache: Path | None = None
-    again: bool = False
-    folder: Path | None = None
-
-
-def run_history(request: Request, console: Console, progress: Console) -> int:
+def run_history(request: HistoryRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
 
     Raises
@@ -85,27 +68,20 @@ def run_history(request: Request, console: Console, progress: Console) -> int:
     return 2 if missing else 0
 
 
-def _verification(request: Request) -> verify.Request:
+def _verification(request: HistoryRequest) -> VerifyRequest:
     """The verification that each version is put to."""
-    return verify.Request(
+    return VerifyRequest(
         scenes=request.scenes,
         engines=(request.engine,),
         profiles=request.profiles,
         dt_s=request.dt_s,
         steps_per_turn=request.steps_per_turn,
         turns=request.turns,
-        tolerance=(),
-        drive="prescribed",
-        converge=True,
         jobs=request.jobs,
-        junit=None,
-        csv=None,
-        json=None,
-        folder=None,
     )
 
 
-def _arguments(request: Request) -> list[str]:
+def _arguments(request: HistoryRequest) -> list[str]:
     """The same verification as arguments of the command line; the engine goes before them."""
     found = [f"--turns={request.turns!r}", f"--jobs={request.jobs}"]
     found += [f"--profile={name}" for name in request.profiles]
@@ -117,7 +93,7 @@ def _arguments(request: Request) -> list[str]:
 
 
 def _outcome(
-    request: Request,
+    request: HistoryRequest,
     one: Wanted,
     folder: Path,
     cache: Path,
@@ -155,7 +131,7 @@ def _in_cache(cache: Path) -> Iterator[None]:
         ) from None
 
 
-def _check_outputs(request: Request, versions: Sequence[Wanted]) -> None:
+def _check_outputs(request: HistoryRequest, versions: Sequence[Wanted]) -> None:
     """Refuse outputs that can not be written, before anything is installed."""
     if request.folder is None:
         return
@@ -164,7 +140,7 @@ def _check_outputs(request: Request, versions: Sequence[Wanted]) -> None:
         check_folder(request.folder / one.name, "-o", verify.IN_FOLDER)
 
 
-def _write(request: Request, outcomes: Sequence[Outcome], footer: str) -> None:
+def _write(request: HistoryRequest, outcomes: Sequence[Outcome], footer: str) -> None:
     """The verification of each version in a folder of its own, and the history of all."""
     if request.folder is None:
         return
@@ -175,7 +151,7 @@ def _write(request: Request, outcomes: Sequence[Outcome], footer: str) -> None:
     write(request.folder / FILES[1], page(outcomes, footer))
 
 
-def _footer(request: Request, cells: Sequence[Cell], outcomes: Sequence[Outcome]) -> str:
+def _footer(request: HistoryRequest, cells: Sequence[Cell], outcomes: Sequence[Outcome]) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
     alike = {round(cell.steps_per_turn, 3) for cell in cells}

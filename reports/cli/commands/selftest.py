@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
 import pandas as pd
 from rich.console import Console
 from rich.progress import Progress
 
+from reports.cli.checking import SelftestRequest
 from reports.judge.cell import Checked
 from reports.output.provenance import provenance
 from reports.output.write import check_different, check_file, check_folder, write
@@ -23,19 +22,7 @@ from sim.registry import engine
 IN_FOLDER = ("selftest.csv", "selftest.json")
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `selftest` was asked for, as given."""
-
-    engines: Sequence[str] = ()
-    faults: Sequence[str] = ()
-    jobs: int = 0
-    csv: Path | None = None
-    json: Path | None = None
-    folder: Path | None = None
-
-
-def selftest(request: Request, console: Console, progress: Console) -> int:
+def selftest(request: SelftestRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes.
 
     Raises
@@ -59,7 +46,7 @@ def selftest(request: Request, console: Console, progress: Console) -> int:
     return int(not all(one.caught for one in verdicts))
 
 
-def _check_outputs(request: Request) -> None:
+def _check_outputs(request: SelftestRequest) -> None:
     """Refuse outputs that can not be written, before the run."""
     named = {"--csv": request.csv, "--json": request.json}
     files = [(option, path) for option, path in named.items() if path is not None]
@@ -72,7 +59,7 @@ def _check_outputs(request: Request) -> None:
 
 
 def _write(
-    request: Request,
+    request: SelftestRequest,
     verdicts: Sequence[Verdict],
     sound: Sequence[Checked],
     facts: Mapping[str, str],

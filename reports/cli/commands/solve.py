@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +18,7 @@ from models.files import load_scene
 from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
 from models.scene import Scene
+from reports.cli.showing import SolveRequest
 from reports.describe.facts import facts
 from reports.describe.frame import cleaned, motion_frame
 from reports.describe.law import describe_law
@@ -38,18 +38,7 @@ ENDLESS = 10**15
 SHEET_ROWS = 1_048_575
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `solve` was asked for, as given."""
-
-    scene: str
-    at_deg: float | None
-    turns: float | None
-    steps_per_turn: int | None
-    output: Path | None
-
-
-def run_solve(request: Request, console: Console) -> None:
+def run_solve(request: SolveRequest, console: Console) -> None:
     """Show or write the reference. Raises CrankcheckError for what can not be asked."""
     if request.at_deg is not None and (request.turns or request.steps_per_turn):
         raise CrankcheckError(
@@ -127,7 +116,7 @@ def _rates(scene: Scene, theta: float, at_deg: float) -> tuple[float, float]:
     raise CrankcheckError(f"--at-deg: {scene.name} has a law without a speed at an angle")
 
 
-def _over(scene: Scene, request: Request) -> Motion:
+def _over(scene: Scene, request: SolveRequest) -> Motion:
     """The motion over whole turns, the last sample included."""
     turns = 1.0 if request.turns is None else request.turns
     steps = request.steps_per_turn

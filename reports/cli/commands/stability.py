@@ -5,13 +5,13 @@ from __future__ import annotations
 import difflib
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.cli.measuring import StabilityRequest
 from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
@@ -30,21 +30,7 @@ from sim.registry import engine
 TABLE, PAGE = "stability.csv", "stability.html"
 
 
-@dataclass(frozen=True)
-class Request:
-    """What the user asked for; ``at`` is one value of one case."""
-
-    cases: Sequence[str] = ()
-    engines: Sequence[str] = ()
-    profiles: Sequence[str] = ()
-    at: float | None = None
-    folder: Path | None = None
-    jobs: int = 0
-    limit_s: float = 120.0
-    memory_gb: float = 4.0
-
-
-def stability(request: Request, console: Console, progress: Console) -> int:
+def stability(request: StabilityRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0, or for one value 1 where it is not held.
 
     Raises
@@ -111,7 +97,7 @@ def _keep_others(folder: Path, wanted: set[str]) -> None:
 
 def _single(
     cases: Sequence[Case],
-    request: Request,
+    request: StabilityRequest,
     engines: Sequence[str],
     profiles: Sequence[str],
     limits: Limits,

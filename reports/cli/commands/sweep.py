@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
+from reports.cli.measuring import SweepRequest
 from reports.output.notice import tell
 from reports.output.provenance import provenance
 from reports.plan.chosen import chosen_engines
@@ -25,32 +25,11 @@ from reports.store.reader import Stored, read_store
 from reports.store.writer import Writer
 from reports.sweep.parallel import backend
 from reports.sweep.running import Done, Running
-from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
+from reports.workers.isolated import checked_limits
 from reports.workers.signals import Stopped
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `sweep` was asked for, as given."""
-
-    folder: Path
-    study: Path | None = None
-    scenes: Sequence[str] = ()
-    engines: Sequence[str] = ()
-    profiles: Sequence[str] = ()
-    steps_per_turn: str | None = None
-    turns: float | None = None
-    settings: Sequence[str] = ()
-    limit_s: float = LIMIT_S
-    memory_gb: float = MEMORY_GB
-    jobs: int = 0
-    dask: str | None = None
-    timing: bool = True
-    keep_trajectories: bool = False
-    again: bool = False
-
-
-def sweep(request: Request, console: Console, progress: Console) -> int:
+def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
     """Do what of the study is not done yet; returns the exit code, 0.
 
     A cell that failed is a row with its status and reason, and no failure of the sweep. What is
@@ -93,7 +72,7 @@ def sweep(request: Request, console: Console, progress: Console) -> int:
     return 0
 
 
-def asked(request: Request) -> Study:
+def asked(request: SweepRequest) -> Study:
     """The study of the file, or the shipped one, with what the command line says in its place."""
     study = load_study(request.study)
     engines = chosen_engines(request.engines)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.metadata import version
-from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
 
 from models.errors import CrankcheckError
 from models.files import find_scene, read_text
+from reports.cli.measuring import TuneRequest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes
@@ -35,26 +35,9 @@ from sim.settings import profile_of, resolved
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""
 MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
-RUN_S = 20.0
-"""The longest time for a run [s]."""
 
 
-@dataclass(frozen=True)
-class Request:
-    """What `tune` was asked for, as given."""
-
-    scenes: Sequence[str]
-    engine: str
-    target: float
-    budget: int = 60
-    seed: int = 0
-    turns: float = 2.0
-    output: Path | None = None
-    limit_s: float = RUN_S
-    timing: bool = True
-
-
-def run_tune(request: Request, console: Console, progress: Console) -> int:
+def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 when settings reach the target, 1 when none do.
 
     Raises
@@ -97,7 +80,9 @@ def run_tune(request: Request, console: Console, progress: Console) -> int:
     return 0 if best else 1
 
 
-def _how(request: Request, found: Sequence[Attempt], tried: Sequence[Attempt], around: int) -> str:
+def _how(
+    request: TuneRequest, found: Sequence[Attempt], tried: Sequence[Attempt], around: int
+) -> str:
     """How many trials and runs it took; ``around`` are the runs before and after the search."""
     after = sum(one.runs for one in tried)
     late = sum(one.timed_out for one in (*found, *tried))
@@ -112,7 +97,7 @@ def _how(request: Request, found: Sequence[Attempt], tried: Sequence[Attempt], a
     ) + (lost if late else "")
 
 
-def _goal(request: Request) -> Goal:
+def _goal(request: TuneRequest) -> Goal:
     """What is asked for, checked."""
     target, budget, seed = request.target, request.budget, request.seed
     if not AT_ROUNDING <= target < COARSEST:
@@ -141,7 +126,7 @@ def _goal(request: Request) -> Goal:
 
 
 def _searched(
-    request: Request, bench: Bench, space: Space, base: Settings, progress: Console
+    request: TuneRequest, bench: Bench, space: Space, base: Settings, progress: Console
 ) -> list[Attempt]:
     """All trials; where they are cut short, what is kept is said."""
     with study_in(request.output, _asked(request, bench.goal, space, base)) as study:
@@ -162,7 +147,7 @@ def _searched(
             raise
 
 
-def _asked(request: Request, goal: Goal, space: Space, base: Settings) -> dict[str, object]:
+def _asked(request: TuneRequest, goal: Goal, space: Space, base: Settings) -> dict[str, object]:
     """All that the results of the trials depend on, as plain values."""
     texts = [read_text(find_scene(name)) for name in request.scenes]
     return {

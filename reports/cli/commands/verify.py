@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import cast
 
 from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from reports.diff.changes import FACTOR, Diff, compare
+from reports.cli.checking import VerifyRequest
+from reports.diff.changes import Diff, compare
 from reports.diff.junit import joined
 from reports.diff.reading import read_run, scene_digests
 from reports.diff.runs import Run, planned_run, run_of
@@ -38,29 +38,6 @@ IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
 
 
 @dataclass(frozen=True)
-class Request:
-    """What `verify` was asked for, as given; ``baseline`` is the folder of an earlier run, whose
-    errors may grow by ``factor``."""
-
-    scenes: Sequence[str]
-    engines: Sequence[str]
-    profiles: Sequence[str]
-    dt_s: float | None
-    steps_per_turn: float | None
-    turns: float
-    tolerance: Sequence[str]
-    drive: str
-    converge: bool
-    jobs: int
-    junit: Path | None
-    csv: Path | None
-    json: Path | None
-    folder: Path | None
-    baseline: Path | None = None
-    factor: float = FACTOR
-
-
-@dataclass(frozen=True)
 class Results:
     """What there is to write: cells, where they come from, the digests of the texts of their
     scenes, and what changed since the baseline."""
@@ -71,7 +48,7 @@ class Results:
     diff: Diff | None = None
 
 
-def verify(request: Request, console: Console, progress: Console) -> int:
+def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2 not
     to be run.
 
@@ -113,7 +90,7 @@ def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> i
     return int(out or (diff is not None and diff.code() == 1))
 
 
-def plan(request: Request) -> list[Cell]:
+def plan(request: VerifyRequest) -> list[Cell]:
     """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
     tolerance = parse(request.tolerance)
     if request.dt_s is not None and request.steps_per_turn is not None:
@@ -156,7 +133,7 @@ def passages(cells: Sequence[Cell]) -> list[str]:
     return [note for note in dict.fromkeys(notes) if note]
 
 
-def _check_outputs(request: Request) -> None:
+def _check_outputs(request: VerifyRequest) -> None:
     """Refuse outputs that can not be written, before the run."""
     named = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
     files = [(option, path) for option, path in named.items() if path is not None]
@@ -172,7 +149,9 @@ def _engines(cells: Sequence[Cell]) -> list[str]:
     return list(dict.fromkeys(cell.engine for cell in cells))
 
 
-def _baseline(request: Request, cells: Sequence[Cell], digests: Mapping[str, str]) -> Run | None:
+def _baseline(
+    request: VerifyRequest, cells: Sequence[Cell], digests: Mapping[str, str]
+) -> Run | None:
     """The cells of the baseline that are to be run now, read before anything is written over it.
 
     Raises
@@ -189,7 +168,7 @@ def _baseline(request: Request, cells: Sequence[Cell], digests: Mapping[str, str
     return base.only(planned.cells)
 
 
-def _write(request: Request, results: Results) -> None:
+def _write(request: VerifyRequest, results: Results) -> None:
     """Every output that was asked for, each whole or not at all."""
     folder = request.folder
     *texts, table = IN_FOLDER

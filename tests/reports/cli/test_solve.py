@@ -131,13 +131,14 @@ def test_the_workbook_says_where_its_numbers_come_from(crank: Crank, tmp_path: P
 def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
     tmp_path: Path, fourbar: Scene
 ) -> None:
-    from reports.cli.commands.solve import Request, run_solve
+    from reports.cli.commands.solve import run_solve
+    from reports.cli.showing import SolveRequest
 
     path = tmp_path / "out.xlsx"
     ringing = replace(fourbar, source="bell \x07")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.cli.commands.solve.load_scene", lambda _: ringing)
-        run_solve(Request("bell", None, None, None, path), Console())
+        run_solve(SolveRequest("bell", None, None, None, path), Console())
     assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 

@@ -16,6 +16,7 @@ from typer.testing import CliRunner, Result
 from models.errors import CrankcheckError, EngineError
 from models.files import shipped
 from reports.cli import app
+from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
 from reports.judge.rules import RULES
 
@@ -327,11 +328,9 @@ def against(tmp_path: Path) -> Verify:
         console = Console(width=100, record=True, file=io.StringIO())
         given: dict[str, object] = {
             "scenes": ("fourbar-lecture-1",), "engines": ("mujoco",), "profiles": ("tuned",),
-            "dt_s": None, "steps_per_turn": 90.0, "turns": 1.0, "tolerance": (),
-            "drive": "prescribed", "converge": False, "jobs": 1, "junit": None, "csv": None,
-            "json": None, "folder": None,
+            "steps_per_turn": 90.0, "turns": 1.0, "converge": False, "jobs": 1,
         }  # fmt: skip
-        code = command.verify(command.Request(**{**given, **asked}), console, console)  # type: ignore[arg-type]
+        code = command.verify(VerifyRequest(**{**given, **asked}), console, console)  # type: ignore[arg-type]
         return code, console.export_text()
 
     return run

@@ -8,7 +8,8 @@ import pytest
 from rich.console import Console
 
 from models.files import load_scene
-from reports.cli.commands.solve import Request, run_solve
+from reports.cli.commands.solve import run_solve
+from reports.cli.showing import SolveRequest
 from reports.judge.cell import Cell, Checked, check
 from reports.verify.table import show
 
@@ -82,7 +83,7 @@ def test_what_there_is_no_room_for_is_left_out_whole(
 @pytest.mark.parametrize("width", [60, 80, 100])
 def test_a_motion_fits_as_well(width: int) -> None:
     stream = io.StringIO()
-    request = Request("sixbar-watt", None, None, None, None)
+    request = SolveRequest("sixbar-watt", None, None, None, None)
     run_solve(request, Console(file=stream, width=width))
     lines = stream.getvalue().splitlines()
     assert max(len(line.rstrip()) for line in lines) <= width

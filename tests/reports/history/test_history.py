@@ -16,7 +16,8 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.cli.commands.history import Request, run_history
+from reports.cli.checking import HistoryRequest
+from reports.cli.commands.history import run_history
 from reports.history import verification
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
@@ -117,7 +118,7 @@ def history(installer: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Hi
         given = {"scenes": [SCENE], "turns": 1.0, "steps_per_turn": 360.0, "cache": cache} | options
         output, complaint = io.StringIO(), io.StringIO()
         code = run_history(
-            Request("mujoco", versions, **given),  # type: ignore[arg-type]
+            HistoryRequest("mujoco", versions, **given),  # type: ignore[arg-type]
             Console(file=output, width=100),
             Console(file=complaint, width=100),
         )
@@ -266,7 +267,7 @@ def test_a_mistake_is_told_before_anything_is_installed(
     with pytest.raises(CrankcheckError, match="name versions"):
         history()
     with pytest.raises(CrankcheckError, match="did you mean mujoco"):
-        run_history(Request("mujocco", ["3.6.0"]), Console(), Console())
+        run_history(HistoryRequest("mujocco", ["3.6.0"]), Console(), Console())
 
 
 SCRIPT = """
@@ -286,11 +287,12 @@ if __name__ == "__main__":
     threading.Thread(target=stop, daemon=True).start()
     with guarded():
         install()
-        from reports.cli.commands.history import Request, run_history
+        from reports.cli.checking import HistoryRequest
+        from reports.cli.commands.history import run_history
         from reports.history.verification import patient
         patient.keywords["patience_s"] = 60.0  # the other program ends without being killed
         # One scene is run without workers, whose start would let signals through anyway.
-        request = Request("mujoco", [{version!r}], ["fourbar-lecture-1"], turns=100.0,
+        request = HistoryRequest("mujoco", [{version!r}], ["fourbar-lecture-1"], turns=100.0,
                           cache=Path({cache!r}))
         run_history(request, terminal(), terminal(stderr=True))
 """
@@ -363,7 +365,9 @@ def test_a_signal_ends_the_other_program_too(
 def test_mujoco_3_7_closes_moving_loops_better_than_3_6(tmp_path: Path) -> None:
     """The velocity term of moving loop constraints that 3.7.0 added; needs the network."""
     output, complaint = io.StringIO(), io.StringIO()
-    request = Request("mujoco", ["3.6.0", "3.7.0"], cache=tmp_path / "cache", folder=tmp_path)
+    request = HistoryRequest(
+        "mujoco", ["3.6.0", "3.7.0"], cache=tmp_path / "cache", folder=tmp_path
+    )
     code = run_history(request, Console(file=output, width=100), Console(file=complaint))
     assert (code, complaint.getvalue()) == (0, "")
     with (tmp_path / "history.csv").open(encoding="utf-8") as lines:

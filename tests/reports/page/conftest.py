@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Page, Request, sync_pla
 from rich.console import Console
 
 from reports.cli.commands import sweep as command
+from reports.cli.measuring import SweepRequest
 from reports.page.build import page, stability_page
 from reports.stability.matrix import Matrix
 from reports.store.reader import Stored, read_store
@@ -59,7 +60,7 @@ def small_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     study = folder / "study.toml"
     study.write_text(STUDY)
     nowhere = Console(file=StringIO())
-    command.sweep(command.Request(folder / "out", study=study), nowhere, nowhere)
+    command.sweep(SweepRequest(folder / "out", study=study), nowhere, nowhere)
     return folder / "out"
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError
-from reports.cli.commands.sweep import Request, asked
+from reports.cli.commands.sweep import asked
+from reports.cli.measuring import SweepRequest
 from reports.plan.grid import grid
 from reports.plan.study import Study, Variant, load_study
 
@@ -89,19 +90,21 @@ def test_the_same_settings_under_two_names_are_one_cell() -> None:
 
 
 def test_options_take_the_place_of_what_the_study_says() -> None:
-    base = Request(Path("x"))
-    study = asked(Request(Path("x"), scenes=["shaper"], engines=["pymunk"], steps_per_turn="90,99"))
+    base = SweepRequest(Path("x"))
+    study = asked(
+        SweepRequest(Path("x"), scenes=["shaper"], engines=["pymunk"], steps_per_turn="90,99")
+    )
     assert study.scenes == ["shaper"]
     assert study.steps_per_turn == [90.0, 99.0]
     assert {variant.engine for variant in study.variants} == {"pymunk"}
     assert len(study.variants) == 4
     assert asked(base) == load_study(None)
-    profiles = asked(Request(Path("x"), profiles=["tuned"])).variants
+    profiles = asked(SweepRequest(Path("x"), profiles=["tuned"])).variants
     assert [(v.engine, v.profile) for v in profiles] == [("mujoco", "tuned"), ("pymunk", "tuned")]
 
 
 def test_set_makes_one_variant_for_each_value() -> None:
-    study = asked(Request(Path("x"), settings=["mujoco.iterations=1,2", "mujoco.solver=CG"]))
+    study = asked(SweepRequest(Path("x"), settings=["mujoco.iterations=1,2", "mujoco.solver=CG"]))
     each = [one for variant in study.variants for one in variant.each()]
     assert [v.name for v in each] == [
         "tuned, iterations=1, solver=CG",
@@ -115,22 +118,28 @@ def test_set_makes_one_variant_for_each_value() -> None:
 @pytest.mark.parametrize(
     ("request_", "words"),
     [
-        (Request(Path("x"), settings=["iterations=2"]), "write it like --set mujoco.iterations"),
-        (Request(Path("x"), settings=["bullet.iterations=2"]), "'bullet' is no engine of this"),
-        (Request(Path("x"), settings=["mujoco.iterations="]), "write it like"),
-        (Request(Path("x"), settings=["mujoco.iteratoins=2"]), "did you mean iterations"),
-        (Request(Path("x"), settings=["mujoco.iterations=some"]), "it takes a whole number"),
-        (Request(Path("x"), steps_per_turn="90;180"), "numbers with commas"),
-        (Request(Path("x"), steps_per_turn=""), "numbers with commas"),
-        (Request(Path("x"), steps_per_turn="4"), "a turn needs at least 8"),
-        (Request(Path("x"), steps_per_turn="nan"), "--steps-per-turn nan"),
-        (Request(Path("x"), turns=0.0), "--turns 0"),
-        (Request(Path("x"), scenes=["fourbar"]), "Did you mean fourbar"),
-        (Request(Path("x"), engines=["mujoko"]), "did you mean mujoco"),
-        (Request(Path("x"), profiles=["tunde"]), "none of that name"),
+        (
+            SweepRequest(Path("x"), settings=["iterations=2"]),
+            "write it like --set mujoco.iterations",
+        ),
+        (
+            SweepRequest(Path("x"), settings=["bullet.iterations=2"]),
+            "'bullet' is no engine of this",
+        ),
+        (SweepRequest(Path("x"), settings=["mujoco.iterations="]), "write it like"),
+        (SweepRequest(Path("x"), settings=["mujoco.iteratoins=2"]), "did you mean iterations"),
+        (SweepRequest(Path("x"), settings=["mujoco.iterations=some"]), "it takes a whole number"),
+        (SweepRequest(Path("x"), steps_per_turn="90;180"), "numbers with commas"),
+        (SweepRequest(Path("x"), steps_per_turn=""), "numbers with commas"),
+        (SweepRequest(Path("x"), steps_per_turn="4"), "a turn needs at least 8"),
+        (SweepRequest(Path("x"), steps_per_turn="nan"), "--steps-per-turn nan"),
+        (SweepRequest(Path("x"), turns=0.0), "--turns 0"),
+        (SweepRequest(Path("x"), scenes=["fourbar"]), "Did you mean fourbar"),
+        (SweepRequest(Path("x"), engines=["mujoko"]), "did you mean mujoco"),
+        (SweepRequest(Path("x"), profiles=["tunde"]), "none of that name"),
     ],
 )
-def test_what_can_not_be_run_is_said_before(request_: Request, words: str) -> None:
+def test_what_can_not_be_run_is_said_before(request_: SweepRequest, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         grid(asked(request_))
 

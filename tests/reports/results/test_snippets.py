@@ -12,7 +12,8 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.cli.commands.sweep import Request, sweep
+from reports.cli.commands.sweep import sweep
+from reports.cli.measuring import SweepRequest
 from reports.plan.study import Variant, load_study
 from reports.results.recommend import TARGETS, Recommendation, recommendations
 from reports.results.snippets import snippet
@@ -63,7 +64,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     study = folder.with_suffix(".toml")
     study.write_text(STUDY, encoding="utf-8")
     quiet = Console(quiet=True)
-    assert sweep(Request(folder / "sweep", study=study), quiet, quiet) == 0
+    assert sweep(SweepRequest(folder / "sweep", study=study), quiet, quiet) == 0
     return read_store(folder / "sweep")
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.cli.commands.sweep import Request, sweep
+from reports.cli.commands.sweep import sweep
+from reports.cli.measuring import SweepRequest
 from reports.workers.isolated import Limits
 
 SCENE = "fourbar-lecture-1"
@@ -43,7 +44,7 @@ def swept() -> Iterator[Sweep]:
     nowhere = Console(file=StringIO())
 
     def run(folder: Path, *engines: str, steps: str = "90,180", timing: bool = True) -> int:
-        asked = Request(
+        asked = SweepRequest(
             folder,
             scenes=[SCENE],
             engines=engines,

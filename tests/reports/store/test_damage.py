@@ -13,6 +13,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from reports.cli.checking import DiffRequest, VerifyRequest
 from reports.cli.commands import diff, report, verify
 from reports.store.damage import notice
 from reports.store.examine import examine
@@ -84,7 +85,7 @@ def test_no_gate_is_passed_on_cells_that_are_lost(name: str, store: Path, whole:
     case = CASES[name]
     case.change(store)
     for old, new in ((store, whole), (whole, store)):
-        code, message = ended(diff.run_diff, diff.Request(old, new), paper())
+        code, message = ended(diff.run_diff, DiffRequest(old, new), paper())
         assert code == case.gate, message
         if case.cells and case.gate:
             assert "2 cells of" in message
@@ -171,12 +172,11 @@ def test_a_baseline_that_lost_cells_passes_those_it_has(
     store: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     cut("cells")(store)  # of MuJoCo
-    options = dict.fromkeys(("dt_s", "junit", "csv", "json", "folder"))
 
     def run(*engines: str) -> tuple[int, str]:
-        asked = verify.Request(
-            ["fourbar-lecture-1"], engines, ["tuned"], steps_per_turn=180.0, turns=2.0,
-            tolerance=(), drive="prescribed", converge=False, jobs=1, baseline=store, **options
+        asked = VerifyRequest(
+            ["fourbar-lecture-1"], engines, ["tuned"], steps_per_turn=180.0, converge=False,
+            jobs=1, baseline=store,
         )  # fmt: skip
         return ended(verify.verify, asked, paper(), paper())
 
@@ -189,7 +189,7 @@ def test_a_baseline_that_lost_cells_passes_those_it_has(
 
 def test_both_runs_may_have_lost_the_same_cell(store: Path) -> None:
     cut("cells")(store)
-    code, message = ended(diff.run_diff, diff.Request(store, store), paper())
+    code, message = ended(diff.run_diff, DiffRequest(store, store), paper())
     assert (code, "has lost too" in message) == (2, True)
 
 

@@ -11,6 +11,7 @@ import pytest
 from filelock import FileLock
 
 from models.errors import CrankcheckError
+from reports.cli.checking import DiffRequest
 from reports.cli.commands import diff, report
 from reports.store import lock
 from reports.store.damage import BUSY
@@ -50,12 +51,12 @@ def test_a_comparison_with_a_running_sweep_waits_for_its_cells(
 ) -> None:
     gone("cells")(store)
     for old, new in ((store, whole), (whole, store)):
-        code, message = ended(diff.run_diff, diff.Request(old, new), paper())
+        code, message = ended(diff.run_diff, DiffRequest(old, new), paper())
         assert code == 2
         assert "2 cells of" in message
         assert f"{BUSY}; 2 cells missing" in message
         assert "let its sweep end first" in message
-    assert ended(diff.run_diff, diff.Request(store, store), paper()) == (0, "")
+    assert ended(diff.run_diff, DiffRequest(store, store), paper()) == (0, "")
 
 
 def test_what_is_damaged_is_told_while_a_sweep_writes_too(store: Path, held: FileLock) -> None:

@@ -18,15 +18,16 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.cli.commands.tune import Request, run_tune
+from reports.cli.commands.tune import run_tune
+from reports.cli.measuring import TuneRequest
 from reports.tune.cost import EVALUATIONS
 from reports.tune.knobs import Knob, space_of
 
-SMALL = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
-Tell = Callable[[Request], tuple[int, str]]
+SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
+Tell = Callable[[TuneRequest], tuple[int, str]]
 
 
-def told(request: Request) -> tuple[int, str]:
+def told(request: TuneRequest) -> tuple[int, str]:
     """Exit code and output, but for the time of day."""
     output = io.StringIO()
     quiet = Console(file=io.StringIO())
@@ -227,7 +228,8 @@ SCRIPT = """
 import os, signal, sys, threading
 from pathlib import Path
 from reports.cli import guarded
-from reports.cli.commands.tune import Request, run_tune
+from reports.cli.measuring import TuneRequest
+from reports.cli.commands.tune import run_tune
 from reports.workers.signals import install
 from reports.output.console import terminal
 from reports.tune.attempt import Bench
@@ -246,7 +248,7 @@ if __name__ == "__main__":
     Bench.attempt = attempt
     with guarded():
         install()
-        request = Request(("fourbar-lecture-1",), "mujoco", 1e-5, budget=1000, output=path)
+        request = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=1000, output=path)
         run_tune(request, terminal(), terminal(stderr=True))
 """
 

@@ -1,0 +1,66 @@
+"""Every option of a command is a field of its request, written once."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from reports.cli import app, checking, measuring, showing
+
+LEAST = {
+    "verify": ("verify", checking.VerifyRequest()),
+    "diff old new": ("run_diff", checking.DiffRequest(Path("old"), Path("new"))),
+    "history mujoco 1 2": ("run_history", checking.HistoryRequest("mujoco", ["1", "2"])),
+    "selftest": ("selftest", checking.SelftestRequest()),
+    "sweep -o out": ("sweep", measuring.SweepRequest(Path("out"))),
+    "tune a b --engine mujoco --target 1": (
+        "run_tune",
+        measuring.TuneRequest(["a", "b"], "mujoco", 1.0),
+    ),
+    "stability": ("stability", measuring.StabilityRequest()),
+    "solve a": ("run_solve", showing.SolveRequest("a")),
+}
+
+
+def asked(monkeypatch: pytest.MonkeyPatch, line: str, function: str) -> object:
+    """The request that a command line makes."""
+    requests: list[object] = []
+
+    def run(request: object, *_: object) -> int:
+        requests.append(request)
+        return 1
+
+    command, *options = line.split()
+    monkeypatch.setattr(import_module(f"reports.cli.commands.{command}"), function, run)
+    result = CliRunner().invoke(app, [command, *options], catch_exceptions=False)
+    assert result.exit_code == (command != "solve"), result.output
+    (request,) = requests
+    return request
+
+
+@pytest.mark.parametrize("line", LEAST)
+def test_what_is_not_given_keeps_the_default_of_the_request(
+    line: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    function, request = LEAST[line]
+    assert asked(monkeypatch, line, function) == request
+
+
+def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None:
+    line = (
+        "verify a b --engine c --engine d --profile e --dt 0.1 --steps-per-turn 2 --turns 3 "
+        "--tol angle=1 --drive servo --no-convergence --jobs 4 --junit f --csv g --json h -o i "
+        "--baseline j --factor 5"
+    )
+    request = checking.VerifyRequest(
+        ["a", "b"], ["c", "d"], ["e"], 0.1, 2.0, 3.0, ["angle=1"], "servo", False, 4, Path("f"),
+        Path("g"), Path("h"), Path("i"), Path("j"), 5.0,
+    )  # fmt: skip
+    assert asked(monkeypatch, line, "verify") == request
+    default = checking.VerifyRequest()
+    same = [f.name for f in fields(default) if getattr(default, f.name) == getattr(request, f.name)]
+    assert same == []
