@@ -26,5 +26,5 @@ def fake_engine() -> ModuleType:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest test first: at the end, one process would wait for the other to be done with it."""
+    """The longest test first, as at the end one process would wait for the other."""
     items.sort(key=lambda item: "readme" not in item.nodeid)
