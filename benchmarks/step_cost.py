@@ -1,4 +1,4 @@
-"""Measure what the models of `reports.tune.cost` need: ``python -m benchmarks.step_cost``.
+"""Measure what the models of `sim.tuning` need: ``python -m benchmarks.step_cost``.
 
 Every shipped scene at constant speed is timed in both engines, with settings that differ in what
 they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some
@@ -8,24 +8,29 @@ minutes on a machine that does nothing else.
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
+from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.sweep.measured import timed
-from reports.tune.cost import EVALUATIONS, PYMUNK_PASS, mujoco_counts, pymunk_counts
 from reports.tune.timing import GUESS_US
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.engine import SettingValue
+from sim.engine import Settings
+from sim.mujoco import knobs as mujoco_knobs
+from sim.mujoco.knobs import EVALUATIONS
+from sim.pymunk import knobs as pymunk_knobs
+from sim.pymunk.knobs import PASS_US
 
 ROUNDS = 12
 STEPS_PER_TURN = 720.0
 ITERATIONS = (2, 10, 50, 150)
-Point = tuple[Scene, str, Mapping[str, SettingValue]]
+Point = tuple[Scene, str, Settings]
 
 
 def points() -> list[Point]:
@@ -46,6 +51,11 @@ def points() -> list[Point]:
 def _steady(scene: Scene) -> bool:
     """A scene of constant speed: no part of a step's time is the drive's."""
     return isinstance(scene.driver.law, ConstantSpeed)
+
+
+def start(scene: Scene) -> State:
+    """The scene assembled."""
+    return solve(scene, np.zeros(1)).state()
 
 
 def measure(what: Sequence[Point], rounds: int = ROUNDS) -> list[float]:
@@ -72,7 +82,7 @@ def fit(counts: Sequence[Sequence[float]], us: Sequence[float]) -> list[float]:
 
 
 def mujoco(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
-    """The constants of MuJoCo as text."""
+    """The constants of `sim.mujoco.knobs` as text."""
     known = [(p, t) for p, t in zip(what, us, strict=True) if p[1] == "mujoco" and t == t]
     euler = {p[0].name: t for p, t in known if p[2].get("integrator") == "Euler"}
     scenes = {p[0].name: p[0] for p, _ in known}
@@ -84,9 +94,9 @@ def mujoco(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
     }
     yield f"EVALUATIONS = { ({k: round(v, 2) for k, v in ratio.items()}) }"
     rows = [(p[0], t / ratio[str(p[2]["integrator"])]) for p, t in known if "integrator" in p[2]]
-    counts = {name: mujoco_counts(scene) for name, scene in scenes.items()}
+    counts = {name: mujoco_knobs.counts(scene, start(scene)) for name, scene in scenes.items()}
     found = fit([counts[scene.name] for scene, _ in rows], [t for _, t in rows])
-    yield "MUJOCO_STEP, MUJOCO_BODY, MUJOCO_LOOP = " + ", ".join(f"{x:.3f}" for x in found)
+    yield "STEP_US, BODY_US, LOOP_US = " + ", ".join(f"{x:.3f}" for x in found)
     model = [float(np.dot(counts[scene.name], found)) / t for scene, t in rows]
     yield _off(model)
     tuned = {p[0].name: t for p, t in known if p[2].get("integrator") == "RK4"}
@@ -96,18 +106,20 @@ def mujoco(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
 
 
 def pymunk(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
-    """The constants of pymunk as text."""
+    """The constants of `sim.pymunk.knobs` as text."""
     rows, times = [], []
     for (scene, engine, settings), t in zip(what, us, strict=True):
         if engine == "pymunk" and t == t:
-            step, body, kinds = pymunk_counts(scene, settings["lines"] == "exact")
-            passes = [float(settings["iterations"]) * kinds[name] for name in PYMUNK_PASS]
+            step, body, kinds = pymunk_knobs.counts(
+                scene, start(scene), settings["lines"] == "exact"
+            )
+            passes = [float(settings["iterations"]) * kinds[name] for name in PASS_US]
             rows.append([step, body, kinds["PinJoint"], *passes])
             times.append(t)
     found = fit(rows, times)
-    yield "PYMUNK_STEP, PYMUNK_BODY, PYMUNK_RAIL = " + ", ".join(f"{x:.3f}" for x in found[:3])
-    each = {name: round(us_pass, 5) for name, us_pass in zip(PYMUNK_PASS, found[3:], strict=True)}
-    yield f"PYMUNK_PASS = {each}"
+    yield "STEP_US, BODY_US, RAIL_US = " + ", ".join(f"{x:.3f}" for x in found[:3])
+    each = {name: round(us_pass, 5) for name, us_pass in zip(PASS_US, found[3:], strict=True)}
+    yield f"PASS_US = {each}"
     yield _off([float(np.dot(row, found)) / t for row, t in zip(rows, times, strict=True)])
 
 

@@ -20,6 +20,7 @@ Drive = Literal["prescribed", "servo", "free"]
 motor of limited gain keeps its speed. Free: nothing drives it, it is a link like the others, and
 all velocities at the start are those of the state; the law plays no part."""
 SettingValue = float | int | str
+Settings = Mapping[str, SettingValue]
 
 
 @dataclass(frozen=True)
@@ -77,8 +78,7 @@ class Facts:
     Mass, inertia about the centre of mass, and that centre in the link's own frame, by body.
     ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
     quantities belong: a velocity logged with the positions of time t belongs to
-    t + velocity_shift * dt. An engine that ``reports_accelerations`` gives numbers for all of
-    them; one that does not gives NaN for all.
+    t + velocity_shift * dt.
     """
 
     version: str
@@ -90,7 +90,6 @@ class Facts:
     settings: Mapping[str, SettingValue]
     velocity_shift: float
     acceleration_shift: float
-    reports_accelerations: bool = True
 
 
 @dataclass(frozen=True)
@@ -136,6 +135,11 @@ class Engine(Protocol):
 
     @property
     def profiles(self) -> Mapping[str, Profile]: ...
+
+    @property
+    def reports_accelerations(self) -> bool:
+        """Whether it gives numbers for all accelerations; one that does not gives NaN for all."""
+        ...
 
     def version(self) -> str:
         """The installed version; EngineError with the command that installs it if it is missing."""

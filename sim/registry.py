@@ -1,4 +1,4 @@
-"""The engines by name; an engine's package is imported only when the engine is asked for."""
+"""The engines by name, and what each offers; nothing of it is loaded before it is asked for."""
 
 from __future__ import annotations
 
@@ -7,16 +7,32 @@ import importlib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import cast
+from typing import Literal, cast
 
 from models.errors import EngineError
 from sim.engine import Engine
 
 ENGINES: Mapping[str, str] = {
-    "mujoco": "sim.mujoco.engine",
-    "pymunk": "sim.pymunk.engine",
+    "mujoco": ".mujoco",
+    "pymunk": ".pymunk",
 }
-"""Name to module; each module has an ``ENGINE``. To add an engine, add a file and a line here."""
+"""Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
+Capability = Literal["snippet", "knobs", "spoiler", "viewer"]
+"""What an engine may lack."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What stands in the folder of an engine; its ``__init__`` has it as ``DECLARATION``.
+
+    ``package`` is what Python imports, ``install`` what pip calls it. The adapter is the value
+    ``ENGINE`` of the file ``engine``; each of what it ``offers`` has a file of that name too, with
+    a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Spoiler` or `Viewer`.
+    """
+
+    package: str
+    install: str
+    offers: tuple[Capability, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -28,6 +44,15 @@ class Availability:
     install: str
 
 
+def declaration(name: str) -> Declaration:
+    """What an engine's folder holds. Raises EngineError, with near names, for an unknown one."""
+    if name not in ENGINES:
+        near = difflib.get_close_matches(name, ENGINES, n=2, cutoff=0.4)
+        hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(ENGINES)}"
+        raise EngineError(f"engine {name!r}: unknown; {hint}")
+    return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
+
+
 def engine(name: str) -> Engine:
     """The engine of that name.
 
@@ -36,24 +61,43 @@ def engine(name: str) -> Engine:
     EngineError
         No such engine (the message suggests near names), or its package is not installed.
     """
-    if name not in ENGINES:
-        near = difflib.get_close_matches(name, ENGINES, n=2, cutoff=0.4)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(ENGINES)}"
-        raise EngineError(f"engine {name!r}: unknown; {hint}")
+    return cast(Engine, _loaded(name, "engine"))
+
+
+def capability(name: str, what: Capability) -> object:
+    """What an engine offers beside its adapter.
+
+    Raises
+    ------
+    EngineError
+        As `engine` does, and where the engine does not offer it: the message says which ones do.
+    """
+    if what not in declaration(name).offers:
+        raise EngineError(f"engine {name}: it has no {what}; use {' or '.join(offering(what))}")
+    return _loaded(name, what)
+
+
+def offering(what: Capability) -> list[str]:
+    """The engines that offer it, installed or not."""
+    return [name for name in ENGINES if what in declaration(name).offers]
+
+
+def _loaded(name: str, part: str) -> object:
+    """The value that a file in the folder of an engine is there for."""
+    package = declaration(name).package
     try:
-        module = importlib.import_module(ENGINES[name])
+        module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except (ImportError, AttributeError) as error:
         # An AttributeError is what a half-removed package leaves of an engine.
-        at_fault = isinstance(error, AttributeError) or (error.name or name).split(".")[0] == name
-        if not at_fault:
+        if isinstance(error, ImportError) and (error.name or package).split(".")[0] != package:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
-    return cast(Engine, module.ENGINE)
+    return getattr(module, part.upper())
 
 
 def install_command(name: str) -> str:
     """The command that installs an engine's package."""
-    return f"{sys.executable} -m pip install {name}"
+    return f"{sys.executable} -m pip install {declaration(name).install}"
 
 
 def available() -> tuple[Availability, ...]:

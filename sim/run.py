@@ -88,6 +88,7 @@ def run(
         start_s=state.time_s,
         steps=steps,
         every=every,
+        reports_accelerations=chosen.reports_accelerations,
     )
     try:
         session = chosen.open(scene, state, held, dt_s, drive)
@@ -216,7 +217,6 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
         acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
         stopped_at_s=float(poses.time_s[-1]),
-        reports_accelerations=facts.reports_accelerations,
         warnings=tuple(warnings),
         cost=Cost(wall, done, logged=True),
     )

@@ -1,28 +1,29 @@
 """An engine broken on purpose: opened as ever, then meddled with at chosen steps.
 
-What is done to a session is the engine's own affair, and stands in a file per engine
-(`sim.mujoco.spoil`, `sim.pymunk.spoil`): the model in the engine is changed, not its log.
+What is done to a session is the engine's own affair, and stands in the file ``spoiler`` of its
+folder: the model in the engine is changed, not its log.
 """
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Protocol, cast
+from typing import Literal, Protocol, cast
 
 import numpy as np
 
 from models.array import Array
 from models.motion import State
 from models.scene import Point, Scene
-from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, SettingValue
+from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, Settings
+from sim.registry import capability
 from sim.run import joined, stretch
 
-SPOILERS: Mapping[str, str] = {"mujoco": "sim.mujoco.spoil", "pymunk": "sim.pymunk.spoil"}
-"""Engine to module; each module has a ``SPOILER``."""
+WrongSetting = Literal["few-iterations", "first-order", "light-drive", "semi-implicit"]
+"""What settings alone can spoil: an iterative solver ends after one over the size, errors shrink as
+dt, the drive is a share of what it should be, velocities belong between the positions."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Opening:
 
     scene: Scene
     state: State
-    settings: Mapping[str, SettingValue]
+    settings: Settings
     dt_s: float
     drive: Drive
 
@@ -46,6 +47,11 @@ class Post:
 
 class Spoiler(Protocol):
     """What can be broken in the sessions of one engine. Every size of 0 changes nothing."""
+
+    @property
+    def wrong_settings(self) -> Mapping[WrongSetting, Callable[[float], Settings]]:
+        """The settings by what they spoil, as far as the engine has such, from a size above 0."""
+        ...
 
     def open_loop(self, session: Session) -> None:
         """Take away the joint that closes the loop."""
@@ -89,8 +95,8 @@ Spoil = Callable[[Spoiler, Session, Opening, int], None]
 
 
 def spoiler(engine: str) -> Spoiler:
-    """What can be broken in that engine; its package is imported now."""
-    return cast(Spoiler, importlib.import_module(SPOILERS[engine]).SPOILER)
+    """What can be broken in that engine. Raises EngineError where it has no spoiler."""
+    return cast(Spoiler, capability(engine, "spoiler"))
 
 
 @dataclass(frozen=True)
@@ -112,11 +118,15 @@ class SpoiltEngine:
     def profiles(self) -> Mapping[str, Profile]:
         return self.engine.profiles
 
+    @property
+    def reports_accelerations(self) -> bool:
+        return self.engine.reports_accelerations
+
     def version(self) -> str:
         """The version of the engine."""
         return self.engine.version()
 
-    def check(self, settings: Mapping[str, SettingValue]) -> None:
+    def check(self, settings: Settings) -> None:
         """Raise SettingError as the engine does."""
         self.engine.check(settings)
 
@@ -124,7 +134,7 @@ class SpoiltEngine:
         self,
         scene: Scene,
         state: State,
-        settings: Mapping[str, SettingValue],
+        settings: Settings,
         dt_s: float,
         drive: Drive,
     ) -> SpoiltSession:

@@ -43,7 +43,7 @@ FLOORS: Mapping[str, str] = {
     "sim": """
         mujoco pymunk
         spoil
-        run
+        run snippets tuning viewing
         check energy registry
         measure drive chain settings
         engine

@@ -17,9 +17,9 @@ from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
-from reports.results.snippets import LANGUAGE
 from reports.results.table import noise_line, short_target
 from reports.store.reader import Stored
+from sim.snippets import snippet_writer
 
 ROOM = {
     "damage": 4_000,
@@ -157,7 +157,8 @@ def _snippets(report: Report) -> Iterator[str]:
         tightest = min(group, key=lambda one: one.target)
         targets = listed([short_target(one.target) for one in group])
         title = f"{engine} {variant}, {steps:g} steps per turn (error up to {targets})"
-        told.append(folded(title, code(tightest.snippet(), LANGUAGE.get(engine, ""))))
+        if text := tightest.snippet():
+            told.append(folded(title, code(text, snippet_writer(engine).language)))
     kept, left = fitted(told, ROOM["snippets"])
     yield from kept
     if left:

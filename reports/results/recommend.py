@@ -10,10 +10,11 @@ from reports.results.candidates import Candidate, candidates
 from reports.results.cost import equal, noise, reached
 from reports.results.fits.words import short
 from reports.results.lines import Line, lines
-from reports.results.snippets import PERIOD_S, snippet
 from reports.results.why_not import about, broken, nearest, nothing
 from reports.store.reader import Stored
 from sim.engine import Drive, SettingValue
+from sim.registry import offering
+from sim.snippets import PERIOD_S, snippet
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 """Errors of place [rad, or of the longest link]."""
@@ -60,7 +61,7 @@ class Recommendation:
 
     def snippet(self, period_s: float = PERIOD_S) -> str:
         """Text to copy and paste, headed by what it promises; empty where there is none."""
-        if self.variant is None:
+        if self.variant is None or self.engine not in offering("snippet"):
             return ""
         scenes = "the scene" if self.scenes == 1 else f"each of {self.scenes} scenes"
         head = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,9 +12,9 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene, span
 from reports.judge.cell import Runner
-from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, in_engine, in_settings
+from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, can_set, in_engine, in_settings
 from reports.selftest.logs import last, moved
-from sim.engine import Run, Session, SettingValue
+from sim.engine import Run, Session
 from sim.run import run
 from sim.spoil import Opening, Post, Spoiler
 
@@ -77,12 +77,6 @@ def _lose(tools: Spoiler, session: Session, size: float) -> None:
         tools.lose(session)
 
 
-def _few_iterations(name: str, size: float) -> Mapping[str, SettingValue]:
-    """As many as 1/size; MuJoCo's Newton solves these loops in one, so it is Gauss-Seidel."""
-    solver = {"solver": "PGS"} if name == "mujoco" else {}
-    return {**solver, "iterations": round(1.0 / size)}
-
-
 def _iterations(size: float) -> str:
     number = round(1.0 / size)
     return f"{number} iter."
@@ -101,7 +95,7 @@ def _misread(size: float) -> Runner:
     """Velocities are taken for those of the instants of the positions, which Euler's are not."""
 
     def runner(*args: Any, **options: Any) -> Run:
-        done = in_settings(lambda _n, _s: {"integrator": "Euler"})(size)(*args, **options)
+        done = in_settings("semi-implicit")(size)(*args, **options)
         return replace(done, velocity_time_s=moved(done).time_s)
 
     return runner
@@ -181,17 +175,18 @@ FAULTS = (
         "engine",
         "one iteration of an iterative solver",
         "CC105",
-        in_settings(_few_iterations),
+        in_settings("few-iterations"),
         1.0,
         shown=_iterations,
+        needs=can_set("few-iterations"),
     ),
     Fault(
         "first-order",
         "engine",
         "pymunk's own error_bias: first order",
         "CC103",
-        in_settings(lambda _n, _s: {"error_bias": 0.9**60}),
-        engines=("pymunk",),
+        in_settings("first-order"),
+        needs=can_set("first-order"),
     ),
     Fault(
         "float32-arithmetic",
@@ -219,10 +214,10 @@ FAULTS = (
         "engine",
         "a flywheel too light for the crank",
         "CC102",
-        in_settings(lambda _, size: {"flywheel_ratio": 1.0 / size}),
+        in_settings("light-drive"),
         1e-3,
         "of it",
-        engines=("mujoco",),
+        needs=can_set("light-drive"),
     ),
     Fault("servo-lags", "engine", "the crank follows a servo", "CC102", _servo),
     Fault(
@@ -231,6 +226,6 @@ FAULTS = (
         "semi-implicit Euler, taken for RK4",
         "CC106",
         _misread,
-        engines=("mujoco",),
+        needs=can_set("semi-implicit"),
     ),
 )

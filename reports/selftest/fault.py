@@ -6,7 +6,7 @@ in it. A size of 0 goes the same way and changes nothing, which must not be noti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,10 +15,10 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import Runner
-from sim.engine import Run, Session, SettingValue
-from sim.registry import ENGINES, engine
+from sim.engine import Run, Session
+from sim.registry import available, engine, offering
 from sim.run import run
-from sim.spoil import Opening, Spoiler, SpoiltEngine
+from sim.spoil import Opening, Spoiler, SpoiltEngine, WrongSetting, spoiler
 
 FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
 REFUSED = "the engine does not hold"
@@ -33,7 +33,8 @@ class Fault:
 
     ``what`` says what it is. ``size`` is how large it is planted, in ``unit``; None for a fault
     that is there or not; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail,
-    with the words ``says`` in what it says. ``scenes`` and ``engines`` are where it is planted.
+    with the words ``says`` in what it says. ``scenes`` are where it is planted; ``needs`` says
+    of an engine whether it can have it.
     """
 
     name: str
@@ -45,7 +46,7 @@ class Fault:
     unit: str = ""
     says: tuple[str, ...] = ()
     scenes: tuple[str, ...] = (FOURBAR, SLIDER)
-    engines: tuple[str, ...] = tuple(ENGINES)
+    needs: Callable[[str], bool] = lambda _: True
     whole: bool = False
     shown: Callable[[float], str] | None = None
 
@@ -53,6 +54,16 @@ class Fault:
     def planted(self) -> float:
         """The size that the plant is given."""
         return 1.0 if self.size is None else self.size
+
+    def possible(self, name: str) -> bool:
+        """Whether an engine can have it; what goes wrong inside one needs its spoiler."""
+        return (self.group != "engine" or name in offering("spoiler")) and self.needs(name)
+
+    @property
+    def engines(self) -> tuple[str, ...]:
+        """The engines that can have it, of those that are installed."""
+        here = (one.name for one in available() if one.version)
+        return tuple(name for name in here if self.possible(name))
 
     @property
     def refused(self) -> bool:
@@ -78,15 +89,21 @@ def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
     return plant
 
 
-def in_settings(choose: Callable[[str, float], Mapping[str, SettingValue]]) -> Plant:
-    """The engine is set otherwise than asked for; ``choose`` is given its name."""
+def can_set(what: WrongSetting) -> Callable[[str], bool]:
+    """Whether an engine has such settings."""
+    return lambda name: what in spoiler(name).wrong_settings
+
+
+def in_settings(what: WrongSetting) -> Plant:
+    """The engine is set otherwise than asked for."""
 
     def plant(size: float) -> Runner:
         def runner(
             scene: Scene, state: Any, name: str, *args: Any, settings: Any = None, **options: Any
         ) -> Run:
-            wrong = {**(settings or {}), **(choose(name, size) if size else {})}
-            return run(scene, state, name, *args, settings=wrong, **options)
+            wrong = spoiler(name).wrong_settings[what](size) if size else {}
+            held = {**(settings or {}), **wrong}
+            return run(scene, state, name, *args, settings=held, **options)
 
         return runner
 

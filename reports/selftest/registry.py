@@ -39,10 +39,11 @@ def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
             near = difflib.get_close_matches(name, FAULTS, n=3, cutoff=0.4)
             hint = f"did you mean {' or '.join(near)}?" if near else f"use {', '.join(FAULTS)}"
             raise CrankcheckError(f"--fault {name!r}: there is none of that name; {hint}")
-        if not held & set(FAULTS[name].engines):
+        if not any(map(FAULTS[name].possible, held)):
+            able = " and ".join(FAULTS[name].engines) or "engines that are not installed"
             raise CrankcheckError(
-                f"--fault {name}: it can be planted in {' and '.join(FAULTS[name].engines)} only; "
+                f"--fault {name}: it can be planted in {able} only; "
                 f"found --engine {', '.join(sorted(held))}"
             )
     wanted = dict.fromkeys(names or FAULTS)
-    return [FAULTS[name] for name in wanted if held & set(FAULTS[name].engines)]
+    return [FAULTS[name] for name in wanted if any(map(FAULTS[name].possible, held))]

@@ -119,7 +119,7 @@ def _cells(one: Verdict, engines: Sequence[str], wide: bool) -> list[Text]:
 def _from(one: Verdict, engine: str) -> Text:
     """The smallest size that is caught in an engine."""
     places = [place for place in one.places if place.engine == engine]
-    if engine not in one.fault.engines:
+    if not one.fault.possible(engine):
         return Text("-")
     if not places or not all(place.finding for place in places):
         return Text("escapes", "bold red")

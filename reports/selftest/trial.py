@@ -18,6 +18,7 @@ from reports.judge.rules.base import Finding
 from reports.selftest.fault import Fault
 from reports.selftest.registry import FAULTS
 from reports.workers.pool import do_all
+from sim.registry import ENGINES
 
 STEPS = 360
 PROFILE = "tuned"
@@ -81,7 +82,8 @@ def healthy(scene: str, engine: str, steps: int = STEPS) -> Checked:
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
     """The scenes and engines that the faults are planted in."""
-    pairs = {(s, e): None for f in faults for s in f.scenes for e in f.engines if e in engines}
+    there = [name for name in ENGINES if name in engines]
+    pairs = {(s, e): None for f in faults for s in f.scenes for e in there if f.possible(e)}
     return list(pairs)
 
 

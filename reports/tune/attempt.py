@@ -12,9 +12,9 @@ from reports.judge.cell import Cell
 from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, counted
 from reports.sweep.measured import Outcome, measured
 from reports.tune.coarsest import coarsest
-from reports.tune.cost import Settings, Work
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.engine import SettingValue
+from sim.engine import Settings
+from sim.tuning import Work
 
 MOST_STEPS = 200_000
 """Of a run: some seconds. A finer step can not be what a search for the cheapest one is after."""
@@ -71,7 +71,7 @@ class Attempt:
     ``timed_out`` says that the clock ended a run: this says nothing for good about the settings.
     """
 
-    settings: Mapping[str, SettingValue]
+    settings: Settings
     steps_per_turn: int | None
     tried: int
     error: float
@@ -109,7 +109,7 @@ class Bench:
 
     def __init__(self, goal: Goal, works: Sequence[Work], limits: Limits) -> None:
         self.goal = goal
-        self._works = works
+        self.works = works
         self._isolated: Isolated[Outcome] = Isolated(limits)
 
     def close(self) -> None:
@@ -118,7 +118,7 @@ class Bench:
 
     def us_per_step(self, settings: Settings) -> float:
         """What a step takes by the model, all scenes together [microseconds]."""
-        return sum(work(settings) for work in self._works)
+        return sum(work(settings) for work in self.works)
 
     def row(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Row:
         """The row of one run.

@@ -20,9 +20,8 @@ from optuna.trial import FrozenTrial, Trial, TrialState
 
 from reports.tune.attempt import Attempt
 from reports.tune.coarsest import RESOLUTION
-from reports.tune.cost import Settings
-from reports.tune.knobs import Knob, Space, Values
-from sim.engine import SettingValue
+from sim.engine import Settings, SettingValue
+from sim.tuning import Knob, SearchSpace, Values
 
 FOUND = "found"
 """Where a trial keeps its attempt."""
@@ -56,7 +55,7 @@ def nearest_of(found: list[Attempt]) -> Attempt:
 class Plan:
     """How to search: around which complete settings, in how many trials."""
 
-    space: Space
+    space: SearchSpace
     profile: Settings
     target: float
     budget: int
@@ -97,7 +96,7 @@ def _tell(study: Study, plan: Plan, trial: Trial, place: int, found: Attempt) ->
 
 
 def plainer(
-    space: Space, first: Attempt, best: Attempt, attempt: Try
+    space: SearchSpace, first: Attempt, best: Attempt, attempt: Try
 ) -> tuple[Attempt, list[Attempt]]:
     """The best with every knob back at the profile's value that it gains nothing by.
 

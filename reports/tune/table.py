@@ -11,8 +11,8 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.tune.attempt import Attempt, Goal, Row
-from reports.tune.knobs import Space
 from reports.tune.timing import Taken
+from sim.tuning import SearchSpace
 
 OTHERS = {
     "gap_pure": "gap / L",
@@ -32,7 +32,7 @@ class Side:
     taken: Taken | None = None
 
 
-def show(console: Console, goal: Goal, space: Space, sides: Sequence[Side]) -> None:
+def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> None:
     """Print the table, and the ratio of the last side to the first."""
     names = ", ".join(scene.name for scene in goal.scenes)
     console.print(Text(f"{names}, {goal.engine}: error of place up to {goal.target:g}", "bold"))
@@ -59,7 +59,7 @@ def show(console: Console, goal: Goal, space: Space, sides: Sequence[Side]) -> N
         )
 
 
-def _lines(goal: Goal, space: Space, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
+def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
     """Labels and cells."""
     found = [
         (knob.name, [_value(side.attempt.settings[knob.targets[0]]) for side in sides])

@@ -1,1 +1,5 @@
 """MuJoCo."""
+
+from sim.registry import Declaration
+
+DECLARATION = Declaration("mujoco", "mujoco", ("snippet", "knobs", "spoiler", "viewer"))

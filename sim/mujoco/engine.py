@@ -58,6 +58,7 @@ class MujocoEngine:
     """The adapter."""
 
     name = "mujoco"
+    reports_accelerations = True
     profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
 
     def version(self) -> str:

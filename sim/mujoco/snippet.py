@@ -6,24 +6,20 @@ import math
 import textwrap
 from collections.abc import Mapping, Sequence
 
-from sim.engine import Drive, SettingValue
+from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED
+from sim.snippets import SnippetWriter
 
 SECTION = "Paste into the mujoco element: of sections that are there twice the later one adds."
-Held = Mapping[str, SettingValue]
 WIDTH = 96
 
 
 def mujoco_snippet(
-    settings: Held,
-    steps_per_turn: float,
-    period_s: float,
-    drive: Drive = "prescribed",
-    head: Sequence[str] = (),
+    settings: Settings, steps_per_turn: float, period_s: float, drive: Drive, head: Sequence[str]
 ) -> str:
     """Sections to paste into ``<mujoco>``, which merges those that it has twice.
 
-    Only what differs from MuJoCo's defaults; see `reports.results.snippets.snippet`.
+    Only what differs from MuJoCo's defaults; see `sim.snippets.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     held = defaults | dict(settings)
@@ -43,7 +39,7 @@ def mujoco_snippet(
     return "\n".join(lines) + "\n"
 
 
-def _option(held: Held, defaults: Held, dt_s: float, drive: Drive) -> list[str]:
+def _option(held: Settings, defaults: Settings, dt_s: float, drive: Drive) -> list[str]:
     """The option element."""
     servo = drive == "servo"
     row = {"timestep": repr(dt_s)}
@@ -66,7 +62,7 @@ def _option(held: Held, defaults: Held, dt_s: float, drive: Drive) -> list[str]:
     return [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
 
 
-def _equality(held: Held, defaults: Held, dt_s: float) -> list[str]:
+def _equality(held: Settings, defaults: Settings, dt_s: float) -> list[str]:
     """Defaults of the connects, where they are not MuJoCo's own."""
     row = {}
     solref = (_timeconst(held, dt_s), float(held["solref_dampratio"]))
@@ -78,13 +74,13 @@ def _equality(held: Held, defaults: Held, dt_s: float) -> list[str]:
     return ["<default>", f"  <equality{_attributes(row)}/>", "</default>"] if row else []
 
 
-def _timeconst(held: Held, dt_s: float) -> float:
+def _timeconst(held: Settings, dt_s: float) -> float:
     """Of the loop closures [s]."""
     steps = float(held["solref_timeconst_steps"])
     return steps * dt_s if steps else float(held["solref_timeconst_s"])
 
 
-def _how_to_scale(held: Held, steps_per_turn: float, period_s: float) -> str:
+def _how_to_scale(held: Settings, steps_per_turn: float, period_s: float) -> str:
     """What to write for another crank speed."""
     speed = 2.0 * math.pi / period_s
     text = (
@@ -95,7 +91,7 @@ def _how_to_scale(held: Held, steps_per_turn: float, period_s: float) -> str:
     return text + (f", and solref = {steps:g} timestep." if steps else ".")
 
 
-def _absolute(held: Held) -> list[str]:
+def _absolute(held: Settings) -> list[str]:
     """What does not scale with speed or size, and so limits what was measured."""
     if float(held["solref_timeconst_steps"]):
         return []
@@ -105,7 +101,7 @@ def _absolute(held: Held) -> list[str]:
     ]
 
 
-def _flywheel(held: Held) -> list[str]:
+def _flywheel(held: Settings) -> list[str]:
     """How the crank is driven, and what that asks of the solver."""
     ratio, tolerance = _short(held["flywheel_ratio"]), _short(held["tolerance"])
     return [
@@ -117,7 +113,7 @@ def _flywheel(held: Held) -> list[str]:
     ]
 
 
-def _servo(held: Held) -> list[str]:
+def _servo(held: Settings) -> list[str]:
     """The drive by a servo."""
     return [
         f"Drive: <velocity joint=... kv=.../> on the crank's hinge, kv = {held['servo_gain']:g} "
@@ -125,7 +121,7 @@ def _servo(held: Held) -> list[str]:
     ]
 
 
-def _flags(held: Held, defaults: Held) -> list[str]:
+def _flags(held: Settings, defaults: Settings) -> list[str]:
     """When the flags are to be left out."""
     if held["contact"] == defaults["contact"]:
         return []
@@ -150,3 +146,6 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
     return [("<!-- " if i == 0 else "     ") + line for i, line in enumerate(found[:-1])] + [
         ("<!-- " if len(found) == 1 else "     ") + f"{found[-1]} -->"
     ]
+
+
+SNIPPET = SnippetWriter("xml", mujoco_snippet)

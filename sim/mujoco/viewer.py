@@ -9,19 +9,23 @@ import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
 from models.laws import Law
+from models.mjcf import build
+from models.motion import State
+from models.scene import Scene
+from sim.viewing import Viewer
 
 
-def show(xml: str, law: Law) -> None:
-    """Open the model of an MJCF text at its first keyframe; returns when the window is closed.
+def show(scene: Scene, start: State) -> None:
+    """Open a scene, assembled at the start; returns when the window is closed.
 
     Where the model has an actuator it is the motor of the crank, which gets the acceleration of
     the law at every step.
     """
-    model = mujoco.MjModel.from_xml_string(xml)
+    model = mujoco.MjModel.from_xml_string(build(scene, start))
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
     if model.nu:
-        mujoco.set_mjcb_control(driven(law))
+        mujoco.set_mjcb_control(driven(scene.driver.law))
     try:
         mujoco.viewer.launch(model, state)
     finally:
@@ -35,3 +39,6 @@ def driven(law: Law) -> Any:
         data.ctrl[0] = law.at(np.array([data.time]))[2][0]
 
     return control
+
+
+VIEWER: Viewer = show

@@ -38,6 +38,7 @@ class PymunkEngine:
     """The adapter."""
 
     name = "pymunk"
+    reports_accelerations = False
     profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
 
     def version(self) -> str:
@@ -124,7 +125,6 @@ class PymunkSession:
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,
-            reports_accelerations=False,
         )
 
     def step(self, steps: int) -> None:

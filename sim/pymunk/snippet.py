@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from sim.engine import Drive, SettingValue
+from sim.engine import Drive, Settings
 from sim.pymunk.settings import AS_SHIPPED
+from sim.snippets import SnippetWriter
 
 WIDTH = 96
 
 
 def pymunk_snippet(
-    settings: Mapping[str, SettingValue],
-    steps_per_turn: float,
-    period_s: float,
-    drive: Drive = "prescribed",
-    head: Sequence[str] = (),
+    settings: Settings, steps_per_turn: float, period_s: float, drive: Drive, head: Sequence[str]
 ) -> str:
     """Lines that act on a variable ``space``, and make its next step.
 
-    Only what differs from pymunk's defaults; see `reports.results.snippets.snippet`.
+    Only what differs from pymunk's defaults; see `sim.snippets.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     held = defaults | dict(settings)
@@ -41,9 +38,7 @@ def pymunk_snippet(
     return "\n".join([*lines, *_comment(_notes(held, defaults, drive))]) + "\n"
 
 
-def _notes(
-    held: Mapping[str, SettingValue], defaults: Mapping[str, SettingValue], drive: Drive
-) -> list[str]:
+def _notes(held: Settings, defaults: Settings, drive: Drive) -> list[str]:
     """How the crank is driven, how lines are held, and what limits the promise."""
     if drive == "servo":
         found = ["Drive: a SimpleMotor between the crank and the ground, rate = speed."]
@@ -74,3 +69,6 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
             f"# {line}" for line in textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
         ]
     return lines
+
+
+SNIPPET = SnippetWriter("python", pymunk_snippet)

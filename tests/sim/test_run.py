@@ -236,9 +236,8 @@ def test_an_engine_that_is_not_installed_names_the_command(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.delitem(sys.modules, ENGINES[name], raising=False)
-    monkeypatch.delitem(sys.modules, "sim.pymunk.space", raising=False)
-    monkeypatch.delitem(sys.modules, "sim.pymunk.rail", raising=False)
+    for module in [each for each in sys.modules if each.startswith(f"sim.{name}.")]:
+        monkeypatch.delitem(sys.modules, module)
     with pytest.raises(
         EngineError, match=f"engine {name}: not installed; .* -m pip install {name}"
     ):

@@ -46,6 +46,7 @@ class FakeEngine:
     refuses: str = ""
     changes: Callable[[Facts], Facts] = lambda facts: facts
     name: str = "fake"
+    reports_accelerations: bool = True
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )

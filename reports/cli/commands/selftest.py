@@ -17,7 +17,7 @@ from reports.plan.chosen import chosen_engines
 from reports.selftest.registry import chosen_faults
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import PROFILE, STEPS, Verdict, healthy, passes, sites, tried_all
-from sim.registry import engine
+from sim.registry import engine, offering
 
 IN_FOLDER = ("selftest.csv", "selftest.json")
 
@@ -33,6 +33,9 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
     engines = chosen_engines(request.engines)
     faults = chosen_faults(request.faults, engines)
     _check_outputs(request)
+    for name in engines:
+        if name not in offering("spoiler"):
+            progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("planting", total=len(faults))
         names = [fault.name for fault in faults]

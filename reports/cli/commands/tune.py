@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import version
 
+import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import find_scene, read_text
 from reports.cli.measuring import TuneRequest
@@ -20,8 +22,6 @@ from reports.plan.key import MEASURE, digest
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, positive
 from reports.tune.attempt import MOST_STEPS, Attempt, Bench, Goal, LostError, Row
-from reports.tune.cost import Settings
-from reports.tune.knobs import Space, space_of
 from reports.tune.search import Plan, attempts, best_of, nearest_of, plainer, search
 from reports.tune.storage import check_storage, study_in
 from reports.tune.table import Side, footer, show
@@ -29,8 +29,11 @@ from reports.tune.timing import times
 from reports.workers.isolated import Limits
 from reports.workers.progress import progress_bar
 from reports.workers.signals import Stopped
-from sim.registry import engine
+from sim.engine import Settings
+from sim.registry import engine, offering
 from sim.settings import profile_of, resolved
+from sim.snippets import snippet
+from sim.tuning import SearchSpace, search_space
 
 PROFILE = "tuned"
 """The profile that is searched around, and compared with."""
@@ -47,11 +50,12 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
     """
     goal = _goal(request)
     base = resolved(profile_of(engine(goal.engine), goal.profile), None)
-    space = space_of(goal.engine).around(base)
+    space = search_space(goal.engine).around(base)
     if request.output is not None:
         check_storage(request.output)
     limits = Limits(request.limit_s)
-    bench = Bench(goal, [space.work(scene) for scene in goal.scenes], limits)
+    works = [space.work(scene, solve(scene, np.zeros(1)).state()) for scene in goal.scenes]
+    bench = Bench(goal, works, limits)
     try:
         bench.refuse_unsupported(base)
         found = _searched(request, bench, space, base, progress)
@@ -69,10 +73,10 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
     if request.timing and (taken := times(goal, list(columns.values()), limits)):
         sides = [replace(side, taken=one) for side, one in zip(sides, taken, strict=True)]
     show(console, goal, space, sides)
-    if best is not None:
-        _snippet(console, goal, best)
-    else:
+    if best is None:
         console.print(Text(_unreached(goal, columns["found"]), "bold red"))
+    elif goal.engine in offering("snippet"):
+        _snippet(console, goal, best)
     around = len(goal.scenes) + sum(len(side.rows) for side in sides)
     facts = provenance({goal.engine: engine(goal.engine).version()})
     how = _how(request, found, tried, around)
@@ -126,10 +130,10 @@ def _goal(request: TuneRequest) -> Goal:
 
 
 def _searched(
-    request: TuneRequest, bench: Bench, space: Space, base: Settings, progress: Console
+    request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings, progress: Console
 ) -> list[Attempt]:
     """All trials; where they are cut short, what is kept is said."""
-    with study_in(request.output, _asked(request, bench.goal, space, base)) as study:
+    with study_in(request.output, _asked(request, bench, space, base)) as study:
         there = min(len(attempts(study)), request.budget)
         try:
             with progress_bar(progress, "trials", request.budget - there) as advance:
@@ -147,8 +151,11 @@ def _searched(
             raise
 
 
-def _asked(request: TuneRequest, goal: Goal, space: Space, base: Settings) -> dict[str, object]:
+def _asked(
+    request: TuneRequest, bench: Bench, space: SearchSpace, base: Settings
+) -> dict[str, object]:
     """All that the results of the trials depend on, as plain values."""
+    goal = bench.goal
     texts = [read_text(find_scene(name)) for name in request.scenes]
     return {
         "scene": [scene.name for scene in goal.scenes],
@@ -164,7 +171,7 @@ def _asked(request: TuneRequest, goal: Goal, space: Space, base: Settings) -> di
         "profile": dict(base),
         "knobs": {knob.name: list(knob.values) for knob in space.knobs},
         "starts": [dict(start) for start in space.starts],
-        "model of cost": [space.work(scene)(base) for scene in goal.scenes],
+        "model of cost": [work(base) for work in bench.works],
         "measure": MEASURE,
     }
 
@@ -184,8 +191,6 @@ def _rows(bench: Bench, one: Attempt) -> list[Row]:
 
 def _snippet(console: Console, goal: Goal, best: Attempt) -> None:
     """The settings to copy, at the speed of the first scene."""
-    from reports.results.snippets import snippet
-
     period_s = goal.scenes[0].driver.law.period_s
     text = snippet(goal.engine, best.settings, float(best.tried), period_s)
     console.print()

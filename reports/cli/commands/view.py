@@ -1,4 +1,4 @@
-"""`crankcheck view`: MuJoCo's viewer where there is a screen, else a picture in a file."""
+"""`crankcheck view`: an engine's viewer where there is a screen, else a picture in a file."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from rich.console import Console
 from analytic.kinematics import solve
 from models.errors import harmless
 from models.files import load_scene
-from models.mjcf import build
-from models.scene import Scene
 from reports.output.write import check_file, write
+from sim.viewing import viewer
 
 ENDINGS = (".gif", ".png")
 
@@ -25,7 +24,7 @@ def run_view(name: str, output: Path | None, console: Console) -> None:
         check_file(output, "-o", ENDINGS)
     scene = load_scene(name)
     if output is None and has_screen():
-        _open_viewer(scene)
+        viewer()(scene, solve(scene, np.zeros(1)).state())
         return
     if output is None:
         output = Path(f"{scene.name}.gif")
@@ -44,10 +43,3 @@ def has_screen() -> bool:
     if sys.platform in ("darwin", "win32"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
-def _open_viewer(scene: Scene) -> None:
-    """MuJoCo's own viewer at the assembled state; returns when its window is closed."""
-    from sim.mujoco.viewer import show
-
-    show(build(scene, solve(scene, np.zeros(1)).state()), scene.driver.law)

@@ -10,18 +10,17 @@ from xml.etree import ElementTree as Xml
 import pytest
 from rich.console import Console
 
-from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.cli.commands.sweep import sweep
 from reports.cli.measuring import SweepRequest
 from reports.plan.study import Variant, load_study
 from reports.results.recommend import TARGETS, Recommendation, recommendations
-from reports.results.snippets import snippet
 from reports.store.reader import Stored, read_store
 from sim.engine import Drive, SettingValue
 from sim.mujoco import settings as mujoco_settings
 from sim.pymunk import settings as pymunk_settings
 from sim.settings import resolved
+from sim.snippets import snippet
 from tests.reports.results.bare import mujoco_error, pymunk_error
 
 STUDY = """
@@ -194,11 +193,6 @@ def test_a_mark_of_comment_in_a_name_does_no_harm() -> None:
     assert Xml.fromstring(f"<mujoco>{text}</mujoco>").find("option") is not None
     code = snippet("pymunk", {}, 100, head=["a\nspace.step(1)"])
     assert code.count("\nspace.step(") == 1
-
-
-def test_an_engine_without_snippets_is_named() -> None:
-    with pytest.raises(CrankcheckError, match=r"'bullet'.*mujoco, pymunk"):
-        snippet("bullet", {}, 100)
 
 
 def test_bare_models_see_a_wrong_setting(recommended: tuple[Recommendation, ...]) -> None:

@@ -44,6 +44,10 @@ class BadEngine(MujocoEngine):
 
 ENGINE = BadEngine()
 '''
+DECLARATION = """
+from sim.registry import Declaration
+DECLARATION = Declaration("mujoco", "mujoco")
+"""
 KNOWN = "import sim.registry\nsim.registry.ENGINES['bad'] = 'bad_engine'\n"
 Started = Callable[..., "subprocess.Popen[str]"]
 
@@ -72,6 +76,8 @@ def bad_engine(tmp_path: Path) -> dict[str, str]:
     """The environment in which an engine `bad` is known."""
     folder = tmp_path / "bad"
     folder.mkdir()
-    (folder / "bad_engine.py").write_text(BAD_ENGINE)
+    (folder / "bad_engine").mkdir()
+    (folder / "bad_engine" / "__init__.py").write_text(DECLARATION)
+    (folder / "bad_engine" / "engine.py").write_text(BAD_ENGINE)
     (folder / "sitecustomize.py").write_text(KNOWN)
     return {"PYTHONPATH": str(folder)}

@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene import Scene
@@ -22,10 +24,10 @@ from reports.tune.attempt import (
     Row,
     error_of,
 )
-from reports.tune.cost import Settings, mujoco_work
 from reports.tune.timing import times
 from reports.workers.isolated import Limits
-from sim.engine import SettingValue
+from sim.engine import Settings, SettingValue
+from sim.mujoco.knobs import work
 from sim.mujoco.settings import TUNED
 
 SETTINGS: dict[str, SettingValue] = {name: s.value for name, s in TUNED.settings.items()}
@@ -38,7 +40,8 @@ def goal_of(*names: str, target: float = 1e-4) -> Goal:
 
 
 def bench_of(goal: Goal, limits: Limits | None = None) -> Bench:
-    return Bench(goal, [mujoco_work(scene) for scene in goal.scenes], limits or Limits())
+    works = [work(scene, solve(scene, np.zeros(1)).state()) for scene in goal.scenes]
+    return Bench(goal, works, limits or Limits())
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +62,7 @@ def test_the_error_is_the_worst_of_the_scenes_and_the_cost_their_sum(two: Bench)
     each = [error(two, index, found.steps_per_turn) for index in (0, 1)]
     assert found.error == max(each) <= 1e-4
     assert found.scene == SCENES[each.index(max(each))]
-    per_step = sum(mujoco_work(scene)(SETTINGS) for scene in two.goal.scenes)
+    per_step = sum(each(SETTINGS) for each in two.works)
     assert found.cost_us == pytest.approx(found.steps_per_turn * per_step)
     assert found.runs % 2 == 0
 

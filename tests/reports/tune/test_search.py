@@ -10,14 +10,14 @@ import pytest
 from optuna.trial import TrialState
 
 from reports.tune.attempt import Attempt
-from reports.tune.cost import Settings
-from reports.tune.knobs import Knob, Space
 from reports.tune.search import Plan, Try, attempts, best_of, nearest_of, plainer, search
 from reports.tune.storage import study_in
 from reports.workers.signals import Stopped
+from sim.engine import Settings
+from sim.tuning import Knob, SearchSpace
 
 PROFILE = {"stiffness": 10.0, "idle": 3, "kind": "slow", "fixed": 7}
-SPACE = Space(
+SPACE = SearchSpace(
     knobs=(
         Knob("stiffness", tuple(float(x) for x in range(1, 41))),
         Knob("idle", (1, 2, 3, 4, 5)),

@@ -20,8 +20,8 @@ from models.errors import CrankcheckError
 from models.files import shipped
 from reports.cli.commands.tune import run_tune
 from reports.cli.measuring import TuneRequest
-from reports.tune.cost import EVALUATIONS
-from reports.tune.knobs import Knob, space_of
+from sim.mujoco.knobs import EVALUATIONS
+from sim.tuning import Knob, search_space
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[TuneRequest], tuple[int, str]]
@@ -80,8 +80,8 @@ def test_what_is_found_is_no_dearer_than_the_profile_and_reaches_the_target(
 
 def test_where_all_else_is_dearer_the_profile_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     knob = Knob("iterations", (160, 170, 180))
-    space = replace(space_of("pymunk"), knobs=(knob,), starts=())
-    monkeypatch.setattr("reports.cli.commands.tune.space_of", lambda name: space)
+    space = replace(search_space("pymunk"), knobs=(knob,), starts=())
+    monkeypatch.setattr("reports.cli.commands.tune.search_space", lambda name: space)
     code, text = told(replace(SMALL, engine="pymunk", target=1e-3, budget=8))
     assert code == 0
     assert line(text, "iterations") == ["150", "150"]
@@ -132,8 +132,8 @@ def test_a_file_of_another_search_is_refused(
         ("reports.cli.commands.tune.crankcheck_version", lambda: "0.0", "crankcheck version 0.0"),
         ("reports.cli.commands.tune.version", lambda name: "0.0", "Optuna version 0.0"),
         (
-            "reports.cli.commands.tune.space_of",
-            lambda name: replace(space_of(name), starts=()),
+            "reports.cli.commands.tune.search_space",
+            lambda name: replace(search_space(name), starts=()),
             "starts",
         ),
     ],

@@ -8,7 +8,6 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from models.mjcf import build
 from sim.mujoco import viewer as mujoco_viewer
 
 
@@ -26,7 +25,7 @@ def test_a_model_played_for_a_period_stays_together(
         ends.append((float(np.linalg.norm(first - second)), float(data.qpos[0])))  # type: ignore[attr-defined]  # MjData
 
     monkeypatch.setattr(mujoco.viewer, "launch", play)
-    mujoco_viewer.show(build(scene, solve(scene, np.zeros(1)).state()), scene.driver.law)
+    mujoco_viewer.show(scene, solve(scene, np.zeros(1)).state())
     (gap, angle), law = ends[0], scene.driver.law
     assert gap < 1e-5 * scene.longest_m
     assert angle == pytest.approx(law.at(np.array([law.period_s]))[0][0], abs=1e-3)

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import cast
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
-from sim.engine import Session
+from sim.engine import Session, Settings
 from sim.mujoco.engine import MujocoSession
 from sim.mujoco.settings import text
-from sim.spoil import Opening, Post, Spoiler, rounded
+from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class MujocoSpoiler:
     """The loops are equality constraints; the rest is a tree."""
+
+    wrong_settings: Mapping[WrongSetting, Callable[[float], Settings]] = {
+        # Newton solves these loops in one, so it is Gauss-Seidel.
+        "few-iterations": lambda size: {"solver": "PGS", "iterations": round(1.0 / size)},
+        "light-drive": lambda size: {"flywheel_ratio": 1.0 / size},
+        "semi-implicit": lambda _: {"integrator": "Euler"},
+    }
 
     def open_loop(self, session: Session) -> None:
         """Of the two flags a rollout reads that of the model, a step that of the state."""

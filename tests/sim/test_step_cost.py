@@ -5,26 +5,28 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.step_cost import fit, mujoco, points, pymunk
+from benchmarks.step_cost import fit, mujoco, points, pymunk, start
 from models.files import load_scene, shipped
-from reports.tune.cost import (
-    EVALUATIONS,
-    MUJOCO_BODY,
-    MUJOCO_LOOP,
-    MUJOCO_STEP,
-    PYMUNK_BODY,
-    PYMUNK_PASS,
-    PYMUNK_RAIL,
-    PYMUNK_STEP,
-    mujoco_work,
-    pymunk_work,
-)
+from models.scene import Scene
 from sim.engine import SettingValue
+from sim.mujoco import knobs as mujoco_knobs
+from sim.mujoco.knobs import EVALUATIONS
 from sim.mujoco.settings import INTEGRATORS, TUNED
+from sim.pymunk import knobs as pymunk_knobs
+from sim.pymunk.knobs import PASS_US, RAIL_US
 from sim.pymunk.settings import TUNED as PYMUNK_TUNED
+from sim.tuning import Work
 
 MUJOCO = {name: setting.value for name, setting in TUNED.settings.items()}
 PYMUNK: dict[str, SettingValue] = {k: s.value for k, s in PYMUNK_TUNED.settings.items()}
+
+
+def mujoco_work(scene: Scene) -> Work:
+    return mujoco_knobs.work(scene, start(scene))
+
+
+def pymunk_work(scene: Scene) -> Work:
+    return pymunk_knobs.work(scene, start(scene))
 
 
 def test_every_integrator_has_its_cost() -> None:
@@ -39,7 +41,7 @@ def test_more_evaluations_bodies_and_loops_cost_more() -> None:
 def test_every_joint_costs_at_every_iteration() -> None:
     work = pymunk_work(load_scene("fourbar-lecture-1"))
     slope = work({**PYMUNK, "iterations": 101}) - work({**PYMUNK, "iterations": 100})
-    assert slope == pytest.approx(3 * PYMUNK_PASS["PivotJoint"])
+    assert slope == pytest.approx(3 * PASS_US["PivotJoint"])
 
 
 def test_a_rail_costs_its_own_and_only_where_there_is_one() -> None:
@@ -48,7 +50,7 @@ def test_a_rail_costs_its_own_and_only_where_there_is_one() -> None:
         pymunk_work(load_scene(name)) for name in ("fourbar-lecture-1", "slider-crank-excel-210")
     )
     assert fourbar(exact) == fourbar(groove)
-    assert massless(exact) - massless(groove) == pytest.approx(PYMUNK_RAIL, rel=0.01)
+    assert massless(exact) - massless(groove) == pytest.approx(RAIL_US, rel=0.01)
 
 
 def test_calibration_times_every_engine_on_every_steady_scene() -> None:
@@ -60,19 +62,19 @@ def test_calibration_times_every_engine_on_every_steady_scene() -> None:
 def test_calibration_finds_what_a_machine_of_known_costs_takes() -> None:
     names = ("fourbar-lecture-1", "sixbar-watt", "shaper", "slider-crank-excel-210")
     what = [p for p in points() if p[0].name in names]
-    us = [
+    taken = [
         mujoco_work(scene)({**MUJOCO, **settings})
         if engine == "mujoco"
         else pymunk_work(scene)({**PYMUNK, **settings})
         for scene, engine, settings in what
     ]
-    lines = [*mujoco(what, us), *pymunk(what, us)]
-    steps = f"{MUJOCO_STEP:.3f}, {MUJOCO_BODY:.3f}, {MUJOCO_LOOP:.3f}"
+    lines = [*mujoco(what, taken), *pymunk(what, taken)]
+    us = (mujoco_knobs.STEP_US, mujoco_knobs.BODY_US, mujoco_knobs.LOOP_US)
     assert f"EVALUATIONS = {EVALUATIONS}" in lines
-    assert f"MUJOCO_STEP, MUJOCO_BODY, MUJOCO_LOOP = {steps}" in lines
-    steps = f"{PYMUNK_STEP:.3f}, {PYMUNK_BODY:.3f}, {PYMUNK_RAIL:.3f}"
-    assert f"PYMUNK_STEP, PYMUNK_BODY, PYMUNK_RAIL = {steps}" in lines
-    assert f"PYMUNK_PASS = {PYMUNK_PASS}" in lines
+    assert "STEP_US, BODY_US, LOOP_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
+    us = (pymunk_knobs.STEP_US, pymunk_knobs.BODY_US, RAIL_US)
+    assert "STEP_US, BODY_US, RAIL_US = {:.3f}, {:.3f}, {:.3f}".format(*us) in lines
+    assert f"PASS_US = {PASS_US}" in lines
 
 
 def test_a_fit_returns_the_costs_that_were_put_in() -> None:

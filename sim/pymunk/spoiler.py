@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from typing import cast
 
 import numpy as np
 import pymunk
 
-from sim.engine import Session
+from sim.engine import Session, Settings
 from sim.pymunk.engine import PymunkSession
 from sim.pymunk.space import SpaceModel
-from sim.spoil import Opening, Post, Spoiler, rounded
+from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
 
 class PymunkSpoiler:
     """Every joint is a constraint; that of two moving bodies closes the loop."""
+
+    wrong_settings: Mapping[WrongSetting, Callable[[float], Settings]] = {
+        "few-iterations": lambda size: {"iterations": round(1.0 / size)},
+        "first-order": lambda _: {"error_bias": 0.9**60},
+    }
 
     def open_loop(self, session: Session) -> None:
         """The constraint leaves the space."""

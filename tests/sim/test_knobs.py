@@ -9,55 +9,47 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.tune.knobs import SPACES, Knob, rungs, space_of
 from sim.engine import SettingValue
-from sim.registry import ENGINES, engine
+from sim.registry import engine, offering
 from sim.run import run
 from sim.settings import profile_of, resolved
+from sim.tuning import Knob, rungs, search_space
+
+TUNABLE = offering("knobs")
 
 
 def tuned(name: str) -> dict[str, SettingValue]:
     return resolved(profile_of(engine(name), "tuned"), None)
 
 
-def test_every_engine_has_its_knobs() -> None:
-    assert set(SPACES) == set(ENGINES)
-
-
-def test_an_engine_without_knobs_is_refused_by_name() -> None:
-    with pytest.raises(CrankcheckError, match="tune box: no knobs are known; there are mujoco"):
-        space_of("box")
-
-
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNABLE)
 def test_the_first_start_is_the_profile_itself(name: str) -> None:
-    space = space_of(name).around(tuned(name))
+    space = search_space(name).around(tuned(name))
     assert space.settings(tuned(name), space.starts[0]) == tuned(name)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNABLE)
 def test_every_start_can_be_reached_by_the_knobs(name: str) -> None:
-    space = space_of(name).around(tuned(name))
+    space = search_space(name).around(tuned(name))
     assert len(space.starts) > 1
     for start in space.starts:
         assert all(start[knob.name] in knob.values for knob in space.knobs)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNABLE)
 def test_the_values_of_a_knob_stand_in_order_once_each(name: str) -> None:
-    for knob in space_of(name).around(tuned(name)).knobs:
+    for knob in search_space(name).around(tuned(name)).knobs:
         assert len(set(knob.values)) == len(knob.values)
         if knob.ordered:
             assert list(knob.values) == sorted(knob.values, key=float)
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNABLE)
 def test_the_engine_takes_every_value_and_holds_it(name: str) -> None:
     scene = load_scene("fourbar-lecture-1")
     state = solve(scene, np.zeros(1)).state()
-    space = space_of(name).around(tuned(name))
+    space = search_space(name).around(tuned(name))
     for knob in space.knobs:
         for value in knob.values:
             settings = space.settings(tuned(name), {**space.starts[0], knob.name: value})
@@ -71,7 +63,7 @@ def test_the_engine_takes_every_value_and_holds_it(name: str) -> None:
 
 
 def test_values_of_several_settings_go_together() -> None:
-    space = space_of("mujoco").around(tuned("mujoco"))
+    space = search_space("mujoco").around(tuned("mujoco"))
     found = space.settings(tuned("mujoco"), {**space.starts[0], "solimp": 0.95})
     assert found["solimp_dmin"] == found["solimp_dmax"] == 0.95
 

@@ -1,0 +1,48 @@
+"""Settings as text to copy and paste into a model that knows nothing of crankcheck."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+from sim.engine import Drive, Settings
+from sim.registry import capability
+
+PERIOD_S = 2.0 * math.pi / 10.0
+"""A turn at 10 rad/s, the speed of most shipped scenes."""
+
+
+@dataclass(frozen=True)
+class SnippetWriter:
+    """What writes the snippets of an engine.
+
+    ``language`` is what a page may colour them as; ``write`` is given the settings, steps per turn,
+    period [s], drive, and lines of comment to begin with (see `snippet`).
+    """
+
+    language: str
+    write: Callable[[Settings, float, float, Drive, Sequence[str]], str]
+
+
+def snippet_writer(engine: str) -> SnippetWriter:
+    """That of an engine. Raises EngineError where it has none."""
+    return cast(SnippetWriter, capability(engine, "snippet"))
+
+
+def snippet(
+    engine: str,
+    settings: Settings,
+    steps_per_turn: float,
+    period_s: float = PERIOD_S,
+    *,
+    drive: Drive = "prescribed",
+    head: Sequence[str] = (),
+) -> str:
+    """The lines that set ``settings`` (those asked for), at a step of period over steps.
+
+    What is the engine's own default is left out. ``period_s`` is that of the driver [s]; the text
+    says how its numbers change with the speed. Raises EngineError where the engine has no writer.
+    """
+    return snippet_writer(engine).write(settings, steps_per_turn, period_s, drive, head)
