@@ -45,7 +45,7 @@ FLOORS: Mapping[str, str] = {
         spoil
         run snippets tuning viewing
         check energy registry
-        measure drive chain settings
+        measure drive tree_poses settings
         engine
     """,
 }

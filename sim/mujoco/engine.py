@@ -26,7 +26,6 @@ from models.motion import State
 from models.scene import Point, Scene
 from models.tree import Tree, plan
 from sim import drive as drives
-from sim.chain import body_poses
 from sim.engine import (
     Drive,
     Facts,
@@ -45,6 +44,7 @@ from sim.mujoco.settings import (
     writing,
 )
 from sim.settings import SettingError
+from sim.tree_poses import body_poses
 
 FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
 DIVERGED = (

@@ -10,7 +10,7 @@ from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.mjcf import build
 from models.tree import plan
-from sim.chain import body_poses
+from sim.tree_poses import body_poses
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))
