@@ -37,11 +37,14 @@ LEAST_MASS = 1e-15
 AttributeRow = dict[str, AttributeValue]
 
 
-def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
+def build(
+    scene: Scene, state: State, writing: Writing | None = None, tree: Tree | None = None
+) -> str:
     """The MJCF text of ``scene`` assembled at ``state``; the same input gives the same text.
 
     Without ``writing`` it is the `exact` one, which runs as it is in any MuJoCo at constant speed;
-    another law needs its control at each step.
+    another law needs its control at each step. ``tree`` is the plan of it all, where it was made
+    before.
 
     Raises
     ------
@@ -50,7 +53,7 @@ def build(scene: Scene, state: State, writing: Writing | None = None) -> str:
     """
     _check_masses(scene)
     writing = exact(scene) if writing is None else writing
-    tree = plan(scene, state, writing.close, delay_s=writing.delay_s)
+    tree = tree or plan(scene, state, writing.close, delay_s=writing.delay_s)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
         f"  <!-- {_comment(scene.source)} -->",

@@ -9,7 +9,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from sim.engine import Session, Settings
-from sim.mujoco.engine import MujocoSession
+from sim.mujoco.session import MujocoSession
 from sim.mujoco.settings import text
 from sim.spoil import Opening, Post, Spoiler, WrongSetting, rounded
 
