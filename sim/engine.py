@@ -87,7 +87,7 @@ class Facts:
     centre_m: Mapping[str, Point]
     gravity_m_s2: Point
     start: Poses
-    settings: Mapping[str, SettingValue]
+    settings: Settings
     velocity_shift: float
     acceleration_shift: float
 
@@ -145,17 +145,12 @@ class Engine(Protocol):
         """The installed version; EngineError with the command that installs it if it is missing."""
         ...
 
-    def check(self, settings: Mapping[str, SettingValue]) -> None:
+    def check(self, settings: Settings) -> None:
         """Raise SettingError for a value, of a complete set of settings, that it does not take."""
         ...
 
     def open(
-        self,
-        scene: Scene,
-        state: State,
-        settings: Mapping[str, SettingValue],
-        dt_s: float,
-        drive: Drive,
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> Session:
         """A session at ``state``; EngineError where the engine cannot hold the scene."""
         ...
@@ -207,7 +202,7 @@ class Run:
     dt_s: float
     status: Status
     reason: str
-    settings: Mapping[str, SettingValue]
+    settings: Settings
     motion: Motion | None = None
     gaps: Mapping[str, Array] = field(default_factory=dict)
     velocity_time_s: Array | None = None
@@ -215,7 +210,7 @@ class Run:
     stopped_at_s: float = 0.0
     warnings: tuple[str, ...] = ()
     cost: Cost | None = None
-    asked: Mapping[str, SettingValue] = field(default_factory=dict)
+    asked: Settings = field(default_factory=dict)
     start_s: float = 0.0
     steps: int = 0
     every: int = 1

@@ -6,7 +6,7 @@ import gc
 import math
 import statistics
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +27,7 @@ from sim.engine import (
     Poses,
     Run,
     Session,
-    SettingValue,
+    Settings,
     Status,
 )
 from sim.measure import gaps, motion
@@ -51,7 +51,7 @@ def run(
     steps: int,
     every: int = 1,
     drive: Drive = "prescribed",
-    settings: Mapping[str, SettingValue] | None = None,
+    settings: Settings | None = None,
     open_m: float = 0.0,
 ) -> Run:
     """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
@@ -132,7 +132,7 @@ def time_run(
     every: int = 0,
     repeats: int = 5,
     drive: Drive = "prescribed",
-    settings: Mapping[str, SettingValue] | None = None,
+    settings: Settings | None = None,
 ) -> Timing:
     """Time the stepping alone, or with logging where ``every`` is above 0.
 

@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Mapping
 
 from models.errors import EngineError
-from sim.engine import Engine, Profile, SettingValue
+from sim.engine import Engine, Profile, Settings, SettingValue
 
 
 class SettingError(EngineError):
@@ -22,9 +22,7 @@ def profile_of(engine: Engine, name: str) -> Profile:
     )
 
 
-def resolved(
-    profile: Profile, overrides: Mapping[str, SettingValue] | None
-) -> dict[str, SettingValue]:
+def resolved(profile: Profile, overrides: Settings | None) -> dict[str, SettingValue]:
     """All settings of a profile, with some replaced.
 
     Raises
@@ -45,9 +43,7 @@ def resolved(
     return settings
 
 
-def check_choices(
-    settings: Mapping[str, SettingValue], choices: Mapping[str, tuple[str, ...]]
-) -> None:
+def check_choices(settings: Settings, choices: Mapping[str, tuple[str, ...]]) -> None:
     """Refuse a setting that is none of its choices. Raises SettingError that lists them."""
     for name, allowed in choices.items():
         if settings[name] not in allowed:
@@ -56,9 +52,7 @@ def check_choices(
             )
 
 
-def check_ranges(
-    settings: Mapping[str, SettingValue], ranges: Mapping[str, tuple[float, float]]
-) -> None:
+def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) -> None:
     """Refuse a number outside its range, both ends included. Raises SettingError."""
     for name, (least, most) in ranges.items():
         if not least <= float(settings[name]) <= most:

@@ -131,12 +131,7 @@ class SpoiltEngine:
         self.engine.check(settings)
 
     def open(
-        self,
-        scene: Scene,
-        state: State,
-        settings: Settings,
-        dt_s: float,
-        drive: Drive,
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> SpoiltSession:
         """A session of the engine, spoilt already where that is to be after no step."""
         session = self.engine.open(scene, state, settings, dt_s, drive)

@@ -14,7 +14,7 @@ which prints the constants of the models and how far they are off.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -23,7 +23,7 @@ from models.scene import Scene
 from sim.engine import Settings, SettingValue
 from sim.registry import capability
 
-Values = Mapping[str, SettingValue]
+Values = Settings
 Work = Callable[[Settings], float]
 """From complete settings to the time of a step [microseconds]."""
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from models import mjcf, mjcf_options
 from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
-from sim.engine import Drive, Profile, Setting, SettingValue
+from sim.engine import Drive, Profile, Setting, Settings
 from sim.settings import check_choices, check_ranges
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
@@ -101,15 +99,13 @@ TUNED = Profile(
 )
 
 
-def checked(settings: Mapping[str, SettingValue]) -> None:
+def checked(settings: Settings) -> None:
     """Refuse values that MuJoCo does not take. Raises SettingError."""
     check_choices(settings, CHOICES)
     check_ranges(settings, RANGES)
 
 
-def writing(
-    scene: Scene, settings: Mapping[str, SettingValue], dt_s: float, drive: Drive
-) -> mjcf_options.Writing:
+def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf_options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     checked(settings)
     ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
@@ -141,7 +137,7 @@ def writing(
     )
 
 
-def velocity_shift(settings: Mapping[str, SettingValue], drive: Drive) -> float:
+def velocity_shift(settings: Settings, drive: Drive) -> float:
     """To which instant, in steps after the positions, the velocities of a state belong.
 
     RK4 steps both together; the others move positions with the new velocity, which is the mean
@@ -150,7 +146,7 @@ def velocity_shift(settings: Mapping[str, SettingValue], drive: Drive) -> float:
     return 0.0 if integrator(settings, drive) == "RK4" else -0.5
 
 
-def integrator(settings: Mapping[str, SettingValue], drive: Drive) -> str:
+def integrator(settings: Settings, drive: Drive) -> str:
     """The integrator of a drive."""
     return str(settings["servo_integrator" if drive == "servo" else "integrator"])
 
@@ -158,7 +154,7 @@ def integrator(settings: Mapping[str, SettingValue], drive: Drive) -> str:
 def text(
     scene: Scene,
     state: State,
-    settings: Mapping[str, SettingValue],
+    settings: Settings,
     dt_s: float,
     drive: Drive = "prescribed",
 ) -> str:

@@ -16,7 +16,7 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, SettingValue
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Settings
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines
 from sim.pymunk.space import SpaceModel, build
 
@@ -45,17 +45,12 @@ class PymunkEngine:
         """The version of pymunk."""
         return str(pymunk.version)
 
-    def check(self, settings: Mapping[str, SettingValue]) -> None:
+    def check(self, settings: Settings) -> None:
         """Raise SettingError for a value that Chipmunk does not take."""
         checked(settings)
 
     def open(
-        self,
-        scene: Scene,
-        state: State,
-        settings: Mapping[str, SettingValue],
-        dt_s: float,
-        drive: Drive,
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> PymunkSession:
         """A session at ``state``; EngineError where pymunk cannot hold the scene."""
         return PymunkSession(scene, state, settings, dt_s, drive)
@@ -68,12 +63,7 @@ class PymunkSession:
     """One space."""
 
     def __init__(
-        self,
-        scene: Scene,
-        state: State,
-        settings: Mapping[str, SettingValue],
-        dt_s: float,
-        drive: Drive,
+        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
         checked(settings)
         self._scene, self._dt, self._settings = scene, dt_s, settings

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from sim.engine import Profile, Setting, SettingValue
+from sim.engine import Profile, Setting, Settings
 from sim.settings import check_choices, check_ranges
 
 AS_SHIPPED = Profile(
@@ -51,12 +49,12 @@ RANGES = {
 """What Chipmunk takes; outside of it some values end the process."""
 
 
-def checked(settings: Mapping[str, SettingValue]) -> None:
+def checked(settings: Settings) -> None:
     """Refuse values that Chipmunk does not take. Raises SettingError."""
     check_choices(settings, {"lines": ("groove", "exact")})
     check_ranges(settings, RANGES)
 
 
-def exact_lines(settings: Mapping[str, SettingValue]) -> bool:
+def exact_lines(settings: Settings) -> bool:
     """Whether points on lines are held exactly."""
     return settings["lines"] == "exact"
