@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from sim.registry import ENGINES, declaration
+
 ROOT = Path(__file__).parents[1]
 ARROWS: Mapping[str, set[str]] = {
     "models": set(),
@@ -40,8 +42,8 @@ FLOORS: Mapping[str, str] = {
         dyads
         structure
     """,
-    "sim": """
-        mujoco pymunk
+    "sim": f"""
+        {" ".join(ENGINES)}
         spoil
         run snippets tuning viewing
         check energy registry
@@ -51,8 +53,19 @@ FLOORS: Mapping[str, str] = {
 }
 """A file that stands in a package itself is a room of its own; of `reports` there is none."""
 LOOSE = {"analytic", "sim"}
-HOMES = {"mujoco": "sim.mujoco", "pymunk": "sim.pymunk"}
+HOMES = {declaration(name).package: f"sim.{name}" for name in ENGINES}
 """Each engine's package, and the one room that imports it."""
+NAMING = ("sim/registry.py", "models/mjcf", *(f"sim/{name}/" for name in ENGINES))
+"""Where engines are named: the line of each, MuJoCo's own format, which others read too, and each
+engine's folder."""
+MENTIONING: Mapping[str, str] = {
+    "models/tree.py": "why a massless block is refused, whose cure is a mass",
+    "reports/judge/rules": "what to turn in which engine, as a cure",
+    "reports/selftest/engines.py": "what a fault is called that one engine has by default",
+    "reports/cli/checking.py": "an example in the help",
+    "reports/cli/commands/sweep.py": "an example in a message",
+}
+"""Where sentences mention engines, and why; an engine that is not mentioned works as well."""
 REPORTS_ONLY = {"pandas", "matplotlib", "plotly", "rich", "typer", "openpyxl", "pyarrow"}
 
 
@@ -180,6 +193,38 @@ def strangers(found: list[Import]) -> list[str]:
     return faults
 
 
+def words(path: Path) -> Iterator[tuple[int, str]]:
+    """Identifiers and texts of a file with their lines, but for comments and docstrings."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    said = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if id(node) not in said:
+            fields = (getattr(node, name, None) for name in ("id", "attr", "arg", "name", "value"))
+            for word in (getattr(node, "module", None), *fields):
+                if isinstance(word, str):
+                    yield getattr(node, "lineno", 0), word
+
+
+def namings(root: Path = ROOT) -> list[str]:
+    """Names of engines where nothing should know them, and permissions that nobody needs."""
+    faults, used = [], set()
+    for path in sorted(path for package in ARROWS for path in (root / package).rglob("*.py")):
+        file = path.relative_to(root).as_posix()
+        if file.startswith(NAMING):
+            continue
+        for line, word in words(path):
+            if any(name in word.lower() for name in ENGINES):
+                allowed = {each for each in MENTIONING if file.startswith(each) and " " in word}
+                used |= allowed
+                faults += [] if allowed else [f"{file}:{line} names an engine: {word[:60]!r}"]
+    return faults + [f"{file} mentions no engine" for file in MENTIONING if file not in used]
+
+
+def test_nothing_else_knows_the_name_of_an_engine() -> None:
+    faults = namings()
+    assert not faults, "\n".join(faults)
+
+
 def test_the_house_stands_as_planned() -> None:
     found = all_imports()
     assert len(found) > 1000
@@ -240,6 +285,20 @@ def test_a_loose_file_an_unplanned_room_and_a_lost_one_are_seen(house: Path) -> 
         "reports/tuning has no floor",
         "reports/tune is planned and gone",
     }
+
+
+def test_a_name_of_an_engine_is_seen(house: Path) -> None:
+    (house / "reports" / "page" / "a.py").write_text(
+        '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
+    )
+    (house / "reports" / "cli" / "checking.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
+    (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
+    assert [fault.partition(" ")[0] for fault in namings(house) if " names " in fault] == [
+        "reports/cli/checking.py:2",
+        "reports/page/a.py:2",
+        "reports/page/a.py:3",
+        "reports/page/a.py:4",
+    ]
 
 
 def test_an_engine_and_a_table_outside_their_rooms_are_seen(house: Path) -> None:

@@ -8,22 +8,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
 from models.joints import blocks, bodies, sliding_angle
 from models.motion import Motion, State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from sim.engine import (
-    BodyPose,
-    Drive,
-    Facts,
-    Log,
-    Poses,
-    Profile,
-    Setting,
-    SettingValue,
-)
+from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, Settings
 
 TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there has to be one")})
 
@@ -37,7 +29,7 @@ class FakeEngine:
     ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged.
     """
 
-    exact: Callable[[Scene, Array], Motion]
+    exact: Callable[[Scene, Array], Motion] = solve
     disturb: Callable[[Poses], Poses] = lambda poses: poses
     velocity_shift: float = 0.0
     fails_after: int | None = None
@@ -54,20 +46,23 @@ class FakeEngine:
     def version(self) -> str:
         return "1.0"
 
-    def check(self, settings: Mapping[str, SettingValue]) -> None:
+    def check(self, settings: Settings) -> None:
         """It takes everything."""
 
     def open(
         self,
         scene: Scene,
         state: State,
-        settings: Mapping[str, SettingValue],
+        settings: Settings,
         dt_s: float,
         drive: Drive,
     ) -> FakeSession:
         if self.refuses:
             raise EngineError(self.refuses)
         return FakeSession(self, scene, state.time_s, settings, dt_s)
+
+
+ENGINE = FakeEngine()
 
 
 class FakeSession:
@@ -78,7 +73,7 @@ class FakeSession:
         engine: FakeEngine,
         scene: Scene,
         start_s: float,
-        settings: Mapping[str, SettingValue],
+        settings: Settings,
         dt_s: float,
     ) -> None:
         self._engine, self._scene, self._start_s = engine, scene, start_s

@@ -1,0 +1,175 @@
+"""A new engine is a folder and a line: a copy of the house, with the fake engine in it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from models.errors import EngineError
+from sim import registry
+from sim.registry import engine
+from sim.snippets import snippet
+from sim.spoil import spoiler
+from sim.tuning import search_space
+from tests.test_architecture import ARROWS, ROOT
+
+LINE = '    "fake": ".fake",\n'
+SCENE = "fourbar-lecture-1"
+FAKE = (SCENE, "--engine", "fake")
+COMMANDS = {
+    "engines": ["engines", "--settings"],
+    "verify": ["verify", *FAKE],
+    "servo": ["verify", *FAKE, "--drive", "servo"],
+    "all": ["verify", SCENE, "--profile", "tuned"],
+    "sweep": ["sweep", "-o", "store", "--study", "study.toml", "--jobs", "1"],
+    "page": ["report", "store", "-o", "page.html"],
+    "summary": ["report", "store", "--format", "md", "-o", "summary.md"],
+    "tune": ["tune", *FAKE, "--target", "1e-6"],
+    "log": ["selftest", "--engine", "fake", "--fault", "row-lost", "--jobs", "1"],
+    "inside": ["selftest", "--engine", "fake", "--fault", "joint-dropped"],
+    "misspelt": ["verify", SCENE, "--engine", "fak"],
+}
+STUDY = f"""
+scenes = ["{SCENE}"]
+steps_per_turn = [90, 360, 1440]
+
+[[variants]]
+engine = "fake"
+profile = "tuned"
+
+[[variants]]
+engine = "mujoco"
+profile = "tuned"
+"""
+SCRIPT = """
+import json, sys
+from typer.testing import CliRunner
+from reports.cli import app
+
+for name, arguments in json.loads(sys.argv[1]).items():
+    ended = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    print(json.dumps([name, ended.exit_code, ended.output]), flush=True)
+"""
+Told = dict[str, tuple[int, str]]
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All packages, a folder more and a line more."""
+    root = tmp_path_factory.mktemp("house")
+    clean = shutil.ignore_patterns("__pycache__")
+    for package in ARROWS:
+        shutil.copytree(ROOT / package, root / package, ignore=clean)
+    shutil.copytree(ROOT / "tests" / "worlds" / "fake", root / "sim" / "fake", ignore=clean)
+    engines = root / "sim" / "registry.py"
+    first, brace, rest = engines.read_text().partition("}\n")
+    engines.write_text(first + LINE + brace + rest)
+    (root / "study.toml").write_text(STUDY)
+    return root
+
+
+@pytest.fixture(scope="module")
+def told(house: Path) -> Told:
+    """The exit code and the output of each command there."""
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, json.dumps(COMMANDS)],
+        cwd=house,
+        env=os.environ | {"PYTHONPATH": str(house), "COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    return {name: (code, output) for name, code, output in lines}
+
+
+def test_it_is_listed_with_its_profiles(told: Told) -> None:
+    code, output = told["engines"]
+    assert code == 0
+    assert "fake  1.0" in output
+    assert "knob = 1: there has to be one" in output
+
+
+@pytest.mark.parametrize("name", ["verify", "servo"])
+def test_it_is_verified(told: Told, name: str) -> None:
+    code, output = told[name]
+    assert code == 0, output
+    assert "fake" in output
+
+
+def test_it_is_among_all_engines(told: Told) -> None:
+    code, output = told["all"]
+    assert code == 0
+    assert all(name in output for name in (*registry.ENGINES, "fake"))
+
+
+def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path) -> None:
+    assert [told[name][0] for name in ("sweep", "page", "summary")] == [0, 0, 0], told
+    page, summary = (house / name for name in ("page.html", "summary.md"))
+    assert "fake 1.0" in page.read_text()
+    assert "<summary>fake" not in summary.read_text()
+    assert "<summary>mujoco" in summary.read_text()
+
+
+def test_what_it_lacks_is_said(told: Told) -> None:
+    assert told["tune"] == (2, "crankcheck: engine fake: it has no knobs; use mujoco or pymunk\n")
+    code, output = told["inside"]
+    assert code == 2
+    assert "it can be planted in mujoco and pymunk only; found --engine fake" in output
+
+
+def test_faults_are_planted_in_its_log_alone(told: Told) -> None:
+    code, output = told["log"]
+    assert code == 0, output
+    assert "engine fake: it has no spoiler, so nothing is planted inside it" in output
+    assert "row-lost" in output
+
+
+def test_its_name_is_suggested(told: Told) -> None:
+    assert told["misspelt"] == (2, "crankcheck: engine 'fak': unknown; did you mean fake?\n")
+
+
+@pytest.mark.parametrize(
+    ("ask", "lacks"),
+    [
+        (lambda: search_space("fake"), "it has no knobs; use mujoco or pymunk"),
+        (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk"),
+        (lambda: spoiler("fake"), "it has no spoiler; use mujoco or pymunk"),
+        (lambda: registry.capability("pymunk", "viewer"), "it has no viewer; use mujoco"),
+        (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk"),
+    ],
+)
+def test_a_capability_that_is_lacking_is_named_with_who_has_it(
+    ask: object, lacks: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(registry.ENGINES, "fake", "tests.worlds.fake")
+    assert engine("fake").version() == "1.0"
+    with pytest.raises(EngineError, match=lacks):
+        ask()
+
+
+@pytest.mark.parametrize("name", registry.ENGINES)
+def test_what_is_declared_is_there(name: str) -> None:
+    for what in registry.declaration(name).offers:
+        assert registry.capability(name, what)
+
+
+def test_a_snippet_is_made_where_the_engine_is_not_installed() -> None:
+    code = (
+        "import sys; sys.modules.update(mujoco=None, pymunk=None)\n"
+        "from sim.snippets import snippet\n"
+        "for name in ('mujoco', 'pymunk'): print(snippet(name, {}, 90))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert "<option timestep=" in done.stdout
+    assert "space.step(dt)" in done.stdout
