@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import IO, Generic, TypeVar, cast
 
 from models.errors import CrankcheckError
-from reports.workers.child import receive, send
+from reports.workers.child import main, receive, send
 
 Result = TypeVar("Result")
 LIMIT_S = 60.0
@@ -22,7 +22,7 @@ MOST_S, MOST_GB = 1e6, 1e4
 START_S = 60.0
 """How long a child may take to import what it needs."""
 START = (
-    "import sys; sys.path[:] = sys.argv[2:]; from reports.workers.child import main; "
+    f"import sys; sys.path[:] = sys.argv[2:]; from {main.__module__} import main; "
     "main(int(sys.argv[1]))"
 )
 
@@ -80,7 +80,7 @@ class Isolated(Generic[Result]):
         """As `call`, with the child for itself."""
         if self.closed:
             return Lost("crashed", "the sweep was ended")
-        child = self._child or self._started()
+        child = self._child or self._started(function)
         if self.closed:  # while it started
             return Lost("crashed", "the sweep was ended")
         jobs, answers = _pipes(child)
@@ -106,8 +106,9 @@ class Isolated(Generic[Result]):
             if self._child is not None:
                 self._end(self._child)
 
-    def _started(self) -> subprocess.Popen[bytes]:
-        """A new child, in a session of its own: Ctrl-C at the terminal is not for it."""
+    def _started(self, function: Callable[..., Result]) -> subprocess.Popen[bytes]:
+        """A new child that has imported what ``function`` needs, in a session of its own: Ctrl-C at
+        the terminal is not for it."""
         child = self._child = subprocess.Popen(
             # The packages of this process, whatever stands in the folder that it works in.
             [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
@@ -116,8 +117,10 @@ class Isolated(Generic[Result]):
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
-        with _watched(child, START_S):
-            receive(_pipes(child)[1])  # it is ready, or has ended: the first job will tell
+        jobs, answers = _pipes(child)
+        with _watched(child, START_S), contextlib.suppress(OSError):
+            send(jobs, function)
+            receive(answers)  # it is ready, or has ended: the first job will tell
         return child
 
     def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:

@@ -42,7 +42,7 @@ def test_every_fault_is_a_row_with_its_reason(
 def test_a_child_that_keeps_memory_is_replaced() -> None:
     isolated: Isolated[int] = Isolated(Limits(20.0, 0.4))
     try:
-        pids = {isolated.call(hold, 60_000_000) for _ in range(4)}
+        pids = {isolated.call(hold, 60_000_000) for _ in range(6)}
         assert not any(isinstance(pid, Lost) for pid in pids)
         assert len(pids) > 1
     finally:
