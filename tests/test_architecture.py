@@ -22,6 +22,7 @@ ARROWS: Mapping[str, set[str]] = {
     "analytic": {"models"},
     "sim": {"models"},
     "reports": {"models", "analytic", "sim"},
+    "crankcheck": {"models", "analytic", "sim", "reports"},
 }
 FLOORS: Mapping[str, str] = {
     "reports": """

@@ -11,10 +11,11 @@ import math
 import re
 import shlex
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.worlds.command import COMMAND, PYTHON
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -75,7 +76,7 @@ def test_readme_is_true_from_top_to_bottom(tmp_path: Path) -> None:
         if fault := follows([line.rstrip() for line in shown], printed):
             faults.append(f"$ {command}\n{fault}")
     for script in SCRIPTS:
-        done = ran([sys.executable, "-c", script], tmp_path)
+        done = ran([PYTHON, "-c", script], tmp_path)
         if done.returncode != 0:
             faults.append(f"{script}\n{done.stderr}")
     assert not faults, "\n\n".join(faults)
@@ -85,8 +86,8 @@ def words(command: str) -> list[str]:
     """The command, with the programs of this environment."""
     name, *rest = shlex.split(command)
     programs = {
-        "crankcheck": str(Path(sys.executable).with_name("crankcheck")),
-        "python": sys.executable,
+        "crankcheck": COMMAND,
+        "python": PYTHON,
     }
     return [programs.get(name, name), *rest]
 

@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from reports.cli import app
+from tests.worlds.command import COMMAND, PYTHON, script
 
 ROOT = Path(__file__).parents[3]
 SOLVE = "solve fourbar-lecture-1"
@@ -21,13 +22,13 @@ POSIX = pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell is nee
 def shell(command: str, **environment: str) -> tuple[int, str, str]:
     """Exit code, output and complaint of ``crankcheck`` in a shell line."""
     done = subprocess.run(
-        command.replace("crankcheck", f"{sys.executable} -m reports.cli"),
+        command.replace("crankcheck", COMMAND),
         shell=True,
         executable="/bin/sh",
         capture_output=True,
         check=False,
         timeout=60,
-        env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+        env=os.environ | environment,
     )
     return done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
 
@@ -83,12 +84,11 @@ cli.main()
 @POSIX
 def test_an_import_that_ctrl_c_cut_short_is_no_missing_engine() -> None:
     done = subprocess.run(
-        [sys.executable, "-c", SWALLOWED],
+        [PYTHON, "-P", "-c", script(SWALLOWED)],
         capture_output=True,
         text=True,
         check=False,
         timeout=60,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
     )
     assert (done.returncode, done.stderr) == (130, "crankcheck: interrupted\n")
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from tests.worlds.command import PYTHON
+
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
 
 SCRIPT = """
 import os, signal, sys, threading, time
-from reports.cli import main
+from crankcheck.__main__ import main
 
 def again():
     for _ in range({times}):
@@ -39,12 +40,11 @@ def ended(folder: Path, kill: str, after: float, times: int) -> tuple[int, str, 
         encoding="utf-8",
     )
     running = subprocess.Popen(
-        [sys.executable, str(script)],
+        [PYTHON, str(script)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
     )
     # The pipes end when the last process that holds them does: no worker outlives the command.
     output, complaint = running.communicate(timeout=60)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 
 import pytest
+
+from tests.worlds.command import PYTHON
 
 HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl")
 SCRIPT = """
 import json, sys, time
 began = time.process_time()
-from reports.cli import main
+from crankcheck.__main__ import main
 sys.argv = ["crankcheck", *{args!r}]
 try:
     main()
@@ -27,7 +28,7 @@ def start(*args: str) -> tuple[int, float, list[str], str]:
     """Exit code, processor time [s], heavy packages loaded, and the output."""
     script = SCRIPT.format(args=list(args), heavy=HEAVY)
     done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60
+        [PYTHON, "-P", "-c", script], capture_output=True, text=True, check=True, timeout=60
     )
     *output, last = done.stdout.splitlines()
     code, spent, loaded = json.loads(last)
@@ -59,7 +60,7 @@ def test_the_reference_is_solved_without_an_engine() -> None:
 
 def test_a_users_mistake_ends_with_2_and_no_traceback_in_a_real_process() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "reports.cli", "verify", "fourbar-lectur-1"],
+        [PYTHON, "-P", "-m", "crankcheck", "verify", "fourbar-lectur-1"],
         capture_output=True,
         text=True,
         check=False,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
 
-COMMAND = str(Path(sys.executable).with_name("crankcheck"))
+from tests.worlds.command import COMMAND, script
+
 BAD_ENGINE = '''
 """MuJoCo, with a fault that a setting chooses."""
 import os, time
@@ -48,7 +48,7 @@ DECLARATION = """
 from sim.registry import Declaration
 DECLARATION = Declaration("mujoco", "mujoco")
 """
-KNOWN = "import sim.registry\nsim.registry.ENGINES['bad'] = 'bad_engine'\n"
+KNOWN = "from sim import registry\nregistry.ENGINES['bad'] = 'bad_engine'\n"
 Started = Callable[..., "subprocess.Popen[str]"]
 
 
@@ -77,7 +77,7 @@ def bad_engine(tmp_path: Path) -> dict[str, str]:
     folder = tmp_path / "bad"
     folder.mkdir()
     (folder / "bad_engine").mkdir()
-    (folder / "bad_engine" / "__init__.py").write_text(DECLARATION)
-    (folder / "bad_engine" / "engine.py").write_text(BAD_ENGINE)
-    (folder / "sitecustomize.py").write_text(KNOWN)
+    (folder / "bad_engine" / "__init__.py").write_text(script(DECLARATION))
+    (folder / "bad_engine" / "engine.py").write_text(script(BAD_ENGINE))
+    (folder / "sitecustomize.py").write_text(script(KNOWN))
     return {"PYTHONPATH": str(folder)}

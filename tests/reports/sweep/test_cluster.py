@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pandas as pd
 import pytest
 
 from reports.store.reader import read_store
+from tests.worlds.command import PYTHON
 
 GRID = ("fourbar-lecture-1", "slotted-lever", "--steps-per-turn", "90,180", "--no-timing")
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on"}
@@ -33,7 +33,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     ]
     wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 60)"
     try:
-        subprocess.run([sys.executable, "-W", "ignore", "-c", wait], check=True, timeout=120)
+        subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True, timeout=120)
         yield address
     finally:
         for process in (*workers, scheduler):
@@ -45,7 +45,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 def dask(*arguments: str) -> subprocess.Popen[bytes]:
     """A part of a cluster, as a user starts it."""
     return subprocess.Popen(
-        [str(Path(sys.executable).with_name("dask")), *arguments, "--no-dashboard"],
+        [PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )

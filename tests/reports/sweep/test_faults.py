@@ -10,6 +10,7 @@ import pytest
 
 from reports.store.reader import read_store
 from reports.workers.isolated import Isolated, Limits, Lost
+from tests.worlds.command import shadows
 
 EXPECTED = {
     "none": ("ok", ""),
@@ -69,16 +70,16 @@ def test_a_limit_that_ends_with_the_job_does_not_end_the_next() -> None:
         isolated.close()
 
 
-@pytest.mark.parametrize("name", ["reports", "queue", "models"])
 def test_what_stands_in_the_working_folder_is_not_imported(
-    start: Callable[..., object], tmp_path: Path, name: str
+    start: Callable[..., object], tmp_path: Path
 ) -> None:
-    (tmp_path / f"{name}.py").write_text("raise SystemExit('mine')")
+    mine = shadows(tmp_path / "mine")
+    (mine / "queue.py").write_text("raise SystemExit('mine')")
     options = ("--engine", "pymunk", "--steps-per-turn", "90", "--no-timing")
-    done = start("sweep", "fourbar-lecture-1", "-o", "store", *options, cwd=tmp_path)
+    done = start("sweep", "fourbar-lecture-1", "-o", "store", *options, cwd=mine)
     _, err = done.communicate(timeout=60)
     assert done.returncode == 0, err
-    assert set(read_store(tmp_path / "store").cells.status) == {"ok"}
+    assert set(read_store(mine / "store").cells.status) == {"ok"}
 
 
 def test_a_wider_limit_runs_again_what_was_ended(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import re
 import subprocess
 import sys
@@ -22,6 +21,7 @@ from reports.cli.commands.tune import run_tune
 from reports.cli.measuring import TuneRequest
 from sim.mujoco.knobs import EVALUATIONS
 from sim.tuning import Knob, search_space
+from tests.worlds.command import PYTHON, script
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[TuneRequest], tuple[int, str]]
@@ -255,15 +255,14 @@ if __name__ == "__main__":
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
 def test_ctrl_c_keeps_the_trials_and_leaves_no_process(tmp_path: Path) -> None:
-    path, script = tmp_path / "kept.db", tmp_path / "run.py"
-    script.write_text(SCRIPT, encoding="utf-8")
+    path, program = tmp_path / "kept.db", tmp_path / "run.py"
+    program.write_text(script(SCRIPT), encoding="utf-8")
     running = subprocess.Popen(
-        [sys.executable, str(script), str(path)],
+        [PYTHON, str(program), str(path)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
     )
     # The pipes end when the last process that holds them does.
     output, complaint = running.communicate(timeout=60)

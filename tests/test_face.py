@@ -1,0 +1,61 @@
+"""`import crankcheck`: a light face, of which every name is there."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import crankcheck
+from tests.worlds.command import COMMAND, PYTHON
+
+HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "pydantic", "typer")
+SCRIPT = f"""
+import json, sys, time
+began = time.process_time()
+import crankcheck
+spent = time.process_time() - began
+print(json.dumps([spent, [name for name in {HEAVY} if name in sys.modules]]))
+"""
+
+
+def printed(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def test_importing_it_loads_nothing_and_costs_no_50_ms() -> None:
+    costs = []
+    for _ in range(3):
+        spent, loaded = json.loads(printed(PYTHON, "-P", "-c", SCRIPT))
+        assert loaded == []
+        costs.append(spent)
+    assert min(costs) < 0.05
+
+
+def test_every_name_is_there_and_loads_no_engine_and_no_table() -> None:
+    code = (
+        "import sys\nfrom crankcheck import *\nimport crankcheck\n"
+        "assert set(crankcheck.__all__) <= set(globals())\n"
+        "assert dir(crankcheck) == sorted(crankcheck.__all__)\n"
+        "print([name for name in ('mujoco', 'pymunk', 'pandas') if name in sys.modules])"
+    )
+    assert printed(PYTHON, "-P", "-c", code) == "[]\n"
+
+
+def test_a_type_checker_sees_what_is_there() -> None:
+    tree = ast.parse(Path(crankcheck.__file__).read_text(encoding="utf-8"))
+    shown = next(node for node in tree.body if isinstance(node, ast.If))
+    names = {node.name for node in ast.walk(shown) if isinstance(node, ast.alias)}
+    assert names | {"__version__"} == set(crankcheck.__all__)
+
+
+def test_a_name_that_is_not_there_is_no_attribute() -> None:
+    with pytest.raises(AttributeError, match="'crankcheck' has no attribute 'solv'"):
+        crankcheck.solv  # noqa: B018 - that is what is tested
+
+
+def test_the_version_is_that_of_the_command() -> None:
+    assert printed(COMMAND, "--version") == f"crankcheck {crankcheck.__version__}\n"
