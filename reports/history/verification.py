@@ -9,7 +9,6 @@ import shutil
 import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 
 from models.errors import CrankcheckError
@@ -17,8 +16,12 @@ from reports.history.environments import NotMeasuredError, Wanted, clean_variabl
 from reports.history.install_errors import shortened
 from reports.output.provenance import crankcheck_version, processor
 from reports.workers.programs import Ended, Runner, run_child
+from reports.workers.signals import leave_to_parent
 
-PACKAGES = ("models", "analytic", "sim", "reports")
+ROOMS = Path(__file__).parents[2]
+"""The folder of the packages of crankcheck: the checkout, or `crankcheck` where it is installed."""
+FOLDER = Path(__file__).parents[__name__.count(".")]
+"""The folder that those who import crankcheck look into."""
 RESULT = "verify.csv"
 UNWIND_S = 2.0
 """Less than `reports.workers.signals.PATIENCE_S`: the child ends before this process is ended."""
@@ -28,9 +31,9 @@ from importlib.util import find_spec
 if find_spec({engine!r}) is None:
     sys.exit("the environment holds no {engine}")
 sys.path += {folders!r}
-from reports.workers.signals import leave_to_parent
+from {signals} import leave_to_parent
 leave_to_parent()
-from reports.cli import main
+from crankcheck.__main__ import main
 sys.argv[0] = "crankcheck"
 main()
 """
@@ -41,18 +44,16 @@ patient: Runner = partial(run_child, patience_s=UNWIND_S)
 
 def borrowed() -> list[str]:
     """The folders of crankcheck and of all the packages that run it here, in order."""
-    ours = [str(Path(str(import_module(name).__file__)).parents[1]) for name in PACKAGES]
-    found = [folder for folder in sys.path if folder and Path(folder).is_dir()]
-    return list(dict.fromkeys([*ours, *(str(Path(folder).resolve()) for folder in found)]))
+    folders = [FOLDER, *(Path(folder) for folder in sys.path if folder)]
+    return list(dict.fromkeys(str(folder.resolve()) for folder in folders if folder.is_dir()))
 
 
 def code_key() -> str:
-    """A name for crankcheck as it is: its version, and the text of its code and scenes."""
+    """A name for crankcheck as it is: its version, and the text of its code."""
     digest = hashlib.sha256(crankcheck_version().encode())
-    for name in PACKAGES:
-        root = Path(str(import_module(name).__file__)).parent
-        for path in sorted(root.rglob("*.py")):
-            digest.update(f"{name}/{path.relative_to(root).as_posix()}".encode())
+    for package in sorted(ROOMS.glob("*/__init__.py")):
+        for path in sorted(package.parent.rglob("*.py")):
+            digest.update(path.relative_to(ROOMS).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
 
@@ -97,7 +98,9 @@ def measure(
     try:
         aside.parent.mkdir(parents=True, exist_ok=True)
         shutil.rmtree(aside, ignore_errors=True)
-        code = LAUNCH.format(engine=one.engine, folders=borrowed())
+        code = LAUNCH.format(
+            engine=one.engine, folders=borrowed(), signals=leave_to_parent.__module__
+        )
         options = ["verify", "--engine", one.engine, "-o", str(aside), *arguments]
         ended = run([str(python), "-P", "-c", code, *options], clean_variables(), None)
         if not kept(aside):

@@ -19,6 +19,7 @@ from models.files import shipped
 from reports.cli.checking import HistoryRequest
 from reports.cli.commands.history import run_history
 from reports.history import verification
+from tests.worlds.command import COMMAND, PYTHON, script, shadows
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="the installer is a POSIX script")
 
@@ -214,14 +215,30 @@ def test_another_text_of_a_scene_is_not_answered_from_the_cache(
         assert len(measured) == count
 
 
+@posix
+def test_packages_of_our_names_in_the_working_folder_change_nothing(
+    installer: Path, cache: Path, tmp_path: Path
+) -> None:
+    command = [COMMAND, "history", "mujoco", "3.7.0", "--scene", SCENE, "--turns", "1"]
+    done = subprocess.run(
+        [*command, "--steps-per-turn", "360", "--cache", str(cache), "-o", "out"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=shadows(tmp_path / "mine"),
+        env=os.environ | {"PATH": f"{installer}{os.pathsep}{os.environ['PATH']}"},
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "mine" / "out" / "mujoco-3.7.0" / "verify.csv").is_file()
+
+
 def test_another_code_of_crankcheck_has_another_key(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package = tmp_path / "probe_of_history"
     package.mkdir()
     (package / "__init__.py").touch()
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(verification, "PACKAGES", (package.name,))
+    monkeypatch.setattr(verification, "ROOMS", tmp_path)
     keys = []
     for text in ("A = 1\n", "A = 2\n"):
         (package / "inner.py").write_text(text, encoding="utf-8")
@@ -332,22 +349,18 @@ def test_a_signal_ends_the_other_program_too(
 ) -> None:
     sign = installer / "running"
     sign.unlink(missing_ok=True)  # of an earlier test
-    script = tmp_path / "run.py"
-    script.write_text(
-        SCRIPT.format(kill=kill, sign=str(sign), version=version, cache=str(cache)),
+    program = tmp_path / "run.py"
+    program.write_text(
+        script(SCRIPT.format(kill=kill, sign=str(sign), version=version, cache=str(cache))),
         encoding="utf-8",
     )
     running = subprocess.Popen(
-        [sys.executable, str(script)],
+        [PYTHON, str(program)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        env=os.environ
-        | {
-            "PYTHONPATH": str(Path(__file__).parents[3]),
-            "PATH": f"{installer}{os.pathsep}{os.environ['PATH']}",
-        },
+        env=os.environ | {"PATH": f"{installer}{os.pathsep}{os.environ['PATH']}"},
     )
     output, complaint = running.communicate(timeout=30)
     assert (running.returncode, complaint) == (end[0], f"crankcheck: {end[1]}\n")
