@@ -3,13 +3,17 @@
 `solve` runs the driver's law through the mechanism's Assur groups in solving order, in chunks that
 stay in cache, and writes what was asked for. With ``bound`` every number carries a bound of its own
 error, propagated from group to group (`analytic.dyads.closure`).
+
+What does not depend on the samples, structure, constants of the groups and change points, is worked
+out once for a scene: a pure function of it, whose results for the last `KEPT` scenes are kept.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -25,11 +29,15 @@ from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
-from models.motion import Crossing, Motion
+from models.motion import Motion
 from models.scene import Scene
 
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
+KEPT = 64
+"""Scenes whose preparation is kept: more than are shipped."""
+Driven = tuple[Array, Real, Real, AngleError | None]
+"""Angles, rates and accelerations of the driver, and what they may be wrong by."""
 
 
 def solve(
@@ -69,23 +77,23 @@ def solve(
     """
     time_s = _samples(time_s)
     law = scene.driver.law
-    way = _Way.of(scene)
-    result = Result(Selection.of(scene, links, points, sliders), time_s, way.steps, bound=bound)
-    for first in range(0, len(time_s), CHUNK):
-        span = slice(first, first + CHUNK)
+
+    def driver(span: slice) -> Driven:
         t = time_s[span]
         theta, omega, alpha = _law_at(law, t)
-        error = None
-        if bound:
-            age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
-            peak = law.peak_speed_rad_s
-            error = AngleError(
-                4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
-                4 * EPS * peak * (1.0 + age),
-                4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
-            )
-        result.write(span, way.chunk(theta, omega, alpha, error))
-    return replace(result.motion(), crossings=way.crossings())
+        if not bound:
+            return theta, omega, alpha, None
+        age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
+        peak = law.peak_speed_rad_s
+        error = AngleError(
+            4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
+            4 * EPS * peak * (1.0 + age),
+            4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
+        )
+        return theta, omega, alpha, error
+
+    ready = _prepared(_Same(scene))
+    return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
 
 
 def solve_driven(
@@ -109,18 +117,18 @@ def solve_driven(
     theta = _samples(theta)
     omega, alpha = np.broadcast_to(omega, theta.shape), np.broadcast_to(alpha, theta.shape)
     labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
-    way = _Way.of(scene)
-    result = Result(Selection.of(scene, links, points, sliders), labels, way.steps, bound=bound)
-    for first in range(0, len(theta), CHUNK):
-        span = slice(first, first + CHUNK)
+
+    def driver(span: slice) -> Driven:
         error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
-        result.write(span, way.chunk(theta[span], omega[span], alpha[span], error))
-    return replace(result.motion(), crossings=way.crossings())
+        return theta[span], omega[span], alpha[span], error
+
+    ready = _prepared(_Same(scene))
+    return ready.motion(Selection.of(scene, links, points, sliders), labels, driver, bound=bound)
 
 
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
-    return ranges(_Way.of(scene).stretched)
+    return ranges(_prepared(_Same(scene)).stretched)
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
@@ -146,39 +154,61 @@ def _samples(values: Array) -> Array:
 def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one."""
-    passages = _Way.of(scene).passages.values()
+    passages = _prepared(_Same(scene)).passages.values()
     return max((passage.period for passage in passages), default=math.tau)
 
 
-@dataclass
-class _Way:
-    """A scene made ready to be solved, and the driver angles that it was solved for."""
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A scene as itself: scenes that are equal but for the order of their links are not one, and
+    one that is changed is another, as they are frozen."""
+
+    scene: Scene
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.scene is self.scene
+
+    def __hash__(self) -> int:
+        return id(self.scene)
+
+
+@lru_cache(maxsize=KEPT)
+def _prepared(same: _Same) -> _Prepared:
+    """The scene made ready to be solved. Raises StructureError."""
+    steps = prepare(same.scene, analyse(same.scene))
+    start = float(same.scene.driver.law.at(np.zeros(1))[0][0])
+    return _Prepared(same.scene, steps, passages(same.scene, steps), start)
+
+
+@dataclass(frozen=True)
+class _Prepared:
+    """A scene made ready to be solved; ``start`` is the driver's angle at time 0."""
 
     scene: Scene
     steps: Sequence[Step]
     passages: Mapping[str, ChangePoints]
-    low: float
-    high: float
-
-    @staticmethod
-    def of(scene: Scene) -> _Way:
-        steps = prepare(scene, analyse(scene))
-        start = float(scene.driver.law.at(np.zeros(1))[0][0])
-        return _Way(scene, steps, passages(scene, steps), start, start)
+    start: float
 
     def stretched(self, theta: Array) -> Chunk:
         return stretched(self.scene, self.steps, theta, self.passages)
 
-    def crossings(self) -> tuple[Crossing, ...]:
-        """The change points on the way from time 0 to all that was solved for."""
-        return passed(self.passages, self.low, self.high)
+    def motion(
+        self, wanted: Selection, time_s: Array, driver: Callable[[slice], Driven], *, bound: bool
+    ) -> Motion:
+        """The motion, chunk by chunk, with the change points on the way from time 0 through it."""
+        result = Result(wanted, time_s, self.steps, bound=bound)
+        low = high = self.start
+        for first in range(0, len(time_s), CHUNK):
+            span = slice(first, first + CHUNK)
+            driven = driver(span)
+            low = min(low, float(driven[0].min()))
+            high = max(high, float(driven[0].max()))
+            result.write(span, self._chunk(*driven))
+        return replace(result.motion(), crossings=passed(self.passages, low, high))
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
+    def _chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
         """One chunk through all steps. Raises ReachError."""
-        if self.passages:
-            self.low = min(self.low, float(theta.min()))
-            self.high = max(self.high, float(theta.max()))
         chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=self.passages)
         for step in self.steps:
             try:
