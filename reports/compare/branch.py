@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from analytic.kinematics import solve
-from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.scene import Scene
+from reports.compare.beside import Beside
 from reports.compare.errors import Departure
-from reports.compare.tracks import Track
-from sim.engine import Run
 
 AWAY_RAD = 0.5
 """A link that is off by so much, in a loop that is closed, may stand in the other assembly."""
@@ -29,27 +26,19 @@ MOST_CHOICES = 6
 """Assemblies are looked at one by one up to so many choices: two to the power of it."""
 
 
-def departure(
-    scene: Scene, run: Run, placed: Iterable[Track], driver_rad: Array
-) -> Departure | None:
+def departure(beside: Beside) -> Departure | None:
     """Where the first link left the branch of the scene while its loop stayed closed.
 
     A link that is far off in a loop that is closed has left its branch if the mechanism stands in
     another assembly at that or a later sample; else it is off its place, and on its way.
-
-    Parameters
-    ----------
-    placed : Iterable[Track]
-        The tracks of place of the run.
-    driver_rad : Array
-        The commanded angle of the driver [rad], (T,).
     """
+    driver_rad = beside.driver_rad
     closed = np.ones(driver_rad.shape, dtype=bool)
-    for gap in run.gaps.values():
-        closed &= np.abs(gap) < CLOSED * scene.longest_m
+    for gap in beside.run.gaps.values():
+        closed &= np.abs(gap) < CLOSED * beside.scene.longest_m
     left: list[tuple[int, str]] = []
     far = np.zeros_like(closed)
-    for track in placed:
+    for track in beside.places:
         if track.quantity != "angle":
             continue
         off = np.abs(track.error)
@@ -58,15 +47,16 @@ def departure(
         if away.size:
             here = np.flatnonzero(off[: away[0]] < HERE_RAD)
             left.append((int(here[-1]) if here.size else 0, track.body))
-    if not left or run.motion is None or not _elsewhere(scene, run.motion, far):
+    if not left or not _elsewhere(beside, far):
         return None
     index, link = min(left)
-    return Departure(link, float(run.motion.time_s[index]), float(driver_rad[index]))
+    return Departure(link, float(beside.motion.time_s[index]), float(driver_rad[index]))
 
 
-def _elsewhere(scene: Scene, motion: Motion, far: np.ndarray) -> bool:
+def _elsewhere(beside: Beside, far: np.ndarray) -> bool:
     """Whether the mechanism stands in another assembly at one of the samples ``far``."""
-    for other in _assemblies(scene, motion):
+    motion = beside.motion
+    for other in _assemblies(beside):
         off = np.zeros(len(motion.time_s))
         for name, link in other.links.items():
             turn = motion.links[name].theta - link.theta if name in motion.links else np.nan
@@ -76,19 +66,19 @@ def _elsewhere(scene: Scene, motion: Motion, far: np.ndarray) -> bool:
     return False
 
 
-def _assemblies(scene: Scene, motion: Motion) -> Iterator[Motion]:
+def _assemblies(beside: Beside) -> Iterator[Motion]:
     """The motions of the other assemblies, as far as they can be had at all of the samples.
 
     One that cannot is passed over: a run that went over to it is off its place all the same.
     """
-    mine = solve(scene, motion.time_s[:1], bound=False)
-    keys = list(mine.conditioning)[:MOST_CHOICES]
+    scene = beside.scene
+    keys = list(beside.reference.conditioning)[:MOST_CHOICES]
     for signs in itertools.product((1, -1), repeat=len(keys)):
         if -1 not in signs:
             continue
         branch = {k: s * scene.branch.get(k, 1) for k, s in zip(keys, signs, strict=True)}
         other = replace(scene, branch={**scene.branch, **branch})
         try:
-            yield solve(other, motion.time_s, bound=False)
+            yield solve(other, beside.motion.time_s, bound=False)
         except CrankcheckError:
             continue

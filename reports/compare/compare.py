@@ -17,19 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.forces.jolts import jolts, mass_ratio
-from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.errors import ReachError
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
+from reports.compare.beside import Beside
 from reports.compare.branch import departure
 from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, Errors, Kind, Quantity, Source
-from reports.compare.series import angle_error, length, rate, second_rate, size
-from reports.compare.tracks import ORDERS, QUANTITIES, Track, fitting, lacking, tracks
+from reports.compare.series import length, rate, second_rate, size
+from reports.compare.tracks import ORDERS, QUANTITIES, Order, Track, fitting, lacking
 from sim.engine import Run
 
 SETTLING = 40
@@ -51,49 +51,42 @@ class _Instants:
         return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
 
 
-def compare(scene: Scene, run: Run) -> Errors | None:
+def compare(beside: Beside | None) -> Errors | None:
     """The errors of a run, or None where it logged nothing.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene that was run.
-    run : Run
-        Samples that are not finite, and bodies or pins of the scene that the log lacks, give
-        errors that are not finite.
+    Samples that are not finite, and bodies or pins of the scene that the log lacks, give errors
+    that are not finite.
 
     Returns
     -------
     Errors or None
         One row per quantity, body, source and kind.
     """
-    motion = run.motion
-    if motion is None or motion.time_s.size == 0:
+    if beside is None:
         return None
-    reference = solve(scene, motion.time_s)
-    at = _instants(scene, motion.time_s, reference)
-    placed = list(tracks(scene, motion, reference, 0))
-    geometric, notes = _geometric(scene, motion, at)
-    reported, not_reported = _reported(scene, run, motion, reference)
+    scene, run, reference = beside.scene, beside.run, beside.reference
+    at = _instants(scene, beside.motion.time_s, reference)
+    geometric, notes = _geometric(beside, at)
+    reported, not_reported = _reported(beside)
     jolt = jolts(scene, reference)
     return Errors(
         rows=(
-            _drive(scene, motion, at),
-            *(_row(track, at) for track in placed),
+            _drive(beside, at),
+            *(_row(track, at) for track in beside.places),
             *geometric,
             *(_row(track, at) for track in _gaps(scene, run, at)),
             *reported,
-            *_differenced(scene, placed, at),
+            *_differenced(scene, beside.places, at),
         ),
         not_reported=not_reported,
         notes=notes,
         curvature=curvature(scene, reference),
         conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
-        missing=(*lacking(motion, reference), *_without_gap(scene, run)),
+        missing=(*lacking(beside.motion, reference), *_without_gap(scene, run)),
         incomplete=incomplete(run),
-        uncertain=_uncertain(scene, motion, reference),
-        departure=departure(scene, run, placed, at.driver_rad),
+        uncertain=_uncertain(beside),
+        departure=departure(beside),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
         jolt=float(jolt[0]),
         worst_jolt=float(np.max(jolt)),
@@ -102,16 +95,13 @@ def compare(scene: Scene, run: Run) -> Errors | None:
     )
 
 
-def places(scene: Scene, run: Run) -> list[Error]:
-    """Drive error, total errors of place and gaps alone, without the reference's bound; none of a
-    run that logged nothing."""
-    motion = run.motion
-    if motion is None or motion.time_s.size == 0:
+def places(beside: Beside | None) -> list[Error]:
+    """Drive error, total errors of place and gaps alone; none of a run that logged nothing."""
+    if beside is None:
         return []
-    reference = solve(scene, motion.time_s, bound=False)
-    at = _instants(scene, motion.time_s, reference)
-    found = (*tracks(scene, motion, reference, 0), *_gaps(scene, run, at))
-    return [_drive(scene, motion, at), *(_row(track, at) for track in found)]
+    at = _instants(beside.scene, beside.motion.time_s, beside.reference)
+    found = (*beside.places, *_gaps(beside.scene, beside.run, at))
+    return [_drive(beside, at), *(_row(track, at) for track in found)]
 
 
 def _instants(scene: Scene, time_s: Array, reference: Motion) -> _Instants:
@@ -159,32 +149,22 @@ def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
             yield _row(cut, at[part], source, kind)
 
 
-def _drive(scene: Scene, motion: Motion, at: _Instants) -> Error:
+def _drive(beside: Beside, at: _Instants) -> Error:
     """How far the driver is from where it was told to be."""
-    name = scene.driver.link
     magnitude = float(np.max(np.abs(at.driver_rad)))
-    error = angle_error(_crank(scene, motion), at.driver_rad)
     bound = 2 * EPSILON * np.abs(at.driver_rad)
-    return _row(Track("drive", "driver", name, error, bound, magnitude, 1.0, "rad"), at)
+    name = beside.scene.driver.link
+    return _row(Track("drive", "driver", name, beside.drive, bound, magnitude, 1.0, "rad"), at)
 
 
-def _crank(scene: Scene, motion: Motion) -> Array:
-    """The logged angle of the driver [rad], NaN where there is none."""
-    crank = motion.links.get(scene.driver.link)
-    return fitting(None if crank is None else crank.theta, motion.time_s)
-
-
-def _geometric(scene: Scene, motion: Motion, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
+def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
     """Errors against the reference at the logged crank angle, or a note that says why not."""
-    theta = _crank(scene, motion)
-    if not np.all(np.isfinite(theta)):
+    if not np.all(np.isfinite(beside.crank)):
         return [], ("no geometric error: the logged crank angle is not finite",)
-    still = np.zeros_like(theta)
     try:
-        reference = solve_driven(scene, theta, still, still, motion.time_s, bound=False)
+        found = beside.tracks(0, beside.at_crank)
     except ReachError as error:
         return [], (f"no geometric error: the logged crank left its range ({error})",)
-    found = tracks(scene, motion, reference, 0)
     return [_row(track, at, kind="geometric") for track in found], ()
 
 
@@ -207,17 +187,18 @@ def _without_gap(scene: Scene, run: Run) -> list[str]:
     return [f"gap of {name}" for name in dict.fromkeys(_shared(scene)) if name not in run.gaps]
 
 
-def _reported(
-    scene: Scene, run: Run, motion: Motion, reference: Motion
-) -> tuple[list[Error], tuple[str, ...]]:
+def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
     """Velocities and accelerations as the engine gives them, and the bodies without."""
-    rows: list[Error] = []
-    missing: list[str] = []
-    for order, instants in ((1, run.velocity_time_s), (2, run.acceleration_time_s)):
-        time_s = motion.time_s if instants is None else instants
-        known = reference if np.array_equal(time_s, motion.time_s) else solve(scene, time_s)
-        at = _instants(scene, time_s, known)
-        found = list(tracks(scene, motion, known, 1 if order == 1 else 2))
+    run, rows, missing = beside.run, list[Error](), list[str]()
+    stamps: tuple[tuple[Order, Array | None], ...] = (
+        (1, run.velocity_time_s),
+        (2, run.acceleration_time_s),
+    )
+    for order, instants in stamps:
+        time_s = beside.motion.time_s if instants is None else instants
+        known = beside.truth.at(time_s)
+        at = _instants(beside.scene, time_s, known)
+        found = beside.tracks(order, known)
         # Silence is no fault of an engine that reports no accelerations, if it is silent of all.
         silent = order == 2 and not run.reports_accelerations
         if silent and all(np.all(np.isnan(track.error)) for track in found):
@@ -228,7 +209,7 @@ def _reported(
     return rows, tuple(missing)
 
 
-def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[Error]:
+def _differenced(scene: Scene, placed: Iterable[Track], at: _Instants) -> Iterable[Error]:
     """Velocities and accelerations from the logged positions, by central differences."""
     if at.time_s.size < 3:
         return
@@ -253,14 +234,12 @@ def _differenced(scene: Scene, placed: list[Track], at: _Instants) -> Iterable[E
             yield from _rate_rows(differenced, inner, "differenced")
 
 
-def _uncertain(
-    scene: Scene, motion: Motion, reference: Motion
-) -> dict[tuple[Quantity, str], float]:
+def _uncertain(beside: Beside) -> dict[tuple[Quantity, str], float]:
     """The largest bound of the reference per quantity and body, as a pure number."""
     return {
         (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale
         for order in ORDERS
-        for track in tracks(scene, motion, reference, order)
+        for track in beside.tracks(order, beside.reference)
     }
 
 

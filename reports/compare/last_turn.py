@@ -10,18 +10,19 @@ against it at the commanded time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
 
-from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
-from reports.compare.series import angle_error
-from reports.compare.tracks import tracks
+from reports.compare.beside import Beside, Truth
+from reports.compare.tracks import Track
 from sim.engine import Run
 
 SAMPLES_PER_TURN = 90
@@ -34,26 +35,23 @@ def trace(scene: Scene, run: Run) -> dict[str, Array]:
     if run.motion is None or run.motion.time_s.size < 2:
         return {}
     kept = _instants(scene, run)
-    motion = _picked(run.motion, kept)
-    time_s = motion.time_s
-    driver = scene.driver.law.at(time_s)[0]
-    crank = motion.links[scene.driver.link].theta
+    gaps = {name: gap[kept] for name, gap in run.gaps.items()}
+    turn = replace(run, motion=_picked(run.motion, kept), gaps=gaps)
+    beside = Beside.of(Truth(scene, bound=False), turn)
+    assert beside is not None
     found = {
-        "time_s": time_s,
-        "driver_rad": driver,
-        "drive": angle_error(crank, driver),
-        "gap": np.max([np.abs(gap[kept]) for gap in run.gaps.values()], axis=0, initial=0.0),
+        "time_s": beside.motion.time_s,
+        "driver_rad": beside.driver_rad,
+        "drive": beside.drive,
+        "gap": np.max([np.abs(gap) for gap in gaps.values()], axis=0, initial=0.0),
     }
-    found |= _errors(scene, motion, solve(scene, time_s, bound=False), "")
-    try:
-        still = np.zeros_like(crank)
-        at_crank = solve_driven(scene, crank, still, still, time_s, bound=False)
-        found |= _errors(scene, motion, at_crank, "geometric.")
-    except (CrankcheckError, ValueError):
-        pass  # the logged crank left its range, or is not finite: the total error says it
-    for name, link in motion.links.items():
+    found |= _errors(beside.places, "")
+    # Where the logged crank left its range, or is not finite, the total error says it.
+    with suppress(CrankcheckError, ValueError):
+        found |= _errors(beside.tracks(0, beside.at_crank), "geometric.")
+    for name, link in beside.motion.links.items():
         found[f"theta.{name}"] = link.theta
-    for name, point in motion.points.items():
+    for name, point in beside.motion.points.items():
         found[f"x.{name}"], found[f"y.{name}"] = point.position.T
     return {name: np.ascontiguousarray(series) for name, series in found.items()}
 
@@ -83,10 +81,10 @@ def _picked(motion: Motion, kept: np.ndarray) -> Motion:
     )
 
 
-def _errors(scene: Scene, motion: Motion, reference: Motion, prefix: str) -> Mapping[str, Array]:
+def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:
     """The errors of links and sliders, which have a sign."""
     return {
         f"{prefix}{track.quantity}.{track.body}": track.error
-        for track in tracks(scene, motion, reference, 0)
+        for track in placed
         if track.body_kind != "point"
     }

@@ -16,6 +16,7 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure, Errors
 from reports.judge.halving import followed
@@ -116,7 +117,8 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
     try:
-        errors = compare(cell.scene, done)
+        beside = Beside.of(Truth(cell.scene), done)
+        errors = compare(beside)
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"
         return unfinished(cell, "crashed", why), done
@@ -125,9 +127,9 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
         status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = None
-    if cell.converge and errors:
+    if cell.converge and beside and errors:
         rerun = partial(_run, cell, runner, state)
-        seen = followed(cell.scene, cell.dt_s, errors, cell.tolerance, rerun)
+        seen = followed(beside.truth, cell.dt_s, errors, cell.tolerance, rerun)
     evidence = Evidence(
         status=status,
         reason=reason,

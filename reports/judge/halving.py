@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import places
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, Quantity, largest
@@ -26,7 +27,7 @@ BEHIND_DRIVE = 5.0
 
 
 def followed(
-    scene: Scene,
+    truth: Truth,
     dt_s: float,
     errors: Errors,
     tolerance: Mapping[str, float],
@@ -38,6 +39,8 @@ def followed(
 
     Parameters
     ----------
+    truth : Truth
+        Of the run at the full step: what was solved for it serves the finer ones.
     rerun : Callable[[int], Run]
         The run with its step cut into so many parts, logged at the instants of the full step.
     """
@@ -45,7 +48,7 @@ def followed(
     if worst is None:
         return None
     parts = [2**halving for halving in range(HALVINGS + 1)]
-    finer = [_finer(scene, dt_s, p, rerun) for p in parts[1:]]
+    finer = [_finer(truth, dt_s, p, rerun) for p in parts[1:]]
     same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
     drive = largest(row for row in every_row if row.quantity == "drive")
@@ -59,19 +62,19 @@ def followed(
         over=[
             text
             for p, (rows, _) in zip(parts[1:], finer, strict=True)
-            if (text := _over(scene, dt_s, errors, tolerance, p, rows, rounding))
+            if (text := _over(truth.scene, dt_s, errors, tolerance, p, rows, rounding))
         ],
     )
 
 
 def _finer(
-    scene: Scene, dt_s: float, parts: int, rerun: Callable[[int], Run]
+    truth: Truth, dt_s: float, parts: int, rerun: Callable[[int], Run]
 ) -> tuple[list[Error], str]:
     """Errors of place and gaps of a finer run, and how it did not end well: "" where it did."""
     at = f"at dt {dt_s / parts:.3g} s"
     try:
         done = rerun(parts)
-        rows = places(scene, done)
+        rows = places(Beside.of(truth, done))
     except CrankcheckError as error:
         return [], f"{at} there is nothing to compare: {error}"
     if done.status != "ok":

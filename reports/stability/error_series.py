@@ -7,17 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.kinematics import solve
 from analytic.nearness import nearness
 from models.array import Array
 from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.branch import HERE_RAD, departure
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Departure
-from reports.compare.series import angle_error, length
-from reports.compare.tracks import tracks
+from reports.compare.series import length
 from sim.engine import Run
 
 
@@ -68,35 +67,32 @@ def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
 
     Raises CrankcheckError where the scene has no reference at the times of the run.
     """
-    assert run.motion is not None
-    motion = run.motion
-    reference = solve(scene, motion.time_s, bound=False)
-    placed = list(tracks(scene, motion, reference, 0))
-    driver = scene.driver.law.at(motion.time_s)[0]
+    beside = Beside.of(Truth(scene, bound=False), run)
+    assert beside is not None
+    time_s, driver = beside.motion.time_s, beside.driver_rad
     with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
-        place = _widest([length(track.error) / track.scale for track in placed], driver)
+        place = _widest([length(track.error) / track.scale for track in beside.places], driver)
         gap = _widest([np.abs(gap) / scene.longest_m for gap in run.gaps.values()], driver)
-        crank = motion.links[scene.driver.link].theta
-        drive = _widest([angle_error(crank, driver)], driver)
+        drive = _widest([beside.drive], driver)
     period = scene.driver.law.period_s
-    first = int(np.searchsorted(motion.time_s, motion.time_s[0] + settled_turns * period))
+    first = int(np.searchsorted(time_s, time_s[0] + settled_turns * period))
     settled = min(first, len(driver) - 1)
-    left = departure(scene, run, placed, driver)
+    left = departure(beside)
     if place[settled:].max() < HERE_RAD:
         left = None  # it came back before it counted
     return Seen(
         status=run.status,
         reason=run.reason,
-        time_s=motion.time_s,
+        time_s=time_s,
         driver_rad=driver,
         place=place,
         gap=gap,
         drive=drive,
-        crank=crank,
+        crank=beside.crank,
         period_s=period,
         settled=settled,
         departure=left,
-        sine=nearest(scene, reference),
+        sine=nearest(scene, beside.reference),
         incomplete=lacking(scene, run),
     )
 

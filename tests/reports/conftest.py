@@ -12,6 +12,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
@@ -59,7 +60,7 @@ def errors_of(disturbed: Callable[..., Run]) -> Callable[..., Errors]:
     """The errors that `compare` finds in a disturbed run."""
 
     def find(scene: Scene, *args: object, **options: object) -> Errors:
-        found = compare(scene, disturbed(scene, *args, **options))
+        found = compare(Beside.of(Truth(scene), disturbed(scene, *args, **options)))
         assert found is not None
         return found
 

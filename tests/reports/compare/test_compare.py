@@ -16,6 +16,7 @@ from models.array import Array
 from models.files import load_scene
 from models.motion import Motion
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import SETTLING, compare
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Errors, Kind, Quantity, Source
@@ -25,6 +26,11 @@ from sim.run import run as run_scene
 
 Find = Callable[..., Errors]
 ROUNDING = 1e-12
+
+
+def compared(scene: Scene, run: Run) -> Errors | None:
+    """The errors of a run beside its truth."""
+    return compare(Beside.of(Truth(scene), run))
 
 
 def pure(
@@ -100,7 +106,7 @@ def lagging(scene: Scene, lag_s: float, disturbed: Callable[..., Run]) -> Run:
 def test_a_crank_that_lags_shows_in_drive_and_total_but_not_in_geometry(
     fourbar: Scene, disturbed: Callable[..., Run]
 ) -> None:
-    errors = compare(fourbar, lagging(fourbar, 1e-6, disturbed))
+    errors = compared(fourbar, lagging(fourbar, 1e-6, disturbed))
     assert errors is not None
     assert pure(errors, "drive") == pytest.approx(1e-5, rel=1e-6)
     peak_ratio = 0.62  # of the rocker's speed to the crank's, largest over the turn
@@ -113,7 +119,7 @@ def test_a_clock_off_by_one_sample_shows_as_one_step_of_drive(
     fourbar: Scene, disturbed: Callable[..., Run]
 ) -> None:
     run = disturbed(fourbar)
-    errors = compare(fourbar, lagging(fourbar, run.dt_s, disturbed))
+    errors = compared(fourbar, lagging(fourbar, run.dt_s, disturbed))
     assert errors is not None
     assert pure(errors, "drive") == pytest.approx(errors.step_rad)
     assert pure(errors, "angle", kind="geometric") < ROUNDING
@@ -133,8 +139,8 @@ def test_velocities_half_a_step_late_show_in_reported_velocity_alone(
             n: replace(m, velocity=there.points[n].velocity) for n, m in run.motion.points.items()
         },
     )
-    right = compare(fourbar, replace(run, motion=motion, velocity_time_s=early))
-    wrong = compare(fourbar, replace(run, motion=motion))
+    right = compared(fourbar, replace(run, motion=motion, velocity_time_s=early))
+    wrong = compared(fourbar, replace(run, motion=motion))
     assert right is not None
     assert wrong is not None
     alpha = 0.9  # about the largest pure acceleration of the four-bar's links
@@ -176,7 +182,7 @@ def test_a_number_that_is_missing_is_a_failure_wherever_it_stands(
     series[at] = np.nan
     link = replace(motion.links["rocker"], **{part: series})
     wrong: Motion = replace(motion, links={**motion.links, "rocker": link})
-    errors = compare(fourbar, replace(run, motion=wrong))
+    errors = compared(fourbar, replace(run, motion=wrong))
     assert errors is not None
     assert any(row.body == "rocker" and not row.finite for row in errors.rows)
 
@@ -190,7 +196,7 @@ def test_a_crank_angle_that_is_missing_leaves_a_note_and_a_broken_drive(
     theta = crank.theta.copy()
     theta[5] = np.nan
     links = {**run.motion.links, "crank": replace(crank, theta=theta)}
-    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    errors = compared(fourbar, replace(run, motion=replace(run.motion, links=links)))
     assert errors is not None
     assert "logged crank angle is not finite" in errors.notes[0]
     assert not any(row.kind == "geometric" for row in errors.rows)
@@ -211,11 +217,11 @@ def test_accelerations_that_an_engine_does_not_report_are_named_and_no_failure(
         for name, point in run.motion.points.items()
     }
     silent = replace(run, motion=replace(run.motion, links=links, points=points))
-    errors = compare(fourbar, replace(silent, reports_accelerations=False))
+    errors = compared(fourbar, replace(silent, reports_accelerations=False))
     assert errors is not None
     assert "acceleration of link rocker" in errors.not_reported
     assert all(row.finite for row in errors.rows)
-    accused = compare(fourbar, silent)
+    accused = compared(fourbar, silent)
     assert accused is not None
     assert accused.not_reported == ()
     assert math.isnan(pure(accused, "acceleration"))
@@ -232,7 +238,7 @@ def test_an_engine_without_accelerations_may_not_report_those_of_some_links_only
         "rocker": replace(rocker, alpha=np.full_like(rocker.alpha, np.nan)),
     }
     some = replace(run, motion=replace(run.motion, links=links), reports_accelerations=False)
-    errors = compare(fourbar, some)
+    errors = compared(fourbar, some)
     assert errors is not None
     assert errors.not_reported == ()
     assert math.isnan(pure(errors, "acceleration"))
@@ -247,7 +253,7 @@ def test_what_the_engine_leaves_out_is_missed(
     run = disturbed(fourbar)
     kept = {n: part for n, part in vars(run.motion)[kind].items() if n != name}
     motion = replace(run.motion, **{kind: kept})  # type: ignore[type-var]  # never None here
-    errors = compare(fourbar, replace(run, motion=motion))
+    errors = compared(fourbar, replace(run, motion=motion))
     assert errors is not None
     assert errors.missing == (f"{kind[:-1]} {name}",)
     assert any(row.body == name and not row.finite for row in errors.rows)
@@ -257,7 +263,7 @@ def test_what_the_engine_leaves_out_is_missed(
 def test_every_pin_and_slider_needs_its_gap(name: str, disturbed: Callable[..., Run]) -> None:
     scene = load_scene(name)
     run = disturbed(scene)
-    whole, silent = compare(scene, run), compare(scene, replace(run, gaps={}))
+    whole, silent = compared(scene, run), compared(scene, replace(run, gaps={}))
     assert whole is not None
     assert silent is not None
     assert whole.missing == ()
@@ -272,7 +278,7 @@ def test_a_series_of_another_length_counts_as_none(
     assert run.motion is not None
     rocker = run.motion.links["rocker"]
     links = {**run.motion.links, "rocker": replace(rocker, theta=rocker.theta[:1])}
-    errors = compare(fourbar, replace(run, motion=replace(run.motion, links=links)))
+    errors = compared(fourbar, replace(run, motion=replace(run.motion, links=links)))
     assert errors is not None
     assert math.isnan(pure(errors, "angle"))
 
@@ -313,7 +319,7 @@ def test_a_log_that_lacks_commanded_samples_is_incomplete(
     fourbar: Scene, disturbed: Callable[..., Run], keep: slice
 ) -> None:
     run = disturbed(fourbar)
-    whole, short = compare(fourbar, run), compare(fourbar, cut(run, keep))
+    whole, short = compared(fourbar, run), compared(fourbar, cut(run, keep))
     assert whole is not None
     assert short is not None
     assert whole.incomplete == ""
@@ -327,7 +333,7 @@ def test_time_stamps_off_the_commanded_grid_are_found(
     assert run.motion is not None
     time_s = run.motion.time_s.copy()
     time_s[7:] += 1e-9 * run.dt_s
-    errors = compare(fourbar, replace(run, motion=replace(run.motion, time_s=time_s)))
+    errors = compared(fourbar, replace(run, motion=replace(run.motion, time_s=time_s)))
     assert errors is not None
     assert "sample 7 is stamped" in errors.incomplete
     assert "714 of 721" in errors.incomplete
@@ -351,7 +357,7 @@ def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(
     assert run.motion is not None
     driver = run.motion.links["driver"]
     links = {**run.motion.links, "driver": replace(driver, theta=driver.theta + 2.0)}
-    errors = compare(scene, replace(run, motion=replace(run.motion, links=links)))
+    errors = compared(scene, replace(run, motion=replace(run.motion, links=links)))
     assert errors is not None
     assert "left its range" in errors.notes[0]
     assert pure(errors, "drive") == pytest.approx(2.0)
@@ -360,7 +366,7 @@ def test_a_crank_out_of_its_range_leaves_a_note_in_place_of_the_geometric_error(
 def test_a_run_that_never_started_has_no_errors(
     fourbar: Scene, disturbed: Callable[..., Run]
 ) -> None:
-    assert compare(fourbar, replace(disturbed(fourbar), motion=None)) is None
+    assert compared(fourbar, replace(disturbed(fourbar), motion=None)) is None
 
 
 def test_the_pure_numbers_do_not_depend_on_the_size_of_the_scene(

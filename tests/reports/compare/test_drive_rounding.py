@@ -11,6 +11,7 @@ import pytest
 from analytic.kinematics import solve
 from models.laws import ConstantSpeed, Law, Oscillating
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Errors
@@ -33,7 +34,7 @@ def drive_share(scene: Scene, engine: str, law: Law, steps_per_turn: float, step
     state = solve(scene, np.zeros(1)).state()
     dt_s = law.period_s / steps_per_turn
     done = run(scene, state, engine, dt_s=dt_s, steps=steps, every=max(steps // 2000, 1))
-    errors = compare(scene, done)
+    errors = compare(Beside.of(Truth(scene), done))
     assert done.status == "ok"
     assert errors is not None
     worst = errors.worst("drive")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from models.scene import Scene
+from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.last_turn import trace
 from sim.engine import Poses, Run
@@ -54,7 +55,7 @@ def test_its_largest_errors_are_no_larger_than_those_of_the_whole_run(
     fourbar: Scene, disturbed: Disturbed
 ) -> None:
     run = disturbed(fourbar, off_by("rocker", 2e-3))
-    errors = compare(fourbar, run)
+    errors = compare(Beside.of(Truth(fourbar), run))
     assert errors is not None
     worst = errors.worst("gap")
     assert worst is not None

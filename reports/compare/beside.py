@@ -1,0 +1,92 @@
+"""A run beside the truth, which is solved for once at each set of instants that is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from analytic.kinematics import solve, solve_driven
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.series import angle_error
+from reports.compare.tracks import Order, Track, fitting, tracks
+from sim.engine import Run
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The reference of a scene at sets of instants, each solved for once; with ``bound``, what it
+    may be wrong by as well."""
+
+    scene: Scene
+    bound: bool = True
+    _motions: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
+
+    def at(self, time_s: Array) -> Motion:
+        """The reference at instants (T,). Raises CrankcheckError where there is none."""
+        instants = time_s.tobytes()
+        if instants not in self._motions:
+            self._motions[instants] = solve(self.scene, time_s, bound=self.bound)
+        return self._motions[instants]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A run that logged something, beside the truth; ``motion`` is what it logged.
+
+    Runs of a scene that were logged at the same instants share what was solved for, where they
+    share ``truth``. What is worked out raises CrankcheckError where there is no reference.
+    """
+
+    truth: Truth
+    run: Run
+    motion: Motion
+
+    @staticmethod
+    def of(truth: Truth, run: Run) -> Beside | None:
+        """The run beside the truth; None where it logged nothing."""
+        motion = run.motion
+        return Beside(truth, run, motion) if motion is not None and motion.time_s.size else None
+
+    @property
+    def scene(self) -> Scene:
+        return self.truth.scene
+
+    @cached_property
+    def reference(self) -> Motion:
+        """The truth at the logged instants."""
+        return self.truth.at(self.motion.time_s)
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        """The truth, without bounds, at the logged angles of the driver, which stands still."""
+        still = np.zeros_like(self.crank)
+        return solve_driven(self.scene, self.crank, still, still, self.motion.time_s, bound=False)
+
+    @cached_property
+    def driver_rad(self) -> Array:
+        """The commanded angle of the driver [rad], (T,)."""
+        return self.scene.driver.law.at(self.motion.time_s)[0]
+
+    @cached_property
+    def crank(self) -> Array:
+        """The logged angle of the driver [rad], (T,); NaN where there is none."""
+        link = self.motion.links.get(self.scene.driver.link)
+        return fitting(None if link is None else link.theta, self.motion.time_s)
+
+    @cached_property
+    def drive(self) -> Array:
+        """How far the driver is from where it was told to be [rad], (T,)."""
+        return angle_error(self.crank, self.driver_rad)
+
+    @cached_property
+    def places(self) -> tuple[Track, ...]:
+        """The tracks of place against the truth at the logged instants."""
+        return self.tracks(0, self.reference)
+
+    def tracks(self, order: Order, reference: Motion) -> tuple[Track, ...]:
+        """The tracks of the log against a reference of as many samples."""
+        return tuple(tracks(self.scene, self.motion, reference, order))
