@@ -34,6 +34,7 @@ FLOORS: Mapping[str, str] = {
         plan
         judge describe drawing
         compare
+        quantities
         workers output
     """,
     "analytic": """

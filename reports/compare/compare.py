@@ -27,9 +27,10 @@ from reports.compare.branch import departure
 from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
-from reports.compare.errors import Error, Errors, Kind, Quantity, Source
+from reports.compare.errors import Error, Errors, Kind
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import ORDERS, QUANTITIES, Order, Track, fitting, lacking
+from reports.quantities.quantity import Source
 from sim.engine import Run
 
 SETTLING = 40
@@ -234,7 +235,7 @@ def _differenced(scene: Scene, placed: Iterable[Track], at: _Instants) -> Iterab
             yield from _rate_rows(differenced, inner, "differenced")
 
 
-def _uncertain(beside: Beside) -> dict[tuple[Quantity, str], float]:
+def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:
     """The largest bound of the reference per quantity and body, as a pure number."""
     return {
         (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-Quantity = Literal["drive", "angle", "displacement", "position", "gap", "velocity", "acceleration"]
-Source = Literal["reported", "differenced"]
+from reports.quantities.quantity import BodyKind, Source, tolerance_name
+
 Kind = Literal["total", "geometric", "start", "passage"]
-BodyKind = Literal["driver", "link", "slider", "point"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,7 @@ class Error:
     largest error of the reference itself [unit].
     """
 
-    quantity: Quantity
+    quantity: str
     body_kind: BodyKind
     body: str
     source: Source
@@ -52,7 +51,7 @@ class Error:
     @property
     def tolerance(self) -> str:
         """The name of the tolerance that a total error is held to."""
-        return self.quantity + ("-differenced" if self.source == "differenced" else "")
+        return tolerance_name(self.quantity, self.source)
 
     @property
     def finite(self) -> bool:
@@ -95,7 +94,7 @@ class Errors:
     step_rad: float
     missing: tuple[str, ...] = ()
     incomplete: str = ""
-    uncertain: Mapping[tuple[Quantity, str], float] = field(default_factory=dict)
+    uncertain: Mapping[tuple[str, str], float] = field(default_factory=dict)
     departure: Departure | None = None
     summed_rad: float = 0.0
     jolt: float = 0.0
@@ -104,7 +103,7 @@ class Errors:
     starts_in_passage: bool = False
 
     def worst(
-        self, quantity: Quantity, source: Source = "reported", kind: Kind = "total"
+        self, quantity: str, source: Source = "reported", kind: Kind = "total"
     ) -> Error | None:
         """The largest error of a quantity as a pure number (not finite counts as largest)."""
         return largest(

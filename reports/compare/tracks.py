@@ -11,13 +11,13 @@ import numpy as np
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
-from reports.compare.errors import BodyKind, Quantity
 from reports.compare.series import angle_error
+from reports.quantities.quantity import BodyKind
 
 Order = Literal[0, 1, 2]
 ORDERS: tuple[Order, ...] = (0, 1, 2)
 Part = TypeVar("Part")
-QUANTITIES: dict[BodyKind, tuple[Quantity, Quantity, Quantity]] = {
+QUANTITIES: dict[BodyKind, tuple[str, str, str]] = {
     "link": ("angle", "velocity", "acceleration"),
     "slider": ("displacement", "velocity", "acceleration"),
     "point": ("position", "velocity", "acceleration"),
@@ -33,7 +33,7 @@ class Track:
     ``scale`` makes a pure number of the error.
     """
 
-    quantity: Quantity
+    quantity: str
     body_kind: BodyKind
     body: str
     error: Array

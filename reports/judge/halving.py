@@ -11,13 +11,13 @@ from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import places
 from reports.compare.completeness import incomplete
-from reports.compare.errors import Error, Errors, Quantity, largest
+from reports.compare.errors import Error, Errors, largest
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import limits
+from reports.quantities import named
 from sim.engine import Run
 
-PLACES: tuple[Quantity, ...] = ("angle", "displacement", "position")
-CLOSED: tuple[Quantity, ...] = (*PLACES, "gap")
+PLACES, CLOSED = named("place"), named("place", "closure")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add

@@ -4,42 +4,33 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
 
-from reports.compare.errors import BodyKind, Kind, Quantity, Source, largest
+from reports.compare.errors import Kind, largest
 from reports.judge.cell import Checked
 from reports.judge.tolerance import DEFAULTS
+from reports.quantities import QUANTITIES, named
+from reports.quantities.quantity import BodyKind, Source
 
-Column = tuple[str, Quantity, BodyKind, Source, Kind]
+Column = tuple[str, str, BodyKind, Source, Kind]
 
 
-def _columns() -> list[Column]:
+def _columns() -> Iterator[Column]:
     """The error columns of the frame of cells: name, and the rows that it is the maximum of."""
-    found: list[Column] = [("drive_error_rad", "drive", "driver", "reported", "total")]
-    places: tuple[tuple[str, Quantity, BodyKind, str], ...] = (
-        ("angle", "angle", "link", "rad"),
-        ("displacement", "displacement", "slider", "m"),
-        ("position", "position", "point", "m"),
-    )
-    for name, quantity, body, unit in places:
-        found.append((f"{name}_error_{unit}", quantity, body, "reported", "total"))
-        found.append((f"{name}_geometric_error_{unit}", quantity, body, "reported", "geometric"))
-    found.append(("pin_gap_m", "gap", "point", "reported", "total"))
-    found.append(("slider_gap_m", "gap", "slider", "reported", "total"))
-    rates: tuple[tuple[str, Quantity, BodyKind, str], ...] = (
-        ("angular_velocity", "velocity", "link", "rad_s"),
-        ("slider_speed", "velocity", "slider", "m_s"),
-        ("velocity", "velocity", "point", "m_s"),
-        ("angular_acceleration", "acceleration", "link", "rad_s2"),
-        ("slider_acceleration", "acceleration", "slider", "m_s2"),
-        ("acceleration", "acceleration", "point", "m_s2"),
-    )
-    for name, quantity, body, unit in rates:
-        found.append((f"{name}_error_{unit}", quantity, body, "reported", "total"))
-        found.append((f"{name}_differenced_error_{unit}", quantity, body, "differenced", "total"))
-    return found
+    for name, entry in QUANTITIES.items():
+        more: list[tuple[Source, Kind]] = [("reported", "geometric")] * (entry.role == "place")
+        more += [("differenced", "total") for each in entry.criteria if each.tolerance.differenced]
+        for measure in entry.measures:
+            yield measure.column, name, measure.body_kind, "reported", "total"
+            for source, kind in more:
+                other = kind if source == "reported" else source
+                column = measure.column.replace("_error_", f"_{other}_error_")
+                yield column, name, measure.body_kind, source, kind
 
 
-ERROR_COLUMNS = _columns()
+ERROR_COLUMNS = tuple(_columns())
+AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
+"""The first columns of the frame of errors: what an error has of that name."""
 
 
 def error_rows(one: Checked) -> list[dict[str, object]]:
@@ -48,16 +39,8 @@ def error_rows(one: Checked) -> list[dict[str, object]]:
         return []
     return [
         identity(one)
+        | {name: getattr(error, name) for name in AS_THEY_ARE}
         | {
-            "quantity": error.quantity,
-            "body_kind": error.body_kind,
-            "body": error.body,
-            "source": error.source,
-            "kind": error.kind,
-            "unit": error.unit,
-            "maximum": error.maximum,
-            "rms": error.rms,
-            "final": error.final,
             "maximum_pure": error.pure,
             "limit_pure": one.limits[error.tolerance].number if error.kind == "total" else None,
             "time_of_maximum_s": error.time_of_maximum_s,
@@ -88,7 +71,7 @@ def cell_row(one: Checked) -> dict[str, object]:
         column = name.replace("-", "_")
         row[f"{column}_pure"] = worst.pure if worst else None
         row[f"{column}_limit_pure"] = one.limits[name].number if name in one.limits else None
-    row["place_pure"] = _worst(row["angle_pure"], row["displacement_pure"], row["position_pure"])
+    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in named("place")))
     seen = one.convergence
     row |= {
         "trend": seen.trend if seen else None,

@@ -24,6 +24,7 @@ within a step.
 from __future__ import annotations
 
 from reports.compare.errors import Errors
+from reports.judge.tolerance import DEFAULTS
 
 ROOM = 2.0
 """What ringing may add: 1.6 of the jolt was seen where iterations left a fifth of an error from
@@ -36,14 +37,11 @@ CAP = 0.1
 
 def allowance(tolerance: str, errors: Errors) -> float:
     """What the first samples may be off by on top of the limit ``tolerance``, as a pure number."""
-    jump = min(ROOM * errors.jolt * errors.step_rad, CAP)
-    if tolerance == "velocity":
-        return jump
-    if tolerance == "velocity-differenced":
-        return jump / 2.0
-    if tolerance == "acceleration-differenced":
-        return jump / errors.step_rad
-    if tolerance == "acceleration":
+    numbers = DEFAULTS[tolerance]
+    if numbers.parts:
         parting = errors.curvature * errors.mass_ratio / max(errors.conditioning, 1e-12)
         return min(OPEN * parting, CAP)
+    if numbers.jump:
+        jump = min(ROOM * errors.jolt * errors.step_rad, CAP)
+        return numbers.jump * jump / errors.step_rad ** (numbers.rate - 1)
     return 0.0

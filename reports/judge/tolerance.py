@@ -35,115 +35,44 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.errors import Errors
+from reports.quantities import QUANTITIES
+from reports.quantities.places import WITHIN_A_STEP
+from reports.quantities.quantity import Tolerance, tolerance_name
 
 ROUNDING = 1e-11
 """A pure error that rounding over a run of thousands of steps explains by itself."""
-OPEN_SHARE = 1e-3
-"""Ten times what MuJoCo's stiffest documented impedance (0.9999) leaves of an acceleration."""
 
 
-@dataclass(frozen=True)
-class Tolerance:
-    """A default limit (see the module), and why it is what it is."""
-
-    reason: str
-    cap: float = math.inf
-    coefficient: float = 0.0
-    order: int = 2
-    power: float = 0.0
-    conditioned: bool = False
-    closes: bool = False
-    share: float = 0.0
-    share_order: int = 0
-    floor: float = 0.0
-    differenced: int = 0
-    rate: int = 0
-
-    def limit(self, errors: Errors) -> float:
-        """The limit for a run with this step and this scene."""
-        step, curvature = errors.step_rad, errors.curvature
-        bend = curvature**self.power
-        if self.conditioned:
-            bend /= max(errors.conditioning, 1e-12)
-        if self.closes:
-            bend = max(bend, 2.0 * errors.worst_jolt)
-        budget = (self.coefficient * step**self.order + errors.summed_rad) * bend
-        budget += self.share * curvature * step**self.share_order
-        budget = min(float(budget), self.cap)
-        return float(budget + self.floor + ROUNDING / step**self.differenced)
-
-    def passing(self, errors: Errors) -> float:
-        """The limit of a rate near a change point, where places are made good within a step."""
-        made_good = PLACE.limit(errors) / errors.step_rad**self.rate
-        return max(self.limit(errors), made_good)
-
-
-PLACE = Tolerance(
-    "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
-    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
-    "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
-    cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
-    coefficient=1.0,
-    power=1.0,
-    conditioned=True,
-    closes=True,
-)
-VELOCITY = Tolerance(
-    "Second order, with the third derivative of the motion, about curvature^1.5; as reported, "
-    "with the share of an acceleration that soft constraints keep open, over a step.",
-    cap=5e-2,  # a twentieth of the driver's speed; twice the worst at 90 steps a turn
-    coefficient=3.0,
-    power=1.5,
-    conditioned=True,
-    share=OPEN_SHARE,
-    share_order=1,
-    rate=1,
-)
-ACCELERATION = Tolerance(
-    "Second order, with the fourth derivative of the motion, about curvature^2; as reported, "
-    "engines with soft constraints keep a share of it open at every step.",
-    cap=0.5,  # twice the worst at 90 steps a turn, where second differences are coarse
-    coefficient=10.0,
-    power=2.0,
-    conditioned=True,
-    share=OPEN_SHARE,
-    rate=2,
-)
 DEFAULTS: dict[str, Tolerance] = {
-    "drive": Tolerance(
-        "Prescribed means prescribed: what rounding makes of an angle that is added up step by "
-        "step, and room for a flywheel that the mechanism slows by a part in 1e12.",
-        floor=1e-9,
-    ),
-    "angle": PLACE,
-    "displacement": PLACE,
-    "position": PLACE,
-    "gap": replace(
-        PLACE,
-        reason="The arc of a step, step^2/2 times the curvature, is all that may be open, or the "
-        "jolt that closes it, where that is more.",
-        conditioned=False,
-    ),
-    "velocity": VELOCITY,
-    "velocity-differenced": replace(
-        VELOCITY,
-        reason="Second order, with the third derivative of the motion, about curvature^1.5.",
-        share=0.0,
-        differenced=1,
-    ),
-    "acceleration": ACCELERATION,
-    "acceleration-differenced": replace(
-        ACCELERATION,
-        reason="Second order, with the fourth derivative of the motion, about curvature^2.",
-        share=0.0,
-        differenced=2,
-    ),
+    tolerance_name(name, each.source): each.tolerance
+    for name, entry in QUANTITIES.items()
+    for each in entry.criteria
 }
+
+
+def default(tolerance: Tolerance, errors: Errors) -> float:
+    """The limit for a run with this step and this scene."""
+    step, curvature = errors.step_rad, errors.curvature
+    bend = curvature**tolerance.power
+    if tolerance.conditioned:
+        bend /= max(errors.conditioning, 1e-12)
+    if tolerance.closes:
+        bend = max(bend, 2.0 * errors.worst_jolt)
+    budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
+    budget += tolerance.share * curvature * step**tolerance.share_order
+    budget = min(float(budget), tolerance.cap)
+    return float(budget + tolerance.floor + ROUNDING / step**tolerance.differenced)
+
+
+def passing(tolerance: Tolerance, errors: Errors) -> float:
+    """The limit of a rate near a change point, where places are made good within a step."""
+    made_good = default(WITHIN_A_STEP, errors) / errors.step_rad**tolerance.rate
+    return max(default(tolerance, errors), made_good)
 
 
 @dataclass(frozen=True)
@@ -157,13 +86,13 @@ class Limit:
 def limits(scene: Scene, errors: Errors, overrides: Mapping[str, float]) -> dict[str, Limit]:
     """The limit per tolerance name: command line before scene before default."""
     chosen = {}
-    for name, default in DEFAULTS.items():
+    for name, tolerance in DEFAULTS.items():
         if name in overrides:
             chosen[name] = Limit(overrides[name], "--tol")
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
-            chosen[name] = Limit(default.limit(errors), "default")
+            chosen[name] = Limit(default(tolerance, errors), "default")
     return chosen
 
 
@@ -171,7 +100,7 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
     """The limit for a rate near a change point; one that was given stands there too."""
     if limit.origin != "default":
         return limit
-    return Limit(DEFAULTS[name].passing(errors), "default near a change point")
+    return Limit(passing(DEFAULTS[name], errors), "default near a change point")
 
 
 def parse(texts: Iterable[str]) -> dict[str, float]:

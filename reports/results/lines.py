@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from reports.judge.halving import BEHIND_DRIVE, EXACT_DRIVE
 from reports.judge.three_steps import AT_ROUNDING
 from reports.plan.study import Study
+from reports.quantities import QUANTITIES
 from reports.results.fits.line import LineFit, fit_line
 from reports.results.fits.words import words
 from reports.results.one_processor import comparable
@@ -148,15 +149,14 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
     )
 
 
-PURE = {"displacement": "L", "position": "L", "gap": "L", "velocity": "w", "acceleration": "w^2"}
-"""What pure errors are shares of, where it is not the radian."""
 UNITS = ("rad_s2", "m_s2", "rad_s", "m_s", "rad", "m")
 
 
 def _unit(quantity: str) -> str:
     """The unit of a column of errors."""
     if quantity.endswith("_pure"):
-        return PURE.get(quantity.partition("_")[0], "rad")
+        entry = QUANTITIES.get(quantity.partition("_")[0])
+        return entry.share if entry else "rad"
     found = next((unit for unit in UNITS if quantity.endswith(f"_{unit}")), "")
     return found.replace("_s2", "/s^2").replace("_s", "/s")
 

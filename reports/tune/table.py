@@ -10,14 +10,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from reports.quantities import QUANTITIES, named
 from reports.tune.attempt import Attempt, Goal, Row
 from reports.tune.timing import Taken
 from sim.tuning import SearchSpace
 
 OTHERS = {
-    "gap_pure": "gap / L",
-    "velocity_pure": "velocity / w",
-    "acceleration_pure": "acceleration / w^2",
+    f"{name}_pure": f"{name} / {QUANTITIES[name].share}" for name in named("closure", "derived")
 }
 """Errors that are not searched for, and shown: a column of a cell's row to what it is called."""
 

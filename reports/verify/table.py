@@ -11,10 +11,11 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from reports.compare.errors import Error, Errors, Quantity, largest
+from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.base import Finding
+from reports.quantities import QUANTITIES
 
 MARKS = {
     "within": Text("ok", "green"),
@@ -23,13 +24,11 @@ MARKS = {
 }
 
 
-ANGLE, GAP = "angle\nrad", "gap\n/ L"
-NUMBERS: dict[str, tuple[Quantity, ...]] = {
-    ANGLE: ("angle",),
-    "place\n/ L": ("displacement", "position"),
-    GAP: ("gap",),
-    "veloc.\n/ w": ("velocity",),
-    "accel.\n/ w^2": ("acceleration",),
+ANGLE, GAP = (QUANTITIES[name].head for name in ("angle", "gap"))
+NUMBERS = {
+    entry.head: [name for name, each in QUANTITIES.items() if each.head == entry.head]
+    for entry in QUANTITIES.values()
+    if entry.head
 }
 """The columns of numbers: head, and the quantities that it shows the worst of."""
 WIDE, STACKED = 100, 76
@@ -125,7 +124,7 @@ def _cells(one: Checked, heads: Sequence[str]) -> list[Text | str]:
     return [*(_number(error) for error in numbers), _share(one.findings), seen]
 
 
-def _largest(errors: Errors, quantities: Sequence[Quantity]) -> Error | None:
+def _largest(errors: Errors, quantities: Sequence[str]) -> Error | None:
     """The worst of some quantities, as reported."""
     return largest(worst for name in quantities if (worst := errors.worst(name)))
 
@@ -135,17 +134,7 @@ def _number(error: Error | None) -> str:
     return "-" if error is None else f"{error.pure:.1e}" if error.finite else "nan"
 
 
-SHORT = {
-    "CC102": "drive",
-    "CC103": "ang",
-    "CC104": "disp",
-    "CC105": "gap",
-    "CC106": "vel",
-    "CC107": "vel'",
-    "CC108": "acc",
-    "CC113": "pos",
-    "CC114": "acc'",
-}
+SHORT = {each.id: each.short for entry in QUANTITIES.values() for each in entry.criteria}
 """The rules that hold an error to a limit, short; a dash marks differenced rates."""
 
 

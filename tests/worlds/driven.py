@@ -36,7 +36,7 @@ from models.laws import ConstantSpeed
 from models.scene import GROUND, Link, Point, Scene, Slider
 from models.tree import plan
 from reports.compare.compare import curvature
-from reports.judge.tolerance import ACCELERATION, PLACE, VELOCITY
+from reports.judge.tolerance import DEFAULTS
 from sim.pymunk.settings import TUNED
 from tests.worlds.contraction import contraction
 from tests.worlds.layouts import Layout
@@ -145,7 +145,7 @@ def _fewest_steps(scene: Scene) -> float:
     bend, law = curvature(scene, motion), scene.driver.law
     longest = min(
         (quantity.cap * sine / quantity.coefficient / bend**quantity.power) ** 0.5
-        for quantity in (PLACE, VELOCITY, ACCELERATION)
+        for quantity in (DEFAULTS["position"], DEFAULTS["velocity"], DEFAULTS["acceleration"])
     )
     return max(law.peak_speed_rad_s * law.period_s / longest, LEAST_STEPS)
 

@@ -4,33 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.judge.rules.acceleration import AccelerationDifferenced, AccelerationReported
-from reports.judge.rules.angle import AngleWithin
 from reports.judge.rules.base import Evidence, Finding, Rule
 from reports.judge.rules.certainty import ReferenceCertain
 from reports.judge.rules.complete import LogComplete
-from reports.judge.rules.displacement import DisplacementWithin
-from reports.judge.rules.drive import DriveWithin
 from reports.judge.rules.finite import ValuesFinite
-from reports.judge.rules.gap import GapWithin
 from reports.judge.rules.independence import TwoComputations
-from reports.judge.rules.position import PositionWithin
+from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.shrinking import ErrorShrinks
 from reports.judge.rules.start import StartWithin
 from reports.judge.rules.status import StatusOk
-from reports.judge.rules.velocity import VelocityDifferenced, VelocityReported
 
 _ALL: tuple[Rule, ...] = (
     StatusOk(),
-    DriveWithin(),
-    AngleWithin(),
-    DisplacementWithin(),
-    PositionWithin(),
-    GapWithin(),
-    VelocityReported(),
-    VelocityDifferenced(),
-    AccelerationReported(),
-    AccelerationDifferenced(),
+    *LIMITS,
     ValuesFinite(),
     ErrorShrinks(),
     TwoComputations(),

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from reports.compare.errors import Error, Errors, Quantity, Source
+from reports.compare.errors import Error, Errors
 from reports.judge.three_steps import Convergence
-from reports.judge.tolerance import Limit, in_passage
+from reports.judge.tolerance import Limit
+from reports.quantities import QUANTITIES
 
 Level = Literal["pass", "advice", "fail"]
 
@@ -51,62 +52,33 @@ class Finding:
 class Rule(Protocol):
     """One check with an ID, a title, why it matters, and what to do when it fails."""
 
-    id: str
-    title: str
-    explanation: str
-    cure: str
+    @property
+    def id(self) -> str: ...
+
+    @property
+    def title(self) -> str: ...
+
+    @property
+    def explanation(self) -> str: ...
+
+    @property
+    def cure(self) -> str: ...
 
     def check(self, evidence: Evidence) -> Finding | None:
         """The finding, or None where the rule has nothing to look at."""
         ...
 
 
-def within(
-    rule: str, evidence: Evidence, quantity: Quantity, tolerance: str, source: Source = "reported"
-) -> Finding | None:
-    """Hold the largest error of a quantity to its limit; an error that is not finite fails.
-
-    Rates near a change point are held to theirs, and what takes the larger share is told.
-    """
-    if evidence.errors is None:
-        return None
-    limit = evidence.limits[tolerance]
-    worst = evidence.errors.worst(quantity, source)
-    passing = evidence.errors.worst(quantity, source, "passage")
-    if passing is not None:
-        wide = in_passage(tolerance, limit, evidence.errors)
-        if worst is None or _share(passing, wide) > _share(worst, limit):
-            worst, limit = passing, wide
-    if worst is None:
-        return None
-    level: Level = "pass" if worst.pure <= limit.number else "fail"
-    at_crank = evidence.errors.worst(quantity, source, "geometric")
-    geometric = f"; {measure(at_crank)} at the logged crank angle" if at_crank else ""
-    number = f"{limit.number:.2g} {SCALES[worst.unit]} ({limit.origin})"
-    text = f"{place(worst)}{geometric}; limit {number}"
-    return Finding(rule, level, text, worst.pure, limit.number)
-
-
-def _share(error: Error, limit: Limit) -> float:
-    """What an error takes of a limit; infinite for one that is not finite."""
-    return error.pure / limit.number if error.finite else math.inf
-
-
-SCALES = {
-    "rad": "rad",
-    "m": "L",
-    "rad/s": "w",
-    "m/s": "w L",
-    "rad/s^2": "w^2",
-    "m/s^2": "w^2 L",
-}
-"""What a pure number of a unit is a multiple of: L the longest link, w the driver's peak speed."""
-
-
 def measure(error: Error) -> str:
     """The size of an error in its unit, and over its scale where that is another number."""
     size = f"{error.maximum:.3g} {error.unit}"
-    return size if error.unit == "rad" else f"{size} = {error.pure:.3g} {SCALES[error.unit]}"
+    return size if error.unit == "rad" else f"{size} = {error.pure:.3g} {share(error)}"
+
+
+def share(error: Error) -> str:
+    """What the pure number of an error is a multiple of."""
+    measures = QUANTITIES[error.quantity].measures
+    return next(each.share for each in measures if each.body_kind == error.body_kind)
 
 
 def place(error: Error) -> str:

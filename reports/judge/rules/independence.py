@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from reports.judge.rules.base import Evidence, Finding
+from reports.quantities import named
 
 LEAST_SAMPLES = 8
+PLACES = named("place")
 
 
 class TwoComputations:
@@ -22,9 +24,7 @@ class TwoComputations:
         rows = [
             row
             for row in evidence.errors.rows
-            if row.quantity in ("angle", "displacement", "position")
-            and row.kind == "total"
-            and row.samples >= LEAST_SAMPLES
+            if row.quantity in PLACES and row.kind == "total" and row.samples >= LEAST_SAMPLES
         ]
         if not rows:
             return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from reports.compare.errors import Error, Errors
-from reports.judge.rules.base import SCALES, Evidence, Finding, Level, place
+from reports.judge.rules.base import Evidence, Finding, Level, place, share
 from reports.judge.start_allowance import allowance
 from reports.judge.tolerance import in_passage
 
@@ -33,14 +33,14 @@ class StartWithin:
             for row in rows
         }
 
-        def share(row: Error) -> float:
-            part = row.pure / limits[row.tolerance]
-            return math.inf if math.isnan(part) else part
+        def part(row: Error) -> float:
+            taken = row.pure / limits[row.tolerance]
+            return math.inf if math.isnan(taken) else taken
 
-        worst = max(rows, key=share)
+        worst = max(rows, key=part)
         limit = limits[worst.tolerance]
         level: Level = "pass" if worst.pure <= limit else "fail"
-        text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {SCALES[worst.unit]}"
+        text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {share(worst)}"
         return Finding(self.id, level, text, worst.pure, limit)
 
 

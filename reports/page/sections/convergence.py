@@ -8,17 +8,25 @@ import numpy as np
 
 from reports.output.numbers import error_text
 from reports.page.sections.base import Section
+from reports.quantities import QUANTITIES
+from reports.quantities.quantity import tolerance_name
 from reports.results.fits.line import LineFit
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
 
-QUANTITIES = {
-    "place_pure": ("place", "rad, or of longest link"),
-    "gap_pure": ("closure: the widest gap", "of longest link"),
-    "velocity_pure": ("velocity, as reported", "of crank speed"),
-    "velocity_differenced_pure": ("velocity, from logged places", "of crank speed"),
-    "acceleration_pure": ("acceleration, as reported", "of crank speed squared"),
-    "drive_pure": ("drive: the crank's angle", "rad"),
+SHARES = {
+    "L": "of longest link",
+    "w": "of crank speed",
+    "w^2": "of crank speed squared",
+}
+DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
+    f"{tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (
+        each.diagram,
+        SHARES.get(entry.share, entry.share),
+    )
+    for entry in sorted(QUANTITIES.values(), key=lambda entry: entry.role == "drive")
+    for each in entry.criteria
+    if each.diagram
 }
 """What may be drawn, by column of the store: its name, and its unit."""
 CURVE = 25
@@ -29,7 +37,7 @@ def build(report: Report) -> Section:
     """The section."""
     told = {
         name: words
-        for name, (words, _) in QUANTITIES.items()
+        for name, (words, _) in DIAGRAMS.items()
         if name in report.cells and report.cells[name].notna().any()
     }
     drawn = {name: [_drawn(report, x) for x in _lines(report, name)] for name in told}
@@ -42,7 +50,7 @@ def build(report: Report) -> Section:
             "quantities": told,
             "rows": [_row(report, line) for line in report.lines],
         },
-        embedded={"quantities": drawn, "units": {name: QUANTITIES[name][1] for name in told}},
+        embedded={"quantities": drawn, "units": {name: DIAGRAMS[name][1] for name in told}},
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )

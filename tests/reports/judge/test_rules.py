@@ -29,8 +29,8 @@ KINDS = {
 
 def row(quantity: str, source: str = "reported", maximum: float = 1e-4) -> Error:
     return Error(
-        quantity=quantity,  # type: ignore[arg-type]  # a plain text is one of the literals here
-        body_kind=KINDS[quantity],  # type: ignore[arg-type]  # as above
+        quantity=quantity,
+        body_kind=KINDS[quantity],  # type: ignore[arg-type]  # a plain text is one of the literals
         body="rocker",
         source=source,  # type: ignore[arg-type]  # as above
         kind="total",

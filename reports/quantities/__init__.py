@@ -1,0 +1,20 @@
+"""What is compared: one entry per quantity, in the order of every table.
+
+A new quantity is an entry here. Its columns, rows, limit, rule and diagrams follow from it.
+"""
+
+from __future__ import annotations
+
+from reports.quantities.places import ANGLE, DISPLACEMENT, DRIVE, GAP, POSITION
+from reports.quantities.quantity import Quantity, Role
+from reports.quantities.rates import ACCELERATION, VELOCITY
+
+QUANTITIES: dict[str, Quantity] = {
+    entry.name: entry
+    for entry in (DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION)
+}
+
+
+def named(*roles: Role) -> tuple[str, ...]:
+    """The quantities that play one of some roles."""
+    return tuple(name for name, entry in QUANTITIES.items() if entry.role in roles)

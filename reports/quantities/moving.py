@@ -1,0 +1,54 @@
+"""How places and rates of links, sliders and points are read from a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Literal
+
+from models.motion import Bound, Motion
+from models.scene import Scene
+from reports.quantities.quantity import Measure, Series
+
+Order = Literal[0, 1, 2]
+"""The place itself, or a rate of it."""
+Moving = Literal["link", "slider", "point"]
+
+
+def moving(kind: Moving, order: Order, column: str) -> Measure:
+    """Angles, displacements or positions of the moving bodies of a kind, or a rate of them."""
+    turns = kind == "link"
+
+    def scale(scene: Scene, _: Motion) -> float:
+        speed = scene.driver.law.peak_speed_rad_s**order
+        return speed if turns else scene.longest_m * speed
+
+    def truth(scene: Scene, reference: Motion) -> Series:
+        """Without points of the ground, and without the driver's angle, which is the drive."""
+        driver = (scene.driver.link,) if order == 0 else ()
+        still: Mapping[Moving, Collection[str]] = {"link": driver, "point": scene.ground}
+        found = _read(reference, kind, order).items()
+        return {name: series for name, series in found if name not in still.get(kind, ())}
+
+    return Measure(
+        body_kind=kind,
+        column=column,
+        unit=("rad" if turns else "m") + ("", "/s", "/s^2")[order],
+        share=(("rad", "w", "w^2") if turns else ("L", "w L", "w^2 L"))[order],
+        scale=scale,
+        truth=truth,
+        logged=lambda _, run: _read(run.motion, kind, order),
+        bound=lambda _, reference: _read(reference.bound, kind, order),
+    )
+
+
+def _read(motion: Motion | Bound | None, kind: Moving, order: Order) -> Series:
+    """The series of a motion, or of a bound, if it is there."""
+    if motion is None:
+        return {}
+    if kind == "link":
+        return {n: (m.theta, m.omega, m.alpha)[order] for n, m in motion.links.items()}
+    if kind == "slider":
+        sliders = motion.sliders.items()
+        return {n: (m.displacement, m.speed, m.acceleration)[order] for n, m in sliders}
+    points = motion.points.items()
+    return {n: (m.position, m.velocity, m.acceleration)[order] for n, m in points}

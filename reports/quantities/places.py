@@ -1,0 +1,156 @@
+"""Where a mechanism stands: its crank, links, sliders and points, and whether its joints hold."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from models.joints import joints
+from models.motion import Motion
+from models.scene import Scene
+from reports.quantities.moving import moving
+from reports.quantities.quantity import BodyKind, Criterion, Measure, Quantity, Series, Tolerance
+from sim.engine import Run
+
+EPSILON = float(np.finfo(np.float64).eps)
+WITHIN_A_STEP = Tolerance(
+    "A step moves the pins along tangents, which leaves an arc of step^2/2 times the curvature "
+    "to be closed; a dyad passes it on enlarged by 1/sine of its transmission angle. To close it "
+    "an engine sets its bodies off by the jolt times step^2; twice that where it is more.",
+    cap=2e-2,  # about a degree; ten times the worst at 180 steps a turn
+    coefficient=1.0,
+    power=1.0,
+    conditioned=True,
+    closes=True,
+)
+
+
+def _commanded(scene: Scene, reference: Motion) -> Series:
+    return {scene.driver.link: scene.driver.law.at(reference.time_s)[0]}
+
+
+def _rounded(scene: Scene, reference: Motion) -> Series:
+    return {n: 2 * EPSILON * np.abs(each) for n, each in _commanded(scene, reference).items()}
+
+
+def _crank(scene: Scene, run: Run) -> Series:
+    crank = run.motion and run.motion.links.get(scene.driver.link)
+    return {scene.driver.link: crank.theta} if crank else {}
+
+
+DRIVE = Quantity(
+    name="drive",
+    role="drive",
+    measures=(
+        Measure(
+            body_kind="driver",
+            column="drive_error_rad",
+            unit="rad",
+            share="rad",
+            scale=lambda scene, reference: 1.0,
+            truth=_commanded,
+            logged=_crank,
+            bound=_rounded,
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC102",
+            "drive",
+            "Everything is compared at the commanded time: a crank that lags or leads spoils "
+            "every other number.",
+            "Drive with --drive prescribed; a servo needs a higher gain, or a shorter step.",
+            short="drive",
+            diagram="drive: the crank's angle",
+            tolerance=Tolerance(
+                "Prescribed means prescribed: what rounding makes of an angle that is added up "
+                "step by step, and room for a flywheel that the mechanism slows by a part in 1e12.",
+                floor=1e-9,
+            ),
+        ),
+    ),
+)
+
+
+def _place(
+    name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
+) -> Quantity:
+    """A quantity of which one kind of bodies has its places; its rule has its name."""
+    criterion = Criterion(rule, name, explanation, cure, short, WITHIN_A_STEP)
+    return Quantity(name, "place", (measure,), (criterion,), head)
+
+
+ANGLE = _place(
+    "angle",
+    moving("link", 0, "angle_error_rad"),
+    "angle\nrad",
+    "CC103",
+    "ang",
+    "The angle of every link but the driver against the closed form at the commanded time.",
+    "Shorten the step (--steps-per-turn); where the error at the logged crank angle is small, "
+    "mend the drive.",
+)
+DISPLACEMENT = _place(
+    "displacement",
+    moving("slider", 0, "displacement_error_m"),
+    "place\n/ L",
+    "CC104",
+    "disp",
+    "The displacement of every slider along its line against the closed form.",
+    "Shorten the step (--steps-per-turn).",
+)
+POSITION = _place(
+    "position",
+    moving("point", 0, "position_error_m"),
+    "place\n/ L",
+    "CC113",
+    "pos",
+    "The place of every named point against the closed form.",
+    "Shorten the step (--steps-per-turn).",
+)
+
+
+def _gap(kind: BodyKind, column: str) -> Measure:
+    """How far the bodies that share a pin or slider have come apart: by nothing, in truth."""
+
+    def truth(scene: Scene, reference: Motion) -> Series:
+        shared = (*(pin.point for pin in joints(scene).pins), *scene.sliders)
+        chosen = (name for name in shared if (name in scene.sliders) == (kind == "slider"))
+        return dict.fromkeys(chosen, np.zeros_like(reference.time_s))
+
+    return Measure(
+        body_kind=kind,
+        column=column,
+        unit="m",
+        share="L",
+        scale=lambda scene, _: scene.longest_m,
+        truth=truth,
+        logged=lambda _, run: run.gaps,
+    )
+
+
+GAP = Quantity(
+    name="gap",
+    role="closure",
+    head="gap\n/ L",
+    measures=(_gap("point", "pin_gap_m"), _gap("slider", "slider_gap_m")),
+    criteria=(
+        Criterion(
+            "CC105",
+            "pin gap",
+            "Two bodies that share a pin or a slider must not come apart: an open loop is "
+            "another mechanism, however well the crank turns.",
+            "Stiffen the joint (MuJoCo: solref, solimp; pymunk: iterations, error_bias), or "
+            "shorten the step.",
+            short="gap",
+            diagram="closure: the widest gap",
+            tolerance=replace(
+                WITHIN_A_STEP,
+                reason="The arc of a step, step^2/2 times the curvature, is all that may be open, "
+                "or the jolt that closes it, where that is more.",
+                conditioned=False,
+            ),
+        ),
+    ),
+)

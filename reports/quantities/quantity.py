@@ -1,0 +1,112 @@
+"""What a quantity is: one entry says all that the other rooms want to know of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+from sim.engine import Run
+
+BodyKind = Literal["driver", "link", "slider", "point"]
+Source = Literal["reported", "differenced"]
+Role = Literal["drive", "place", "closure", "derived"]
+"""Places are what convergence, geometric errors and differences are taken of. What is derived comes
+of them: its first samples, and those near change points, are rows of their own."""
+Series = Mapping[str, Array]
+"""A number (T,) or two (T, 2) per sample, by body."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A quantity of one kind of body, in ``unit``.
+
+    ``column`` names its largest error in the frame of cells, and has ``_error_`` in it where there
+    are errors of several kinds. ``truth`` is the reference's series, whose bodies are those that
+    are compared: none where it was not asked for. ``logged`` is the engine's, ``bound`` what the
+    reference may be wrong by (T,), nothing where it does not say. ``scale`` makes a pure number of
+    an error, a multiple of ``share``: L the longest link, w the driver's peak speed.
+    """
+
+    body_kind: BodyKind
+    column: str
+    unit: str
+    share: str
+    scale: Callable[[Scene, Motion], float]
+    truth: Callable[[Scene, Motion], Series]
+    logged: Callable[[Scene, Run], Series]
+    bound: Callable[[Scene, Motion], Series] = lambda scene, reference: {}
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
+    the formula, and `reports.judge.start_allowance` that of ``jump`` and ``parts``."""
+
+    reason: str
+    cap: float = math.inf
+    coefficient: float = 0.0
+    order: int = 2
+    power: float = 0.0
+    conditioned: bool = False
+    closes: bool = False
+    share: float = 0.0
+    share_order: int = 0
+    floor: float = 0.0
+    differenced: int = 0
+    rate: int = 0
+    jump: float = 0.0
+    parts: bool = False
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """What the errors of one source are held to: the words of a rule, and its tolerance.
+
+    ``short`` is the rule in the verdict table, ``diagram`` the error in the page's list of
+    diagrams, which has none of it where that is empty.
+    """
+
+    id: str
+    title: str
+    explanation: str
+    cure: str
+    short: str
+    tolerance: Tolerance
+    diagram: str = ""
+
+    @property
+    def source(self) -> Source:
+        return "differenced" if self.tolerance.differenced else "reported"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is compared, for all kinds of bodies that have it.
+
+    ``head`` is the column of the verdict table that shows it, with others of that head ("" in
+    none). ``instants`` are those that the engine's numbers belong to, None where they are those of
+    the places; ``silent`` says of a run that its engine has no such numbers, which is no fault.
+    """
+
+    name: str
+    role: Role
+    measures: tuple[Measure, ...]
+    criteria: tuple[Criterion, ...]
+    head: str = ""
+    instants: Callable[[Run], Array | None] = lambda run: None
+    silent: Callable[[Run], bool] = lambda run: False
+
+    @property
+    def share(self) -> str:
+        """What its pure numbers are multiples of, lengths apart."""
+        return self.measures[0].share
+
+
+def tolerance_name(quantity: str, source: Source) -> str:
+    """What `--tol`, a scene and the columns of pure numbers call a quantity from a source."""
+    return quantity if source == "reported" else f"{quantity}-{source}"
