@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -12,7 +13,8 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.series import angle_error
-from reports.compare.tracks import Order, Track, fitting, tracks
+from reports.compare.tracks import Track, fitting, tracks
+from reports.quantities import named
 from sim.engine import Run
 
 
@@ -85,8 +87,8 @@ class Beside:
     @cached_property
     def places(self) -> tuple[Track, ...]:
         """The tracks of place against the truth at the logged instants."""
-        return self.tracks(0, self.reference)
+        return self.tracks(named("place"), self.reference)
 
-    def tracks(self, order: Order, reference: Motion) -> tuple[Track, ...]:
-        """The tracks of the log against a reference of as many samples."""
-        return tuple(tracks(self.scene, self.motion, reference, order))
+    def tracks(self, quantities: Iterable[str], reference: Motion) -> tuple[Track, ...]:
+        """The tracks of some quantities of the log, against a reference of as many samples."""
+        return tuple(tracks(self.scene, self.run, reference, quantities))

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,6 @@ from numpy.typing import NDArray
 from analytic.forces.jolts import jolts, mass_ratio
 from models.array import Array
 from models.errors import ReachError
-from models.joints import joints
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.beside import Beside
@@ -29,9 +27,9 @@ from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, Errors, Kind
 from reports.compare.series import length, rate, second_rate, size
-from reports.compare.tracks import ORDERS, QUANTITIES, Order, Track, fitting, lacking
-from reports.quantities.quantity import Source
-from sim.engine import Run
+from reports.compare.tracks import Track, lacking
+from reports.quantities import QUANTITIES, named
+from reports.quantities.quantity import Role, Source
 
 SETTLING = 40
 """Samples in which an engine that starts with closed pins comes to its steady error: rates of these
@@ -72,19 +70,19 @@ def compare(beside: Beside | None) -> Errors | None:
     jolt = jolts(scene, reference)
     return Errors(
         rows=(
-            _drive(beside, at),
+            *_whole(beside, at, "drive"),
             *(_row(track, at) for track in beside.places),
             *geometric,
-            *(_row(track, at) for track in _gaps(scene, run, at)),
+            *_whole(beside, at, "closure"),
             *reported,
-            *_differenced(scene, beside.places, at),
+            *_differenced(beside, at),
         ),
         not_reported=not_reported,
         notes=notes,
         curvature=curvature(scene, reference),
         conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
-        missing=(*lacking(beside.motion, reference), *_without_gap(scene, run)),
+        missing=(*lacking(beside.motion, reference), *_without_gap(beside)),
         incomplete=incomplete(run),
         uncertain=_uncertain(beside),
         departure=departure(beside),
@@ -101,8 +99,11 @@ def places(beside: Beside | None) -> list[Error]:
     if beside is None:
         return []
     at = _instants(beside.scene, beside.motion.time_s, beside.reference)
-    found = (*beside.places, *_gaps(beside.scene, beside.run, at))
-    return [_drive(beside, at), *(_row(track, at) for track in found)]
+    return [
+        *_whole(beside, at, "drive"),
+        *(_row(track, at) for track in beside.places),
+        *_whole(beside, at, "closure"),
+    ]
 
 
 def _instants(scene: Scene, time_s: Array, reference: Motion) -> _Instants:
@@ -150,12 +151,9 @@ def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
             yield _row(cut, at[part], source, kind)
 
 
-def _drive(beside: Beside, at: _Instants) -> Error:
-    """How far the driver is from where it was told to be."""
-    magnitude = float(np.max(np.abs(at.driver_rad)))
-    bound = 2 * EPSILON * np.abs(at.driver_rad)
-    name = beside.scene.driver.link
-    return _row(Track("drive", "driver", name, beside.drive, bound, magnitude, 1.0, "rad"), at)
+def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:
+    """The quantities that play a role, each over the whole run."""
+    return [_row(track, at) for track in beside.tracks(named(role), beside.reference)]
 
 
 def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
@@ -163,84 +161,69 @@ def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, .
     if not np.all(np.isfinite(beside.crank)):
         return [], ("no geometric error: the logged crank angle is not finite",)
     try:
-        found = beside.tracks(0, beside.at_crank)
+        found = beside.tracks(named("place"), beside.at_crank)
     except ReachError as error:
         return [], (f"no geometric error: the logged crank left its range ({error})",)
     return [_row(track, at, kind="geometric") for track in found], ()
 
 
-def _gaps(scene: Scene, run: Run, at: _Instants) -> Iterable[Track]:
-    """How far the bodies that share a pin or slider have come apart; NaN where the run is silent
-    about one that the scene has."""
-    none = np.zeros_like(at.time_s)
-    for name in dict.fromkeys((*_shared(scene), *run.gaps)):
-        kind: Literal["slider", "point"] = "slider" if name in scene.sliders else "point"
-        gap = fitting(run.gaps.get(name), none)
-        yield Track("gap", kind, name, gap, none, 0.0, scene.longest_m, "m")
-
-
-def _shared(scene: Scene) -> tuple[str, ...]:
-    """The pins that two bodies or more share, and the sliders."""
-    return (*(pin.point for pin in joints(scene).pins), *scene.sliders)
-
-
-def _without_gap(scene: Scene, run: Run) -> list[str]:
-    return [f"gap of {name}" for name in dict.fromkeys(_shared(scene)) if name not in run.gaps]
+def _without_gap(beside: Beside) -> list[str]:
+    gaps = beside.tracks(named("closure"), beside.reference)
+    return [f"gap of {track.body}" for track in gaps if track.body not in beside.run.gaps]
 
 
 def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
-    """Velocities and accelerations as the engine gives them, and the bodies without."""
-    run, rows, missing = beside.run, list[Error](), list[str]()
-    stamps: tuple[tuple[Order, Array | None], ...] = (
-        (1, run.velocity_time_s),
-        (2, run.acceleration_time_s),
-    )
-    for order, instants in stamps:
+    """Velocities, accelerations and the like as the engine gives them, and the bodies without."""
+    rows, missing = list[Error](), list[str]()
+    for name in named("derived"):
+        entry = QUANTITIES[name]
+        instants = entry.instants(beside.run)
         time_s = beside.motion.time_s if instants is None else instants
         known = beside.truth.at(time_s)
         at = _instants(beside.scene, time_s, known)
-        found = beside.tracks(order, known)
-        # Silence is no fault of an engine that reports no accelerations, if it is silent of all.
-        silent = order == 2 and not run.reports_accelerations
-        if silent and all(np.all(np.isnan(track.error)) for track in found):
-            missing += [f"{track.quantity} of {track.body_kind} {track.body}" for track in found]
+        found = beside.tracks((name,), known)
+        # Silence is no fault of an engine that does not report it, if it is silent of all.
+        if entry.silent(beside.run) and all(np.all(np.isnan(track.error)) for track in found):
+            missing += [f"{name} of {track.body_kind} {track.body}" for track in found]
             continue
         for track in found:
             rows += _rate_rows(track, at, "reported")
     return rows, tuple(missing)
 
 
-def _differenced(scene: Scene, placed: Iterable[Track], at: _Instants) -> Iterable[Error]:
+def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
     """Velocities and accelerations from the logged positions, by central differences."""
     if at.time_s.size < 3:
         return
     step_s = float(at.time_s[1] - at.time_s[0])
-    speed = scene.driver.law.peak_speed_rad_s
-    inner = at[1:-1]
-    for track in placed:
+    orders = [
+        (name, each.tolerance.differenced)
+        for name, entry in QUANTITIES.items()
+        for each in entry.criteria
+        if each.tolerance.differenced
+    ]
+    for track in beside.places:
         # The logged numbers are rounded too: that is part of what a difference is uncertain by.
         unsure = (track.bound + EPSILON * track.magnitude)[1:-1]
-        for order, series, bound in (
-            (1, rate(track.error, step_s), unsure / step_s),
-            (2, second_rate(track.error, step_s), 4 * unsure / step_s**2),
-        ):
+        for name, order in orders:
+            once = order == 1
+            measure = QUANTITIES[name].of(track.body_kind)
             differenced = replace(
                 track,
-                quantity=QUANTITIES[track.body_kind][order],
-                error=series,
-                bound=bound,
-                scale=track.scale * speed**order,
-                unit=track.unit + ("", "/s", "/s^2")[order],
+                quantity=name,
+                error=(rate if once else second_rate)(track.error, step_s),
+                bound=unsure / step_s if once else 4 * unsure / step_s**2,
+                scale=measure.scale(beside.scene, beside.reference),
+                unit=measure.unit,
             )
-            yield from _rate_rows(differenced, inner, "differenced")
+            yield from _rate_rows(differenced, at[1:-1], "differenced")
 
 
 def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:
     """The largest bound of the reference per quantity and body, as a pure number."""
     return {
         (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale
-        for order in ORDERS
-        for track in beside.tracks(order, beside.reference)
+        for track in beside.tracks(named("place", "derived"), beside.reference)
     }
 
 

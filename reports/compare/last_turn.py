@@ -23,6 +23,7 @@ from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track
+from reports.quantities import named
 from sim.engine import Run
 
 SAMPLES_PER_TURN = 90
@@ -48,7 +49,7 @@ def trace(scene: Scene, run: Run) -> dict[str, Array]:
     found |= _errors(beside.places, "")
     # Where the logged crank left its range, or is not finite, the total error says it.
     with suppress(CrankcheckError, ValueError):
-        found |= _errors(beside.tracks(0, beside.at_crank), "geometric.")
+        found |= _errors(beside.tracks(named("place"), beside.at_crank), "geometric.")
     for name, link in beside.motion.links.items():
         found[f"theta.{name}"] = link.theta
     for name, point in beside.motion.points.items():

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeVar
 
 import numpy as np
 
 from models.array import Array
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import Motion
 from models.scene import Scene
 from reports.compare.series import angle_error
+from reports.quantities import QUANTITIES
 from reports.quantities.quantity import BodyKind
-
-Order = Literal[0, 1, 2]
-ORDERS: tuple[Order, ...] = (0, 1, 2)
-Part = TypeVar("Part")
-QUANTITIES: dict[BodyKind, tuple[str, str, str]] = {
-    "link": ("angle", "velocity", "acceleration"),
-    "slider": ("displacement", "velocity", "acceleration"),
-    "point": ("position", "velocity", "acceleration"),
-}
+from sim.engine import Run
 
 
 @dataclass(frozen=True)
@@ -43,61 +35,27 @@ class Track:
     unit: str
 
 
-def tracks(scene: Scene, motion: Motion, reference: Motion, order: Order) -> Iterator[Track]:
-    """Tracks of every link, slider and moving point: the place itself (0), or a rate of it.
+def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str]) -> Iterator[Track]:
+    """Tracks of some quantities, of all bodies.
 
-    It is the reference that says which there are: what the engine's motion lacks, or has another
-    number of samples of, is an error that is NaN throughout. Points of the ground can not move and
-    are left out, as is the driver's angle: it is the drive.
+    It is the reference that says which there are: what the engine's log lacks, or has another
+    number of samples of, is an error that is NaN throughout.
     """
-    speed = scene.driver.law.peak_speed_rad_s**order
-    suffix = ("", "/s", "/s^2")[order]
-    for kind, body, engine, right, bound in _pairs(motion, reference, order):
-        if kind == "link" and order == 0 and body == scene.driver.link:
-            continue
-        if kind == "point" and body in scene.ground:
-            continue
-        turns = kind == "link"
-        yield Track(
-            quantity=QUANTITIES[kind][order],
-            body_kind=kind,
-            body=body,
-            error=angle_error(engine, right) if turns and order == 0 else engine - right,
-            bound=np.zeros(right.shape[0]) if bound is None else bound,
-            magnitude=float(np.max(np.abs(right), initial=0.0)),
-            scale=speed if turns else scene.longest_m * speed,
-            unit=("rad" if turns else "m") + suffix,
-        )
-
-
-def _pairs(
-    motion: Motion, reference: Motion, order: Order
-) -> Iterator[tuple[BodyKind, str, Array, Array, Array | None]]:
-    """Body kind, body, the engine's series, the reference's, and the reference's bound."""
-    known = reference.bound
-    for name, link in reference.links.items():
-        sure = None if known is None else _link(known.links[name], order)
-        right = _link(link, order)
-        yield "link", name, _given(motion.links, name, _link, order, right), right, sure
-    for name, slider in reference.sliders.items():
-        sure = None if known is None else _slider(known.sliders[name], order)
-        right = _slider(slider, order)
-        yield "slider", name, _given(motion.sliders, name, _slider, order, right), right, sure
-    for name, point in reference.points.items():
-        sure = None if known is None else _point(known.points[name], order)
-        right = _point(point, order)
-        yield "point", name, _given(motion.points, name, _point, order, right), right, sure
-
-
-def _given(
-    moved: Mapping[str, Part],
-    name: str,
-    part: Callable[[Part, Order], Array],
-    order: Order,
-    like: Array,
-) -> Array:
-    """The engine's series; NaN in the shape of ``like`` where it gave none of that shape."""
-    return fitting(part(moved[name], order) if name in moved else None, like)
+    for quantity in quantities:
+        for measure in QUANTITIES[quantity].measures:
+            logged, bounds = measure.logged(scene, run), measure.bound(scene, reference)
+            for body, right in measure.truth(scene, reference).items():
+                engine = fitting(logged.get(body), right)
+                yield Track(
+                    quantity=quantity,
+                    body_kind=measure.body_kind,
+                    body=body,
+                    error=angle_error(engine, right) if measure.unit == "rad" else engine - right,
+                    bound=bounds.get(body, np.zeros(right.shape[0])),
+                    magnitude=float(np.max(np.abs(right), initial=0.0)),
+                    scale=measure.scale(scene, reference),
+                    unit=measure.unit,
+                )
 
 
 def fitting(series: Array | None, like: Array) -> Array:
@@ -117,15 +75,3 @@ def lacking(motion: Motion, reference: Motion) -> list[str]:
     return [
         f"{kind} {name}" for kind, moved, wanted in pairs for name in wanted if name not in moved
     ]
-
-
-def _link(motion: LinkMotion, order: Order) -> Array:
-    return (motion.theta, motion.omega, motion.alpha)[order]
-
-
-def _slider(motion: SliderMotion, order: Order) -> Array:
-    return (motion.displacement, motion.speed, motion.acceleration)[order]
-
-
-def _point(motion: PointMotion, order: Order) -> Array:
-    return (motion.position, motion.velocity, motion.acceleration)[order]

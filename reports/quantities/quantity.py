@@ -106,6 +106,10 @@ class Quantity:
         """What its pure numbers are multiples of, lengths apart."""
         return self.measures[0].share
 
+    def of(self, kind: BodyKind) -> Measure:
+        """The quantity of a kind of body."""
+        return next(each for each in self.measures if each.body_kind == kind)
+
 
 def tolerance_name(quantity: str, source: Source) -> str:
     """What `--tol`, a scene and the columns of pure numbers call a quantity from a source."""

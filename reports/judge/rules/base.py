@@ -77,8 +77,7 @@ def measure(error: Error) -> str:
 
 def share(error: Error) -> str:
     """What the pure number of an error is a multiple of."""
-    measures = QUANTITIES[error.quantity].measures
-    return next(each.share for each in measures if each.body_kind == error.body_kind)
+    return QUANTITIES[error.quantity].of(error.body_kind).share
 
 
 def place(error: Error) -> str:
