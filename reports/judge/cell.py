@@ -18,12 +18,11 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
-from reports.compare.errors import Departure, Errors
+from reports.compare.errors import Departure
 from reports.judge.halving import followed
 from reports.judge.rules import judge
 from reports.judge.rules.base import Evidence, Finding
-from reports.judge.three_steps import Convergence
-from reports.judge.tolerance import Limit, limits
+from reports.judge.tolerance import limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
 
@@ -60,19 +59,13 @@ class Cell:
         return f"{self.scene.name}, {self.engine}, {self.profile}"
 
 
-@dataclass(frozen=True)
-class Checked:
+@dataclass(frozen=True, kw_only=True)
+class Checked(Evidence):
     """A cell with what came of it, and the time that it took [s]; the trajectories are gone."""
 
     cell: Cell
-    version: str
-    status: str
-    reason: str
-    stopped_at_s: float
-    settings: Mapping[str, SettingValue]
-    errors: Errors | None
-    limits: Mapping[str, Limit]
-    convergence: Convergence | None
+    version: str = ""
+    settings: Mapping[str, SettingValue] = field(default_factory=dict)
     findings: tuple[Finding, ...]
     warnings: tuple[str, ...] = ()
     wall_s: float = 0.0
@@ -142,15 +135,10 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
         mass_ratio=mass_ratio(cell.scene),
     )
     checked = Checked(
+        **vars(evidence),
         cell=cell,
         version=done.version,
-        status=status,
-        reason=reason,
-        stopped_at_s=done.stopped_at_s,
         settings=dict(done.settings),
-        errors=errors,
-        limits=in_force,
-        convergence=seen,
         findings=judge(evidence),
         warnings=done.warnings,
     )
@@ -167,8 +155,8 @@ def _left(departure: Departure) -> str:
 
 def unfinished(cell: Cell, status: str, reason: str) -> Checked:
     """A cell that has no run: a row with a reason."""
-    findings = judge(Evidence(status, reason, 0.0, None, {}))
-    return Checked(cell, "", status, reason, 0.0, {}, None, {}, None, findings)
+    evidence = Evidence(status, reason, 0.0, None, {})
+    return Checked(**vars(evidence), cell=cell, findings=judge(evidence))
 
 
 def _run(cell: Cell, runner: Runner, state: State, finer: int) -> Run:
