@@ -5,8 +5,8 @@ from __future__ import annotations
 import statistics
 from dataclasses import dataclass
 
-from reports.diff.changes import Diff
-from reports.diff.runs import counted, few
+from reports.results.changes.changes import Diff
+from reports.results.changes.runs import counted, few
 from reports.results.cost import equal, noise_of
 
 LEAST_NOISE = 0.1

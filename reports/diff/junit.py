@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree as Xml
 
-from reports.diff.changes import Diff, Pair
-from reports.diff.runs import Found, Name
 from reports.diff.words import ratio, size, told
 from reports.output.write import clean
+from reports.results.changes.changes import CellPair, Diff
+from reports.results.changes.runs import CellName, StoredCell
 
 DECLARATION = '<?xml version="1.0" encoding="utf-8"?>\n'
 
@@ -57,7 +57,7 @@ def _suite(diff: Diff, strict: bool) -> Xml.Element:
     return suite
 
 
-def _compared(pair: Pair) -> Xml.Element:
+def _compared(pair: CellPair) -> Xml.Element:
     """A cell of both runs."""
     case = _case(pair.name)
     if pair.word == "worse":
@@ -76,7 +76,7 @@ def _compared(pair: Pair) -> Xml.Element:
     return case
 
 
-def _uncompared(cells: Sequence[Found], tag: str, why: str) -> list[Xml.Element]:
+def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Xml.Element]:
     """Cells that there is nothing to compare with."""
     found = []
     for cell in cells:
@@ -86,7 +86,7 @@ def _uncompared(cells: Sequence[Found], tag: str, why: str) -> list[Xml.Element]
     return found
 
 
-def _case(name: Name) -> Xml.Element:
+def _case(name: CellName) -> Xml.Element:
     return Xml.Element(
         "testcase",
         classname=clean(f"crankcheck.diff.{name.engine}.{name.variant}"),

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from reports.diff.changes import Diff
-from reports.diff.words import HEADS, Line, footer, headline, left_out, lines, remarks, verdict
+from reports.diff.words import (
+    HEADS,
+    PrintedRow,
+    footer,
+    headline,
+    left_out,
+    lines,
+    remarks,
+    verdict,
+)
 from reports.output.markdown import counted, folded, plain, table
+from reports.results.changes.changes import Diff
 
 BUDGETS = {"worse": 30_000, "better": 8_000, "new": 4_000, "missing": 4_000}
 """Bytes of each part: all of them with the heads stay below the 65,536 of a comment on GitHub."""
@@ -33,14 +42,14 @@ def markdown(diff: Diff, strict: bool = False) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _table(found: Sequence[Line], room: int) -> str:
+def _table(found: Sequence[PrintedRow], room: int) -> str:
     """Rows as a table; what is compared are numbers."""
     heads = [head.replace("\n", " ") for head in HEADS]
     heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
     return table(heads, map(_cells, found), room, "rows")
 
 
-def _cells(line: Line) -> tuple[str, ...]:
+def _cells(line: PrintedRow) -> tuple[str, ...]:
     quantity = f"{line.quantity}: {line.reason}" if line.reason else line.quantity
     return line.scene, line.engine, line.steps, quantity, line.old, line.new, line.ratio
 

@@ -9,9 +9,18 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from reports.diff.changes import Diff
-from reports.diff.runs import Found
-from reports.diff.words import HEADS, Line, footer, headline, left_out, lines, remarks, verdict
+from reports.diff.words import (
+    HEADS,
+    PrintedRow,
+    footer,
+    headline,
+    left_out,
+    lines,
+    remarks,
+    verdict,
+)
+from reports.results.changes.changes import Diff
+from reports.results.changes.runs import StoredCell
 
 MOST = {"worse": 200, "better": 10}
 """Rows of a table; all that is worse is named, unless that is more than anyone reads."""
@@ -35,7 +44,7 @@ def show(console: Console, diff: Diff, strict: bool = False) -> None:
     console.print(Text("\n".join(footer(diff)), "dim"), highlight=False)
 
 
-def _table(console: Console, word: str, found: Sequence[Line]) -> None:
+def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
     """The rows of what is worse, or better, and the reasons of engines that gave up."""
     if not found:
         return
@@ -68,7 +77,7 @@ def _table(console: Console, word: str, found: Sequence[Line]) -> None:
     console.print()
 
 
-def _left_out(console: Console, word: str, cells: Sequence[Found]) -> None:
+def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
     """The cells of one run only."""
     found = left_out(cells)
     if not found:

@@ -6,17 +6,17 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from reports.diff.changes import Change, Diff, Pair, Word, other_settings
 from reports.diff.costs import cost_text
-from reports.diff.runs import Found, Name, Run, counted, few
+from reports.results.changes.changes import CellPair, Diff, ErrorChange, Word, other_settings
+from reports.results.changes.runs import CellName, StoredCell, StoredRun, counted, few
 
 REASON = 120
 """Characters of the reason that an engine gave for how it ended."""
-Names = Sequence[Name]
+Names = Sequence[CellName]
 
 
 @dataclass(frozen=True)
-class Line:
+class PrintedRow:
     """Cells that differ in step only, as one row: the worst of them, and which the others are."""
 
     scene: str
@@ -48,12 +48,12 @@ def verdict(diff: Diff, strict: bool = False) -> str:
     return "NOT WHOLE (--strict)" if diff.code(strict) else "NOT WORSE"
 
 
-def lines(diff: Diff, word: Word) -> list[Line]:
+def lines(diff: Diff, word: Word) -> list[PrintedRow]:
     """The cells that are worse, or better, one row for those that differ in step only."""
     compared: dict[tuple[object, ...], list[float]] = {}
     for pair in diff.pairs:
         compared.setdefault(pair.name.line, []).append(pair.name.steps_per_turn)
-    groups: dict[tuple[object, ...], list[Pair]] = {}
+    groups: dict[tuple[object, ...], list[CellPair]] = {}
     for pair in diff.those(word):
         groups.setdefault(pair.name.line, []).append(pair)
     several = _several(diff)
@@ -63,9 +63,9 @@ def lines(diff: Diff, word: Word) -> list[Line]:
     ]
 
 
-def left_out(cells: Iterable[Found]) -> list[str]:
+def left_out(cells: Iterable[StoredCell]) -> list[str]:
     """Cells of one run, one text for those that differ in step only."""
-    groups: dict[tuple[object, ...], list[Name]] = {}
+    groups: dict[tuple[object, ...], list[CellName]] = {}
     for cell in cells:
         groups.setdefault(cell.name.line, []).append(cell.name)
     return [
@@ -103,7 +103,7 @@ def footer(diff: Diff) -> list[str]:
     ]
 
 
-def origin(run: Run) -> str:
+def origin(run: StoredRun) -> str:
     """Where a run comes from."""
     told = ("crankcheck", "processor", "made")
     facts = [f"{name} {run.facts[name]}" for name in told if run.facts.get(name)]
@@ -118,7 +118,7 @@ def versions(diff: Diff) -> str:
     return "; ".join(f"{engine} {few(each)}" for engine, each in found.items())
 
 
-def told(pair: Pair) -> str:
+def told(pair: CellPair) -> str:
     """The change of a cell in one line."""
     if pair.turned:
         failed = pair.old if pair.new.ok else pair.new
@@ -137,7 +137,7 @@ def size(error: float) -> str:
     return f"{error:.2e}" if math.isfinite(error) else "-"
 
 
-def ratio(change: Change) -> str:
+def ratio(change: ErrorChange) -> str:
     """New over old in three digits; a dash where one of them is no number, or the old one 0."""
     found = change.ratio
     if not math.isfinite(found) or not math.isfinite(change.old):
@@ -145,7 +145,7 @@ def ratio(change: Change) -> str:
     return f"{found:#.3g}".removesuffix(".")
 
 
-def _line(members: Sequence[Pair], compared: Sequence[float], engine: str) -> Line:
+def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -> PrintedRow:
     """Pairs of one line, the largest change first, as a row."""
     first, change = members[0], members[0].worst
     steps = _steps([pair.name.steps_per_turn for pair in members], compared)
@@ -153,9 +153,9 @@ def _line(members: Sequence[Pair], compared: Sequence[float], engine: str) -> Li
         failed = first.old if first.new.ok else first.new
         was, now = first.old.status, first.new.status
         reason = failed.reason[:REASON]
-        return Line(first.name.scene, engine, steps, "status", was, now, "-", reason)
+        return PrintedRow(first.name.scene, engine, steps, "status", was, now, "-", reason)
     numbers = (size(change.old), size(change.new), ratio(change))
-    return Line(first.name.scene, engine, steps, change.quantity, *numbers)
+    return PrintedRow(first.name.scene, engine, steps, change.quantity, *numbers)
 
 
 def _steps(changed: Sequence[float], compared: Sequence[float]) -> str:
@@ -166,20 +166,20 @@ def _steps(changed: Sequence[float], compared: Sequence[float]) -> str:
     return f"{first} (also {', '.join(others)})" if others else first
 
 
-def _engine(pair: Pair, several: frozenset[str]) -> str:
+def _engine(pair: CellPair, several: frozenset[str]) -> str:
     """Engine and variant; with its versions where those of the engine differ from cell to cell."""
     called = _called(pair.name, "turns" in several)
     return f"{called} ({_versions(pair)})" if pair.name.engine in several else called
 
 
-def _called(name: Name, turns: bool = False) -> str:
+def _called(name: CellName, turns: bool = False) -> str:
     parts = [f"{name.engine} {name.variant}"]
     parts += [f"drive {name.drive}"] if name.drive != "prescribed" else []
     parts += [f"{name.turns:g} turns"] if turns else []
     return ", ".join(parts)
 
 
-def _versions(pair: Pair) -> str:
+def _versions(pair: CellPair) -> str:
     was, now = pair.old.version, pair.new.version
     return was if was == now else f"{was} -> {now}"
 

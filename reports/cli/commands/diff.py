@@ -6,13 +6,13 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.checking import DiffRequest
-from reports.diff.changes import compare
 from reports.diff.junit import junit
 from reports.diff.markdown import markdown
-from reports.diff.reading import read_run
 from reports.diff.terminal import show
 from reports.output.notice import tell
 from reports.output.write import check_different, check_file, write
+from reports.results.changes.changes import compare
+from reports.results.changes.reading import read_run
 
 FORMATS = ("text", "md")
 

@@ -12,7 +12,6 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from reports.cli.checking import HistoryRequest, VerifyRequest
 from reports.cli.commands import verify
-from reports.diff.reading import scene_digests
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
 from reports.history.environments import NotMeasuredError, Wanted, ready, uv_here, wanted
@@ -22,6 +21,7 @@ from reports.history.verification import kept, key_of, measure, place
 from reports.judge.cell import Cell
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
+from reports.results.changes.reading import scene_digests
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
 

@@ -12,10 +12,7 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from reports.cli.checking import VerifyRequest
-from reports.diff.changes import Diff, compare
 from reports.diff.junit import joined
-from reports.diff.reading import read_run, scene_digests
-from reports.diff.runs import Run, planned_run, run_of
 from reports.diff.terminal import show as show_diff
 from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame, parquet
@@ -28,6 +25,9 @@ from reports.output.write import check_different, check_file, check_folder, writ
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
+from reports.results.changes.changes import Diff, compare
+from reports.results.changes.reading import read_run, scene_digests
+from reports.results.changes.runs import StoredRun, planned_run, run_of
 from reports.verify.all_cells import check_all
 from reports.verify.junit import junit
 from reports.verify.table import show
@@ -151,7 +151,7 @@ def _engines(cells: Sequence[Cell]) -> list[str]:
 
 def _baseline(
     request: VerifyRequest, cells: Sequence[Cell], digests: Mapping[str, str]
-) -> Run | None:
+) -> StoredRun | None:
     """The cells of the baseline that are to be run now, read before anything is written over it.
 
     Raises

@@ -1,147 +1,16 @@
-"""Runs that were really made, stored, and read again; and cells made up for what is rare."""
+"""Runs that were really made, and cells made up."""
 
 from __future__ import annotations
 
-import io
-import json
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from tests.worlds.stored_runs import (
+    made_cell,
+    made_run,
+    paper,
+    planted,
+    store,
+    stored,
+    swept,
+    verified,
+)
 
-import pandas as pd
-import pytest
-from rich.console import Console
-
-from models.files import shipped
-from models.scene import Scene
-from reports.diff.runs import Found, Name, Run
-from reports.judge.cell import Cell
-from reports.judge.frames import cell_frame, error_frame
-from reports.output.provenance import provenance
-from reports.plan.key import digest
-from reports.store.manifest import Manifest
-from reports.store.writer import Writer
-from reports.sweep.measured import measured
-from reports.verify.all_cells import check_all
-from sim.registry import engine
-
-Plant = Callable[[pd.DataFrame], None]
-Copy = Callable[..., Path]
-STEPS = (90, 180)
-
-
-@pytest.fixture(scope="session")
-def verified(fourbar: Scene) -> tuple[pd.DataFrame, Mapping[str, str]]:
-    """The cells of a verification of two engines and two profiles, and its facts."""
-    dt_s = fourbar.driver.law.period_s / 90
-    cells = [
-        Cell(fourbar, name, profile, dt_s, 90, converge=False)
-        for name in ("mujoco", "pymunk")
-        for profile in ("tuned", "as-shipped")
-    ]
-    checked = check_all(cells, 1, lambda _: None)
-    assert not error_frame(checked).empty
-    facts = provenance({name: engine(name).version() for name in ("mujoco", "pymunk")})
-    return cell_frame(checked), facts
-
-
-@pytest.fixture
-def stored(verified: tuple[pd.DataFrame, Mapping[str, str]], tmp_path: Path) -> Copy:
-    """Write the verification to a folder, as `verify -o` does, with a change planted
-    in it, or without some of its cells."""
-
-    def make(
-        name: str, plant: Plant = lambda _: None, text: str = "", drop: tuple[int, ...] = ()
-    ) -> Path:
-        frame, facts = verified[0].drop(index=list(drop)), verified[1]
-        plant(frame)
-        folder = tmp_path / name
-        folder.mkdir()
-        frame.to_csv(folder / "verify.csv", index=False)
-        content = {"provenance": facts, "scenes": {"fourbar-lecture-1": digest(text)}, "cells": []}
-        (folder / "verify.json").write_text(json.dumps(content), encoding="utf-8")
-        return folder
-
-    return make
-
-
-@pytest.fixture(scope="session")
-def swept(fourbar: Scene) -> list[tuple[dict[str, object], dict[str, object]]]:
-    """The rows of cells and of timings of a sweep over two steps."""
-    found = []
-    for steps in STEPS:
-        dt_s = fourbar.driver.law.period_s / steps
-        one = measured(Cell(fourbar, "mujoco", "tuned", dt_s, steps, converge=False), False)
-        times = dict.fromkeys(("us_per_step", "us_per_step_a", "us_per_step_b"), 2.0)
-        names = {"key": f"k{steps}", "line": "l", "variant": "tuned", "asked": {}}
-        found.append((names | dict(one.row), {"key": f"k{steps}", **times}))
-    return found
-
-
-@pytest.fixture
-def store(swept: list[tuple[dict[str, object], dict[str, object]]], tmp_path: Path) -> Copy:
-    """Write, or add to, the store of a sweep: columns of cells and of timings may be replaced."""
-    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
-
-    def make(name: str, text: str = text, us: float = 2.0, cpu: str = "one", **other: str) -> Path:
-        version = other.get("version", "4.0.0")
-        run = {"command": [], "provenance": {"mujoco": version, "processor": cpu}}
-        manifest = Manifest({"fourbar-lecture-1": text}, (run,))
-        with Writer(tmp_path / name, manifest) as writer:
-            for row, timing in swept:
-                key = f"{row['key']}-{version}"
-                changed = {**row, "scene_digest": digest(text), **other, "key": key}
-                writer.cell(changed, (), {})
-                costs = {k: us for k in timing if k.startswith("us_")}
-                writer.timing({**costs, "key": key, "processor": cpu, "made": "now"})
-        return tmp_path / name
-
-    return make
-
-
-def cell(
-    scene: str = "a",
-    variant: str = "tuned",
-    steps: float = 720.0,
-    status: str = "ok",
-    reason: str = "",
-    version: str = "1",
-    digest: str = "",
-    **errors: float,
-) -> Found:
-    """A cell made up, with errors by quantity (``_`` for ``-``)."""
-    name = Name(scene, "mujoco", variant, "prescribed", steps, 2.0)
-    named = {key.replace("_", "-"): value for key, value in errors.items()}
-    return Found(name, version, status, reason, named, scene_digest=digest)
-
-
-def run(*cells: Found, label: str = "x") -> Run:
-    return Run(label, {one.name: one for one in cells})
-
-
-@pytest.fixture(name="cell")
-def _cell() -> Callable[..., Found]:
-    return cell
-
-
-@pytest.fixture(name="run")
-def _run() -> Callable[..., Run]:
-    return run
-
-
-@pytest.fixture
-def planted() -> Callable[..., Plant]:
-    """Plant the growth of one error of the first cell: MuJoCo, tuned."""
-
-    def make(growth: float, column: str = "position_pure") -> Plant:
-        def plant(frame: pd.DataFrame) -> None:
-            frame.loc[0, column] *= growth
-
-        return plant
-
-    return make
-
-
-@pytest.fixture
-def paper() -> Console:
-    """A console that records what a pipe would get."""
-    return Console(width=100, record=True, file=io.StringIO())
+__all__ = ["made_cell", "made_run", "paper", "planted", "store", "stored", "swept", "verified"]

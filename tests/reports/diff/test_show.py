@@ -8,16 +8,16 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from reports.diff.changes import Diff, compare
 from reports.diff.costs import cost_text
 from reports.diff.junit import junit
 from reports.diff.markdown import markdown
-from reports.diff.runs import Cost, Found, Run
 from reports.diff.terminal import show
 from reports.diff.words import left_out, lines
+from reports.results.changes.changes import Diff, compare
+from reports.results.changes.runs import CellCost, StoredCell, StoredRun
 
-Make = Callable[..., Found]
-Group = Callable[..., Run]
+Make = Callable[..., StoredCell]
+Group = Callable[..., StoredRun]
 STEPS = (90.0, 180.0, 360.0, 720.0)
 
 
@@ -131,6 +131,6 @@ def test_cells_that_failed_in_both_are_told(cell: Make, run: Group) -> None:
 def test_costs_are_equal_inside_the_noise_of_the_runs(
     cell: Make, run: Group, apart: float, told: str
 ) -> None:
-    old = replace(cell(angle=1e-3), cost=Cost(2.0, apart, "abacus"))
-    new = replace(cell(angle=1e-3), cost=Cost(2.4, apart, "abacus"))
+    old = replace(cell(angle=1e-3), cost=CellCost(2.0, apart, "abacus"))
+    new = replace(cell(angle=1e-3), cost=CellCost(2.4, apart, "abacus"))
     assert told in cost_text(compare(run(old), run(new)))

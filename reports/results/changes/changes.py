@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import CrankcheckError
-from reports.diff.gone import refuse_gone
-from reports.diff.runs import Found, Name, Run
 from reports.judge.tolerance import DEFAULTS, ROUNDING
+from reports.results.changes.gone import refuse_gone
+from reports.results.changes.runs import CellName, StoredCell, StoredRun
 
 FACTOR = 1.1
 """How much an error may grow before it is called worse."""
@@ -19,7 +19,7 @@ Word = Literal["worse", "better", "equal"]
 
 
 @dataclass(frozen=True)
-class Change:
+class ErrorChange:
     """One error, old and new, as pure numbers; infinite where there is no number.
 
     Both may be off by ``floor`` for no other reason than rounding.
@@ -52,7 +52,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Pair:
+class CellPair:
     """A cell that both runs have.
 
     One that did not end well has no errors to compare: that it did or did not is the change, and
@@ -60,14 +60,14 @@ class Pair:
     better where some are better and none is worse.
     """
 
-    old: Found
-    new: Found
-    changes: tuple[Change, ...]
+    old: StoredCell
+    new: StoredCell
+    changes: tuple[ErrorChange, ...]
     word: Word
     factor: float
 
     @property
-    def name(self) -> Name:
+    def name(self) -> CellName:
         return self.new.name
 
     @property
@@ -81,7 +81,7 @@ class Pair:
         return not (self.old.ok or self.new.ok)
 
     @property
-    def worst(self) -> Change | None:
+    def worst(self) -> ErrorChange | None:
         """The change that is to be told: the largest in the direction of ``word``."""
         alike = [c for c in self.changes if c.word(self.factor) == self.word]
         if self.word == "better":
@@ -105,15 +105,15 @@ class Diff:
     one run only is ``missing`` or ``added``.
     """
 
-    old: Run
-    new: Run
+    old: StoredRun
+    new: StoredRun
     factor: float
-    pairs: tuple[Pair, ...]
-    missing: tuple[Found, ...]
-    added: tuple[Found, ...]
-    other_scene: tuple[Found, ...]
+    pairs: tuple[CellPair, ...]
+    missing: tuple[StoredCell, ...]
+    added: tuple[StoredCell, ...]
+    other_scene: tuple[StoredCell, ...]
 
-    def those(self, word: Word) -> tuple[Pair, ...]:
+    def those(self, word: Word) -> tuple[CellPair, ...]:
         """The cells that are worse, better or equal, the largest change first."""
         found = [pair for pair in self.pairs if pair.word == word]
         return tuple(sorted(found, key=lambda pair: -pair.factor_of_change))
@@ -128,7 +128,7 @@ class Diff:
         return int(bool(lost or any(pair.word == "worse" for pair in self.pairs)))
 
 
-def compare(old: Run, new: Run, factor: float = FACTOR) -> Diff:
+def compare(old: StoredRun, new: StoredRun, factor: float = FACTOR) -> Diff:
     """Compare two runs.
 
     Raises
@@ -186,26 +186,26 @@ def other_settings(diff: Diff) -> Mapping[tuple[str, str], tuple[str, ...]]:
     return {key: tuple(here[name] for name in sorted(here)) for key, here in found.items()}
 
 
-def _same_scene(old: Found, new: Found) -> bool:
+def _same_scene(old: StoredCell, new: StoredCell) -> bool:
     """Whether both are of one scene, as far as the runs tell."""
     known = old.scene_digest and new.scene_digest
     return not known or old.scene_digest == new.scene_digest
 
 
-def _pair(old: Found, new: Found, factor: float) -> Pair:
+def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
     """A cell of both runs, judged."""
     if not (old.ok and new.ok):
         word: Word = "equal" if old.ok == new.ok else "better" if new.ok else "worse"
-        return Pair(old, new, (), word, factor)
+        return CellPair(old, new, (), word, factor)
     changes = tuple(_changes(old, new))
     words = {change.word(factor) for change in changes}
     word = "worse" if "worse" in words else "better" if "better" in words else "equal"
-    return Pair(old, new, changes, word, factor)
+    return CellPair(old, new, changes, word, factor)
 
 
-def _changes(old: Found, new: Found) -> Iterator[Change]:
+def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
     """Every quantity that both runs know, and either has a number for."""
     for quantity in (each for each in old.errors if each in new.errors):
         was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
-            yield Change(quantity, was, now, floor(quantity, new.name.steps_per_turn))
+            yield ErrorChange(quantity, was, now, floor(quantity, new.name.steps_per_turn))

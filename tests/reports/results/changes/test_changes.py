@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
-from reports.diff.changes import Change, compare, floor, other_settings
-from reports.diff.runs import QUANTITIES, Found, Name, Run
+from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
+from reports.results.changes.runs import QUANTITIES, CellName, StoredCell, StoredRun
 
-Make = Callable[..., Found]
-Group = Callable[..., Run]
+Make = Callable[..., StoredCell]
+Group = Callable[..., StoredRun]
 OTHER = {"worse": "better", "better": "worse", "equal": "equal"}
 errors = st.one_of(
     st.just(0.0), st.just(math.inf), st.floats(-16.0, 2.0).map(lambda exponent: 10.0**exponent)
@@ -27,11 +27,13 @@ runs = st.dictionaries(
 )
 
 
-def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> Run:
+def made(content: dict[tuple[str, float], tuple[str, dict[str, float]]]) -> StoredRun:
     """A run of drawn cells, with one that every run has."""
     found = {("common", 720.0): ("ok", {"angle": 1e-3})} | content
-    names = {key: Name(key[0], "mujoco", "tuned", "prescribed", key[1], 2.0) for key in found}
-    return Run("drawn", {names[k]: Found(names[k], "1", s, "", e) for k, (s, e) in found.items()})
+    names = {key: CellName(key[0], "mujoco", "tuned", "prescribed", key[1], 2.0) for key in found}
+    return StoredRun(
+        "drawn", {names[k]: StoredCell(names[k], "1", s, "", e) for k, (s, e) in found.items()}
+    )
 
 
 @given(runs)
@@ -180,9 +182,12 @@ def test_a_factor_below_1_is_refused(factor: float, cell: Make, run: Group) -> N
 
 
 def test_settings_that_the_engine_held_otherwise_are_told() -> None:
-    name = Name("a", "mujoco", "stiff", "prescribed", 720.0, 2.0)
+    name = CellName("a", "mujoco", "stiff", "prescribed", 720.0, 2.0)
     was, now = (
-        Run("x", {name: Found(name, "1", "ok", "", {"angle": 1.0}, {"cone": 0, "solver": value})})
+        StoredRun(
+            "x",
+            {name: StoredCell(name, "1", "ok", "", {"angle": 1.0}, {"cone": 0, "solver": value})},
+        )
         for value in ("PGS", "Newton")
     )
     found = other_settings(compare(was, now))
@@ -191,6 +196,6 @@ def test_settings_that_the_engine_held_otherwise_are_told() -> None:
 
 
 def test_a_ratio_is_of_the_numbers_as_they_stand() -> None:
-    assert Change("angle", 2e-3, 3e-3, 1e-11).ratio == pytest.approx(1.5)
-    assert Change("angle", 0.0, 3e-3, 1e-11).ratio == math.inf
-    assert Change("angle", 0.0, 0.0, 1e-11).ratio == 1.0
+    assert ErrorChange("angle", 2e-3, 3e-3, 1e-11).ratio == pytest.approx(1.5)
+    assert ErrorChange("angle", 0.0, 3e-3, 1e-11).ratio == math.inf
+    assert ErrorChange("angle", 0.0, 0.0, 1e-11).ratio == 1.0

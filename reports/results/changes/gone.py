@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from models.errors import CrankcheckError
-from reports.diff.runs import Run, counted
+from reports.results.changes.runs import StoredRun, counted
 from reports.store.damage import BUSY
 
 
-def refuse_gone(old: Run, new: Run) -> None:
+def refuse_gone(old: StoredRun, new: StoredRun) -> None:
     """Refuse to compare where a lost cell may be one that the other run has.
 
     What is damaged in a run is of no account where it has every cell that the other one has: what

@@ -13,8 +13,8 @@ import pytest
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.diff.changes import compare
-from reports.diff.reading import read_run, scene_digests
+from reports.results.changes.changes import compare
+from reports.results.changes.reading import read_run, scene_digests
 from reports.store.reader import read_store
 from sim.registry import engine
 

@@ -18,7 +18,7 @@ Row = Mapping[str, object]
 
 
 @dataclass(frozen=True)
-class Name:
+class CellName:
     """What names a cell in every run; the version of the engine is what one compares across."""
 
     scene: str
@@ -43,7 +43,7 @@ class Name:
 
 
 @dataclass(frozen=True)
-class Cost:
+class CellCost:
     """What a step took [microseconds], how far apart two timings of it were (relative),
     and where it was measured."""
 
@@ -53,7 +53,7 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class Found:
+class StoredCell:
     """One cell of a run: how it ended, and its largest errors by quantity, as pure numbers.
 
     An error is infinite where the run has no number for it: it was not finite, or nothing of the
@@ -61,14 +61,14 @@ class Found:
     is empty where the run does not tell which text the scene had.
     """
 
-    name: Name
+    name: CellName
     version: str
     status: str
     reason: str
     errors: Mapping[str, float]
     settings: Mapping[str, object] = field(default_factory=dict)
     scene_digest: str = ""
-    cost: Cost | None = None
+    cost: CellCost | None = None
 
     @property
     def ok(self) -> bool:
@@ -76,7 +76,7 @@ class Found:
 
 
 @dataclass(frozen=True)
-class Run:
+class StoredRun:
     """All cells of a run; ``label`` is what it is called, ``facts`` its versions, processor, time.
 
     ``notes`` say what was left out of it, and why. ``notice`` names what is damaged in it, and
@@ -84,14 +84,14 @@ class Run:
     """
 
     label: str
-    cells: Mapping[Name, Found]
+    cells: Mapping[CellName, StoredCell]
     facts: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     notice: tuple[str, ...] = ()
     gone: tuple[str, ...] = ()
     lost: bool = False
 
-    def only(self, names: Collection[Name]) -> Run:
+    def only(self, names: Collection[CellName]) -> StoredRun:
         """The same run with these cells alone."""
         return replace(self, cells={n: cell for n, cell in self.cells.items() if n in names})
 
@@ -109,23 +109,25 @@ class Run:
         return f"{self.label} holds {'; '.join(parts)}"
 
 
-def run_of(checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]) -> Run:
+def run_of(
+    checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]
+) -> StoredRun:
     """A verification that was just made; ``digests`` of the scenes by name."""
-    found = (found_in(cell_row(one), facts, digests) for one in checked)
-    return Run("this run", {cell.name: cell for cell in found}, facts)
+    found = (stored_cell(cell_row(one), facts, digests) for one in checked)
+    return StoredRun("this run", {cell.name: cell for cell in found}, facts)
 
 
-def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> Run:
+def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
     """A verification that is still to be made: the names of its cells, without any error."""
     found = {}
     for cell in cells:
         steps, turns = same(cell.steps_per_turn), same(cell.turns)
-        name = Name(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
-        found[name] = Found(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
-    return Run("what was asked for", found)
+        name = CellName(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
+        found[name] = StoredCell(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
+    return StoredRun("what was asked for", found)
 
 
-def found_in(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> Found:
+def stored_cell(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> StoredCell:
     """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file.
 
     Raises
@@ -135,7 +137,7 @@ def found_in(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> 
     """
     engine = text(row["engine"])
     steps, turns = (_positive(row[key], key) for key in ("steps_per_turn", "turns"))
-    name = Name(
+    name = CellName(
         scene=text(row["scene"]),
         engine=engine,
         variant=text(row.get("variant")) or text(row["profile"]),
@@ -144,7 +146,7 @@ def found_in(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> 
         turns=same(turns),
     )
     columns = {each: f"{each.replace('-', '_')}_pure" for each in QUANTITIES}
-    return Found(
+    return StoredCell(
         name=name,
         version=text(row["version"]) or facts.get(engine, "?"),
         status=text(row["status"]),
@@ -178,11 +180,11 @@ def _settings(content: str) -> Mapping[str, object]:
     return found
 
 
-def _cost(row: Row) -> Cost | None:
+def _cost(row: Row) -> CellCost | None:
     least, a, b = (number(row.get(f"us_per_step{part}")) for part in ("", "_a", "_b"))
     if not (least and a and b):
         return None
-    return Cost(least, apart(a, b), text(row.get("processor")))
+    return CellCost(least, apart(a, b), text(row.get("processor")))
 
 
 def same(value: float) -> float:

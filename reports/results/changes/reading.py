@@ -11,8 +11,8 @@ from typing import cast
 
 from models.errors import CrankcheckError
 from models.files import scene_texts
-from reports.diff.runs import Found, Name, Row, Run, found_in, text
 from reports.plan.key import digest
+from reports.results.changes.runs import CellName, Row, StoredCell, StoredRun, stored_cell, text
 from reports.store.examine import STOPPED
 from reports.store.folder import has_parts
 from reports.store.manifest import MANIFEST
@@ -25,7 +25,7 @@ WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
 @dataclass(frozen=True)
 class _Contents:
     """What stands in a folder: rows of the cells, facts, digests of scenes, and what is damaged
-    (see `reports.diff.runs.Run`)."""
+    (see `reports.results.changes.runs.StoredRun`)."""
 
     rows: list[Row]
     facts: dict[str, str]
@@ -35,7 +35,7 @@ class _Contents:
     lost: bool = False
 
 
-def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
+def read_run(folder: Path, version: str | None = None, option: str = "") -> StoredRun:
     """The run in a folder.
 
     A store keeps every version of an engine that it was filled with. Of cells that differ in
@@ -50,7 +50,7 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
     """
     there = _contents(folder)
     try:
-        found = [found_in(row, there.facts, there.digests) for row in there.rows]
+        found = [stored_cell(row, there.facts, there.digests) for row in there.rows]
     except (KeyError, ValueError, OverflowError) as error:
         why = f"no column {error}" if isinstance(error, KeyError) else str(error)
         raise CrankcheckError(
@@ -59,7 +59,7 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Run:
     if not any(cell.errors for cell in found):
         raise CrankcheckError(f"{folder}: no errors in its cells; make it again with {WRITERS}")
     kept, notes = _chosen(found, folder, version, option)
-    return Run(str(folder), kept, there.facts, notes, there.notice, there.gone, there.lost)
+    return StoredRun(str(folder), kept, there.facts, notes, there.notice, there.gone, there.lost)
 
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
@@ -161,8 +161,8 @@ def _texts(value: object) -> dict[str, str]:
 
 
 def _chosen(
-    found: list[Found], folder: Path, version: str | None, option: str
-) -> tuple[dict[Name, Found], tuple[str, ...]]:
+    found: list[StoredCell], folder: Path, version: str | None, option: str
+) -> tuple[dict[CellName, StoredCell], tuple[str, ...]]:
     """One cell of each name, and what to say of those that were passed over."""
     versions: dict[str, dict[str, None]] = {}
     for cell in found:

@@ -1,0 +1,1 @@
+"""Stored runs beside each other: what two of them say of the same cell, and what changed."""
