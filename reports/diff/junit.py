@@ -1,63 +1,35 @@
-"""A diff as JUnit XML, which continuous integration reads."""
+"""A diff as JUnit XML."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from xml.etree import ElementTree as Xml
+from xml.etree.ElementTree import Element
 
 from reports.diff.words import ratio, size, told
-from reports.output.write import clean
+from reports.output.junit import case_of, say, suite_of
 from reports.results.changes.changes import CellPair, Diff
 from reports.results.changes.runs import CellName, StoredCell
 
-DECLARATION = '<?xml version="1.0" encoding="utf-8"?>\n'
 
-
-def junit(diff: Diff, strict: bool = False) -> str:
+def suite(diff: Diff, strict: bool = False) -> Element:
     """One test case per cell of either run: a failure where it is worse, skipped where there is
     nothing to compare it with; ``strict`` makes failures of those but the new ones."""
-    root = Xml.Element("testsuites")
-    root.append(_suite(diff, strict))
-    return _text(root)
-
-
-def joined(verification: str, diff: Diff) -> str:
-    """The JUnit XML of a verification with the diff as a second suite."""
-    root = Xml.fromstring(verification)
-    root.append(_suite(diff, strict=False))
-    return _text(root)
-
-
-def _text(root: Xml.Element) -> str:
-    Xml.indent(root)
-    return DECLARATION + Xml.tostring(root, "unicode") + "\n"
-
-
-def _suite(diff: Diff, strict: bool) -> Xml.Element:
-    """The cases with their counts."""
-    cases = [_compared(pair) for pair in diff.pairs]
     lost = "failure" if strict else "skipped"
-    cases += _uncompared(diff.missing, lost, "missing: only the old run has it")
-    cases += _uncompared(diff.other_scene, lost, "the scene changed in between")
-    cases += _uncompared(diff.added, "skipped", "new: only the new run has it")
-    suite = Xml.Element(
-        "testsuite",
-        name="crankcheck diff",
-        tests=str(len(cases)),
-        failures=str(sum(case.find("failure") is not None for case in cases)),
-        errors="0",
-        time="0",
-        skipped=str(sum(case.find("skipped") is not None for case in cases)),
-    )
-    properties = Xml.SubElement(suite, "properties")
-    for side, run in (("old", diff.old), ("new", diff.new)):
-        for name, value in {"run": run.label, **run.facts}.items():
-            Xml.SubElement(properties, "property", name=clean(f"{side} {name}"), value=clean(value))
-    suite.extend(cases)
-    return suite
+    cases = [
+        *map(_compared, diff.pairs),
+        *_uncompared(diff.missing, lost, "missing: only the old run has it"),
+        *_uncompared(diff.other_scene, lost, "the scene changed in between"),
+        *_uncompared(diff.added, "skipped", "new: only the new run has it"),
+    ]
+    facts = {
+        f"{side} {name}": value
+        for side, run in (("old", diff.old), ("new", diff.new))
+        for name, value in {"run": run.label, **run.facts}.items()
+    }
+    return suite_of("diff", cases, facts)
 
 
-def _compared(pair: CellPair) -> Xml.Element:
+def _compared(pair: CellPair) -> Element:
     """A cell of both runs."""
     case = _case(pair.name)
     if pair.word == "worse":
@@ -69,27 +41,19 @@ def _compared(pair: CellPair) -> Xml.Element:
         ]
         kind = "status" if pair.turned else "error"
         message = f"{pair.name.label}: {told(pair)}"
-        failure = Xml.SubElement(case, "failure", message=clean(message), type=kind)
-        failure.text = clean("\n".join([versions, *rows]))
+        say(case, "failure", "\n".join([versions, *rows]), message=message, type=kind)
     elif pair.word == "better":
-        Xml.SubElement(case, "system-out").text = clean(f"better: {told(pair)}")
+        say(case, "system-out", f"better: {told(pair)}")
     return case
 
 
-def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Xml.Element]:
+def _uncompared(cells: Sequence[StoredCell], tag: str, why: str) -> list[Element]:
     """Cells that there is nothing to compare with."""
-    found = []
-    for cell in cells:
-        case = _case(cell.name)
-        Xml.SubElement(case, tag, message=clean(why))
-        found.append(case)
-    return found
+    cases = [_case(cell.name) for cell in cells]
+    for case in cases:
+        say(case, tag, message=why)
+    return cases
 
 
-def _case(name: CellName) -> Xml.Element:
-    return Xml.Element(
-        "testcase",
-        classname=clean(f"crankcheck.diff.{name.engine}.{name.variant}"),
-        name=clean(name.label),
-        time="0",
-    )
+def _case(name: CellName) -> Element:
+    return case_of(f"diff.{name.engine}.{name.variant}", name.label)

@@ -1,66 +1,43 @@
-"""A verification as JUnit XML, which continuous integration reads."""
+"""A verification as JUnit XML."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from xml.etree import ElementTree as Xml
+from xml.etree.ElementTree import Element
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.base import Finding
-from reports.output.write import clean
+from reports.output.junit import case_of, say, suite_of
 
 
-def junit(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+def suite(checked: Sequence[Checked], facts: Mapping[str, str]) -> Element:
     """One test case per cell; a cell that is shown without being gated is skipped, with its
     findings in the message."""
-    suite = Xml.Element(
-        "testsuite",
-        name="crankcheck verify",
-        tests=str(len(checked)),
-        failures=str(sum(_fails(one) and one.verdict == "out" for one in checked)),
-        errors=str(sum(_fails(one) and one.verdict == "unsupported" for one in checked)),
+    return suite_of(
+        "verify",
+        [_case(one) for one in checked],
+        facts,
         time=f"{sum(one.wall_s for one in checked):.3f}",
-        skipped=str(sum(not one.cell.gated for one in checked)),
         timestamp=facts["made"].removesuffix("+00:00"),
     )
-    properties = Xml.SubElement(suite, "properties")
-    for name, value in facts.items():
-        Xml.SubElement(properties, "property", name=clean(name), value=clean(value))
-    for one in checked:
-        _case(suite, one)
-    root = Xml.Element("testsuites")
-    root.append(suite)
-    Xml.indent(root)
-    return '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(root, "unicode") + "\n"
 
 
-def _fails(one: Checked) -> bool:
-    return one.cell.gated and one.verdict != "within"
-
-
-def _case(suite: Xml.Element, one: Checked) -> None:
+def _case(one: Checked) -> Element:
     """One cell."""
     cell = one.cell
-    case = Xml.SubElement(
-        suite,
-        "testcase",
-        classname=clean(f"crankcheck.{cell.engine}.{cell.profile}"),
-        name=clean(cell.scene.name),
-        time=f"{one.wall_s:.3f}",
-    )
+    case = case_of(f"{cell.engine}.{cell.profile}", cell.scene.name, f"{one.wall_s:.3f}")
     text = "\n".join(_line(finding) for finding in one.failures)
     head = one.failures[0].text if one.failures else "within tolerance"
     if not cell.gated:
-        Xml.SubElement(case, "skipped", message=clean(f"shown, not gated: {head}"))
+        say(case, "skipped", message=f"shown, not gated: {head}")
     elif one.verdict == "unsupported":
-        Xml.SubElement(case, "error", message=clean(head), type="unsupported").text = clean(text)
+        say(case, "error", text, message=head, type="unsupported")
     elif one.failures:
-        rule = one.failures[0].rule
-        Xml.SubElement(case, "failure", message=clean(head), type=rule).text = clean(text)
-    notes = [_line(finding) for finding in one.advice]
-    if notes:
-        Xml.SubElement(case, "system-out").text = clean("\n".join(notes))
+        say(case, "failure", text, message=head, type=one.failures[0].rule)
+    if one.advice:
+        say(case, "system-out", "\n".join(_line(finding) for finding in one.advice))
+    return case
 
 
 def _line(finding: Finding) -> str:

@@ -6,9 +6,10 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.checking import DiffRequest
-from reports.diff.junit import junit
+from reports.diff.junit import suite
 from reports.diff.markdown import markdown
 from reports.diff.terminal import show
+from reports.output.junit import junit
 from reports.output.notice import tell
 from reports.output.write import check_different, check_file, write
 from reports.results.changes.changes import compare
@@ -48,7 +49,7 @@ def run_diff(request: DiffRequest, console: Console) -> int:
         if request.output:
             write(request.output, page)
         if request.junit:
-            write(request.junit, junit(diff, request.strict))
+            write(request.junit, junit(suite(diff, request.strict)))
     finally:  # a full disk costs the file, and not the verdict with it
         if request.format == "md" and not request.output:
             console.print(page, end="", markup=False, highlight=False, soft_wrap=True)

@@ -12,13 +12,14 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from reports.cli.checking import VerifyRequest
-from reports.diff.junit import joined
+from reports.diff.junit import suite as diff_suite
 from reports.diff.terminal import show as show_diff
 from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame, parquet
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import parse
 from reports.output.json_numbers import finite
+from reports.output.junit import junit
 from reports.output.notice import tell
 from reports.output.provenance import provenance
 from reports.output.write import check_different, check_file, check_folder, write
@@ -29,7 +30,7 @@ from reports.results.changes.changes import Diff, compare
 from reports.results.changes.reading import read_run, scene_digests
 from reports.results.changes.runs import StoredRun, planned_run, run_of
 from reports.verify.all_cells import check_all
-from reports.verify.junit import junit
+from reports.verify.junit import suite
 from reports.verify.table import show
 from sim.engine import Drive
 from sim.registry import engine
@@ -186,8 +187,8 @@ def _content(name: str, results: Results) -> str:
     if name.endswith(".csv"):
         return cell_frame(results.checked).to_csv(index=False, lineterminator="\n")
     if name.endswith(".xml"):
-        text = junit(results.checked, results.facts)
-        return joined(text, results.diff) if results.diff else text
+        verification = suite(results.checked, results.facts)
+        return junit(verification, *([diff_suite(results.diff)] if results.diff else []))
     return _json(results)
 
 

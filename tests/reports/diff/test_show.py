@@ -9,10 +9,11 @@ import pytest
 from rich.console import Console
 
 from reports.diff.costs import cost_text
-from reports.diff.junit import junit
+from reports.diff.junit import suite
 from reports.diff.markdown import markdown
 from reports.diff.terminal import show
 from reports.diff.words import left_out, lines
+from reports.output.junit import junit
 from reports.results.changes.changes import Diff, compare
 from reports.results.changes.runs import CellCost, StoredCell, StoredRun
 
@@ -89,8 +90,8 @@ def test_names_can_not_break_the_terminal_or_junit(cell: Make, run: Group) -> No
     new = run(cell("[red]a", "\x07<b>", angle=2e-3))
     diff = compare(old, new)
     assert "[red]a" in shown(diff)
-    assert "&lt;b&gt;" in junit(diff)
-    assert "\x07" not in junit(diff)
+    assert "&lt;b&gt;" in junit(suite(diff))
+    assert "\x07" not in junit(suite(diff))
 
 
 def test_steps_of_a_line_are_named_each(cell: Make, run: Group) -> None:
