@@ -86,8 +86,8 @@ def remarks(diff: Diff) -> list[str]:
     failed = [pair.new.status for pair in diff.pairs if pair.failed]
     if failed:
         found.append(f"{len(failed)} of the equal ones failed in both ({few(failed)})")
-    for (engine, variant), changed in other_settings(diff).items():
-        found.append(f"settings of {engine} {variant} differ: {few(changed, 6)}")
+    for (engine, variant), changed in other_settings(diff.pairs).items():
+        found.append(f"settings of {engine} {variant} differ: {few(changed.values(), 6)}")
     return [text for text in (*found, cost_text(diff)) if text]
 
 

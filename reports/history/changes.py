@@ -2,70 +2,47 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
-from reports.history.measured import QUANTITIES, Found, Outcome, Quantity
-from reports.judge.tolerance import ROUNDING
+from reports.history.version_result import FOLLOWED, FollowedError, VersionResult, errors_of
+from reports.results.changes.changes import (
+    CellPair,
+    Diff,
+    ErrorChange,
+    compare,
+    floor,
+    other_settings,
+)
+from reports.results.changes.runs import CellName, counted
 
 STANDS_OUT = 2.0
 """The factor from which on an error that changed is told of in words."""
-SAME = 1.01
-"""Factors up to this one are no change."""
 
 
 @dataclass(frozen=True)
-class Change:
-    """One error in two versions that follow each other."""
+class FollowedChange(ErrorChange):
+    """One error of a cell in two versions that follow each other."""
 
+    cell: CellName
     before: str
     after: str
-    scene: str
-    profile: str
-    quantity: Quantity
-    was: float
-    now: float
 
     @property
-    def ratio(self) -> float:
-        """How many times better the later version is; under 1 it is worse.
-
-        What rounding explains counts as nothing: two errors below it are the same.
-        """
-        was, now = (max(error, ROUNDING) for error in (self.was, self.now))
-        if math.isinf(was) and math.isinf(now):
-            return 1.0
-        return was / now if math.isfinite(now) else 0.0
+    def about(self) -> FollowedError:
+        return FOLLOWED[self.quantity]
 
     @property
-    def factor(self) -> float:
-        """By how many times the two differ, whichever is better; at least 1."""
-        ratio = self.ratio
-        return math.inf if ratio == 0.0 else max(ratio, 1.0 / ratio)
+    def times_better(self) -> float:
+        """How many times better the later version is; under 1 it is worse."""
+        return 1.0 / self.growth if self.growth else math.inf
 
     @property
-    def word(self) -> str:
-        return "better" if self.ratio > 1.0 else "worse"
-
-
-@dataclass(frozen=True)
-class Turn:
-    """A cell that ended in another way, or was judged otherwise, than in the version before."""
-
-    before: str
-    after: str
-    was: Found
-    now: Found
-
-    @property
-    def good(self) -> bool:
-        return (self.now.status == "ok", self.now.verdict == "within") > (
-            self.was.status == "ok",
-            self.was.verdict == "within",
-        )
+    def stands_out(self) -> bool:
+        return self.changed and self.factor >= STANDS_OUT
 
 
 @dataclass(frozen=True)
@@ -76,164 +53,151 @@ class Headline:
     good: bool | None
 
 
-def steps(outcomes: Sequence[Outcome]) -> list[tuple[Outcome, Outcome]]:
-    """Each version that has a result with the one before it that has."""
-    return list(pairwise(outcome for outcome in outcomes if outcome.cells))
+@dataclass(frozen=True)
+class VersionStep:
+    """A version that has a result, with the one before it that has."""
+
+    before: VersionResult
+    after: VersionResult
+
+    @cached_property
+    def diff(self) -> Diff:
+        return compare(self.before.run, self.after.run)
+
+    @cached_property
+    def changes(self) -> tuple[FollowedChange, ...]:
+        """Every error that is followed, of the cells that ended well in both versions."""
+        return tuple(change for pair in self.diff.pairs for change in self._followed(pair))
+
+    def _followed(self, pair: CellPair) -> Iterator[FollowedChange]:
+        if not (pair.old.ok and pair.new.ok):
+            return
+        was, now = errors_of(pair.old), errors_of(pair.new)
+        for name, error in FOLLOWED.items():
+            if name in was or name in now:
+                yield FollowedChange(
+                    quantity=name,
+                    old=was.get(name, math.inf),
+                    new=now.get(name, math.inf),
+                    floor=floor(error.tolerance, pair.name.steps_per_turn),
+                    cell=pair.name,
+                    before=self.before.version,
+                    after=self.after.version,
+                )
 
 
-def changes(before: Outcome, after: Outcome) -> list[Change]:
-    """Every error that both versions have."""
-    return [
-        Change(before.version, after.version, now.scene, now.profile, quantity, *pair)
-        for was, now in _pairs(before, after)
-        for quantity in QUANTITIES
-        if (pair := _both(was, now, quantity))
-    ]
+def steps(results: Sequence[VersionResult]) -> list[VersionStep]:
+    """The steps from version to version."""
+    return [VersionStep(*pair) for pair in pairwise(each for each in results if each.cells)]
 
 
-def turns(before: Outcome, after: Outcome) -> list[Turn]:
-    """Every cell that ended or was judged otherwise."""
-    return [
-        Turn(before.version, after.version, was, now)
-        for was, now in _pairs(before, after)
-        if (was.status, was.verdict) != (now.status, now.verdict)
-    ]
-
-
-def other_settings(before: Outcome, after: Outcome) -> list[str]:
-    """The settings that the engine held otherwise in some cell: not the version alone changed."""
-    found = set()
-    for was, now in _pairs(before, after):
-        if not was.errors or not now.errors:  # what never ran holds what it was given
-            continue
-        for name in was.settings.keys() & now.settings.keys():
-            if json.dumps(was.settings[name]) != json.dumps(now.settings[name]):
-                found.add(name)
-    return sorted(found)
-
-
-def headlines(before: Outcome, after: Outcome) -> list[Headline]:
+def headlines(step: VersionStep) -> list[Headline]:
     """What stands out of one step, the worst first; one line where nothing does."""
-    lines = [
-        *_ended(turns(before, after)),
-        *_judged(turns(before, after)),
-        *_factors(changes(before, after)),
-    ]
+    before, after = step.before.version, step.after.version
+    lines = [*_ended(step), *_judged(step), *_factors(step.changes)]
     lines.sort(key=lambda line: line.good is True)  # stable: bad news, then the good
     if not lines:
-        lines = [Headline(_calm(before, after), None)]
-    if held := other_settings(before, after):
-        text = f"{after.version} holds other settings than {before.version}: {', '.join(held)}"
+        lines = [Headline(_calm(step), None)]
+    # What never ran holds what it was given.
+    held = other_settings(pair for pair in step.diff.pairs if pair.changes)
+    if names := sorted({name for settings in held.values() for name in settings}):
+        text = f"{after} holds other settings than {before}: {', '.join(names)}"
         lines.append(Headline(text, None))
     return lines
 
 
-def _calm(before: Outcome, after: Outcome) -> str:
+def _calm(step: VersionStep) -> str:
     """That nothing stands out, and how much the two differ all the same."""
-    factors = [one.factor for one in changes(before, after)]
+    before, after = step.before.version, step.after.version
+    if not step.changes:
+        return f"{after} and {before} have no error in common to compare"
+    factors = [change.factor for change in step.changes if change.changed]
     if not factors:
-        return f"{after.version} and {before.version} have no error in common to compare"
-    if max(factors) <= SAME:
-        return f"{after.version} differs from {before.version} in no error"
-    most = times(max(factors))
-    return f"{after.version} differs from {before.version} by {most} times at most in any error"
+        return f"{after} differs from {before} in no error by more than a tenth"
+    return f"{after} differs from {before} by {times(max(factors))} times at most in any error"
 
 
-def largest(found: Iterable[Change]) -> Change | None:
+def largest(changes: Iterable[FollowedChange]) -> FollowedChange | None:
     """The change by the largest factor; of two alike the worse one."""
-    return max(found, key=lambda one: (one.factor, one.ratio < 1.0), default=None)
+    return max(
+        changes, key=lambda each: (each.changed, each.factor, each.growth > 1.0), default=None
+    )
 
 
-def _pairs(before: Outcome, after: Outcome) -> list[tuple[Found, Found]]:
-    """The cells that both versions were asked for."""
-    known = {(cell.scene, cell.profile): cell for cell in before.cells}
-    found = [(known.get((cell.scene, cell.profile)), cell) for cell in after.cells]
-    return [(was, now) for was, now in found if was is not None]
-
-
-def _both(was: Found, now: Found, quantity: Quantity) -> tuple[float, float] | None:
-    """The errors of a quantity in both, where both have it."""
-    if quantity.name not in was.errors or quantity.name not in now.errors:
-        return None
-    return was.errors[quantity.name], now.errors[quantity.name]
-
-
-def _ended(found: Sequence[Turn]) -> list[Headline]:
-    """Runs that end in another way: by profile and by how they end, one line each."""
-    groups: dict[tuple[str, str, str], list[Turn]] = {}
-    for turn in found:
-        if turn.was.status != turn.now.status:
-            key = (turn.now.profile, turn.was.status, turn.now.status)
-            groups.setdefault(key, []).append(turn)
+def _ended(step: VersionStep) -> list[Headline]:
+    """Runs that end well in one version alone: by profile and by how they end, one line each."""
+    groups: dict[tuple[str, str, str], list[CellPair]] = {}
+    for pair in step.diff.pairs:
+        if pair.turned:
+            key = (pair.name.variant, pair.old.status, pair.new.status)
+            groups.setdefault(key, []).append(pair)
     lines = []
     for (profile, was, now), members in groups.items():
         first = members[0]
-        more = f" and {_count(len(members) - 1, 'more scene')}" if len(members) > 1 else ""
-        why = f": {first.now.reason[:120]}" if first.now.reason else ""
-        lines.append(
-            Headline(
-                f"{first.after} ends as {now}, {first.before} as {was}, in {first.now.scene}{more} "
-                f"{called(profile)}{why}",
-                first.good,
-            )
+        more = f" and {counted(len(members) - 1, 'more scene')}" if len(members) > 1 else ""
+        why = f": {first.new.reason[:120]}" if first.new.reason else ""
+        text = (
+            f"{step.after.version} ends as {now}, {step.before.version} as {was}, in "
+            f"{first.name.scene}{more} {called(profile)}{why}"
         )
+        lines.append(Headline(text, first.word == "better"))
     return lines
 
 
-def _judged(found: Sequence[Turn]) -> list[Headline]:
+def _judged(step: VersionStep) -> list[Headline]:
     """Cells that come within tolerance, or leave it: one line for each profile and direction."""
-    groups: dict[tuple[str, str], list[Turn]] = {}
-    for turn in found:
-        if turn.was.status == turn.now.status == "ok":
-            groups.setdefault((turn.now.profile, turn.now.verdict), []).append(turn)
+    groups: dict[tuple[str, str], list[CellPair]] = {}
+    for pair in step.diff.pairs:
+        if pair.old.ok and pair.new.ok and pair.old.verdict != pair.new.verdict:
+            groups.setdefault((pair.name.variant, pair.new.verdict), []).append(pair)
     words = {"within": ("within", "out of it"), "out": ("out of", "within it")}
     return [
         Headline(
-            f"{members[0].after} is {words[verdict][0]} tolerance where {members[0].before} was "
-            f"{words[verdict][1]}: {_scenes(members)} {called(profile)}",
+            f"{step.after.version} is {words[verdict][0]} tolerance where {step.before.version} "
+            f"was {words[verdict][1]}: {_scenes(members)} {called(profile)}",
             verdict == "within",
         )
         for (profile, verdict), members in groups.items()
     ]
 
 
-def _scenes(members: Sequence[Turn]) -> str:
+def _scenes(members: Sequence[CellPair]) -> str:
     """One scene by its name, several by their number."""
-    return members[0].now.scene if len(members) == 1 else _count(len(members), "scene")
+    return members[0].name.scene if len(members) == 1 else counted(len(members), "scene")
 
 
-def _factors(found: Sequence[Change]) -> list[Headline]:
+def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:
     """The largest change of each quantity that stands out, by profile and direction.
 
     Rates are told of only where no place tells it: they follow from the places.
     """
-    groups: dict[tuple[str, str], list[Change]] = {}
-    for one in found:
-        if one.factor >= STANDS_OUT:
-            groups.setdefault((one.profile, one.word), []).append(one)
+    groups: dict[tuple[str, str], list[FollowedChange]] = {}
+    for change in changes:
+        if change.stands_out:
+            groups.setdefault((change.cell.variant, change.word()), []).append(change)
     lines: list[tuple[bool, float, Headline]] = []
     for (profile, word), members in groups.items():
-        shown = [one for one in members if not one.quantity.rate] or members
-        for quantity in QUANTITIES:
-            alike = [one for one in shown if one.quantity is quantity]
+        shown = [change for change in members if not change.about.rate] or members
+        for quantity in FOLLOWED:
+            alike = [change for change in shown if change.quantity == quantity]
             if top := largest(alike):
-                every = [o for o in found if o.profile == profile and o.quantity is quantity]
-                able = sum(max(one.was, one.now) > ROUNDING for one in every)
+                every = [c for c in changes if (c.cell.variant, c.quantity) == (profile, quantity)]
+                able = sum(max(change.old, change.new) > change.floor for change in every)
                 line = Headline(_told(top, len(alike), able), word == "better")
                 lines.append((profile != "as-shipped", -top.factor, line))
     # The settings as shipped are what most users run: theirs come first.
     return [line for *_, line in sorted(lines, key=lambda entry: entry[:2])]
 
 
-def _told(top: Change, alike: int, scenes: int) -> str:
+def _told(top: FollowedChange, alike: int, scenes: int) -> str:
     """The largest change of a quantity in words, and how many scenes share it."""
     share = ""
     if scenes > 1:
         share = f"; by {STANDS_OUT:g} or more in {alike} of {scenes} scenes"
     return (
-        f"{top.after} is {top.word} than {top.before} by {times(top.factor)} times on the "
-        f"{top.quantity.name} of {top.scene} {called(top.profile)} "
-        f"({top.was:.1e} to {top.now:.1e} {top.quantity.unit}{share})"
+        f"{top.after} is {top.word()} than {top.before} by {times(top.factor)} times on the "
+        f"{top.quantity} of {top.cell.scene} {called(top.cell.variant)} "
+        f"({top.old:.1e} to {top.new:.1e} {top.about.unit}{share})"
     )
 
 
@@ -249,5 +213,9 @@ def times(factor: float) -> str:
     return f"{float(f'{factor:.3g}'):.0f}" if factor >= 10.0 else f"{factor:.2g}"
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}" + ("" if number == 1 else "s")
+def by_cell(results: Sequence[VersionResult]) -> dict[tuple[str, CellName], list[FollowedChange]]:
+    """The changes of each version against the one before it, cell by cell."""
+    changes: dict[tuple[str, CellName], list[FollowedChange]] = {}
+    for change in (change for step in steps(results) for change in step.changes):
+        changes.setdefault((change.after, change.cell), []).append(change)
+    return changes

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from reports.history.changes import Change, changes, headlines, steps
-from reports.history.measured import QUANTITIES, Found, Outcome
-from reports.history.overview import overview
+from reports.history.changes import FollowedChange, by_cell, headlines, steps
+from reports.history.overview import overview, profiles_of
 from reports.history.table import compared
+from reports.history.version_result import FOLLOWED, VersionResult, errors_of
 from reports.output.markdown import plain, table
+from reports.results.changes.runs import StoredCell
 
 COLUMNS = (
     "engine",
@@ -29,93 +29,75 @@ COLUMNS = (
 )
 
 
-def table_text(outcomes: Sequence[Outcome]) -> str:
+def table_text(results: Sequence[VersionResult]) -> str:
     """history.csv: one line per version, scene, profile and quantity; a version without a result
     and a cell without errors are one line each, with the reason."""
-    found = _by_cell(outcomes)
-    lines: list[dict[str, object]] = []
-    for outcome in outcomes:
-        here: dict[str, object] = {"engine": outcome.one.engine, "version": outcome.version}
-        if not outcome.cells:
-            lines.append(here | {"status": "not measured", "reason": outcome.reason})
-        for cell in outcome.cells:
-            lines += [here | line for line in _lines(cell, found, outcome.version)]
+    changes = by_cell(results)
     buffer = io.StringIO()
     writer = csv.DictWriter(buffer, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(lines)
+    for result in results:
+        here = {"engine": result.asked.engine, "version": result.version}
+        if not result.cells:
+            writer.writerow(here | {"status": "not measured", "reason": result.reason})
+        for cell in result.cells:
+            lines = list(_lines(cell, changes.get((result.version, cell.name), [])))
+            about = {
+                "scene": cell.name.scene,
+                "profile": cell.name.variant,
+                "verdict": cell.verdict,
+                "status": cell.status,
+                "reason": cell.reason,
+            }
+            writer.writerows(here | about | line for line in lines or [{}])
     return buffer.getvalue()
 
 
-def page(outcomes: Sequence[Outcome], footer: str) -> str:
+def _lines(cell: StoredCell, changes: Sequence[FollowedChange]) -> Iterator[dict[str, object]]:
+    """What the lines of one cell say of each error."""
+    errors = errors_of(cell)
+    changed = {change.quantity: change for change in changes}
+    for name in (name for name in FOLLOWED if name in errors or name in changed):
+        line: dict[str, object] = {"quantity": name, "unit": FOLLOWED[name].unit}
+        line["error"] = errors.get(name, "")
+        if change := changed.get(name):
+            line |= {"version_before": change.before, "times_better": change.times_better}
+        yield line
+
+
+def page(results: Sequence[VersionResult], footer: str) -> str:
     """history.md: versions, what stands out, and the errors of every scene."""
-    engine = outcomes[0].one.engine
-    heads, rows = overview(outcomes)
-    parts = [f"# {engine} {', '.join(outcome.version for outcome in outcomes)}", ""]
+    heads, rows = overview(results)
+    parts = [f"# {results[0].asked.engine} {', '.join(result.version for result in results)}", ""]
     parts.append(table([" ".join(head.split()) for head in heads], rows))
-    for before, after in steps(outcomes):
-        parts += ["", f"## {after.version} against {before.version}", ""]
-        parts += [f"- {plain(line.text)}" for line in headlines(before, after)]
-    found = _by_cell(outcomes)
-    measured = [outcome for outcome in outcomes if outcome.cells]
-    for profile in dict.fromkeys(cell.profile for outcome in measured for cell in outcome.cells):
-        parts += ["", f"## Profile {profile}, largest errors", ""]
-        names = [f"{quantity.name} [{quantity.unit}]" for quantity in QUANTITIES]
+    for step in steps(results):
+        parts += ["", f"## {step.after.version} against {step.before.version}", ""]
+        parts += [f"- {plain(line.text)}" for line in headlines(step)]
+    changes = by_cell(results)
+    names = [f"{name} [{error.unit}]" for name, error in FOLLOWED.items()]
+    for profile in profiles_of(results):
+        cells = [(r, c) for r in results for c in r.cells if c.name.variant == profile]
+        scenes = list(dict.fromkeys(cell.name.scene for _, cell in cells))
+        cells.sort(key=lambda each: scenes.index(each[1].name.scene))
         rows = [
-            _row(cell, outcome.version, found)
-            for scene in dict.fromkeys(c.scene for o in measured for c in o.cells)
-            for outcome in measured
-            for cell in outcome.cells
-            if (cell.scene, cell.profile) == (scene, profile)
+            [
+                cell.name.scene,
+                result.version,
+                *_numbers(cell),
+                _last(cell, changes.get((result.version, cell.name), [])),
+            ]
+            for result, cell in cells
         ]
+        parts += ["", f"## Profile {profile}, largest errors", ""]
         parts.append(table(["scene", "version", *names, "against the version before"], rows))
     return "\n".join([*parts, "", "  \n".join(map(plain, footer.splitlines())), ""])
 
 
-Key = tuple[str, str, str]
+def _numbers(cell: StoredCell) -> list[str]:
+    errors = errors_of(cell)
+    return [f"{errors[name]:.2e}" if name in errors else "-" for name in FOLLOWED]
 
 
-def _by_cell(outcomes: Sequence[Outcome]) -> dict[Key, list[Change]]:
-    """The changes by version, scene and profile."""
-    found: dict[Key, list[Change]] = {}
-    for before, after in steps(outcomes):
-        for change in changes(before, after):
-            found.setdefault((change.after, change.scene, change.profile), []).append(change)
-    return found
-
-
-def _lines(cell: Found, found: dict[Key, list[Change]], version: str) -> list[dict[str, object]]:
-    """The lines of one cell."""
-    about: dict[str, object] = {
-        "scene": cell.scene,
-        "profile": cell.profile,
-        "verdict": cell.verdict,
-        "status": cell.status,
-        "reason": cell.reason,
-    }
-    changed = {c.quantity.name: c for c in found.get((version, cell.scene, cell.profile), [])}
-    lines = []
-    for quantity in QUANTITIES:
-        if quantity.name not in cell.errors:
-            continue
-        change = changed.get(quantity.name)
-        lines.append(
-            about
-            | {
-                "quantity": quantity.name,
-                "unit": quantity.unit,
-                "error": cell.errors[quantity.name],
-                "version_before": change.before if change else "",
-                "times_better": change.ratio if change else "",
-            }
-        )
-    return lines or [about]
-
-
-def _row(cell: Found, version: str, found: dict[Key, list[Change]]) -> list[str]:
-    """One cell as a row of the page."""
-    numbers = [cell.errors.get(quantity.name, math.nan) for quantity in QUANTITIES]
-    texts = ["-" if math.isnan(number) else f"{number:.2e}" for number in numbers]
-    changed = found.get((version, cell.scene, cell.profile), [])
-    last = compared(changed).plain if cell.status == "ok" else f"{cell.status}: {cell.reason}"
-    return [cell.scene, version, *texts, last]
+def _last(cell: StoredCell, changes: Sequence[FollowedChange]) -> str:
+    """The largest change of a cell, or how it ended."""
+    return compared(changes).plain if cell.ok else f"{cell.status}: {cell.reason}"

@@ -50,7 +50,7 @@ class NotMeasuredError(Exception):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class EngineVersion:
     """An engine at a version. Its packages are called as the engine is."""
 
     engine: str
@@ -65,7 +65,7 @@ class Wanted:
         return f"{self.engine}=={self.version}"
 
 
-def wanted(engine: str, texts: Sequence[str]) -> list[Wanted]:
+def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
     """The versions that a user named, each once, the oldest first.
 
     Raises
@@ -73,7 +73,7 @@ def wanted(engine: str, texts: Sequence[str]) -> list[Wanted]:
     CrankcheckError
         A text that is no version.
     """
-    found: dict[Version, Wanted] = {}
+    found: dict[Version, EngineVersion] = {}
     for text in texts:
         try:
             version = Version(text)
@@ -82,7 +82,7 @@ def wanted(engine: str, texts: Sequence[str]) -> list[Wanted]:
                 f"version {text[:80]!r}: not a version number; name released versions of "
                 f"{engine}, such as 3.6.0"
             ) from None
-        found.setdefault(version, Wanted(engine, version))
+        found.setdefault(version, EngineVersion(engine, version))
     return [found[version] for version in sorted(found)]
 
 
@@ -96,7 +96,7 @@ def python_of(folder: Path) -> Path:
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
-def place(cache: Path, one: Wanted) -> Path:
+def place(cache: Path, one: EngineVersion) -> Path:
     """The folder of an environment: another for every Python and every numpy."""
     python = platform.python_version()
     build = (sysconfig.get_config_var("SOABI"), platform.machine(), sys.base_prefix)
@@ -110,7 +110,7 @@ def held_numpy() -> str:
     return installed_version("numpy")
 
 
-def commands(uv: str | None, folder: Path, one: Wanted, constraint: Path) -> list[list[str]]:
+def commands(uv: str | None, folder: Path, one: EngineVersion, constraint: Path) -> list[list[str]]:
     """What makes an environment and installs an engine, with its own dependencies, into it.
 
     Wheels only: an engine that has to be compiled first would be another one on every machine.
@@ -133,7 +133,7 @@ def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]
     return {name: text for name, text in variables.items() if name.upper() not in LEAKS}
 
 
-def ready(cache: Path, one: Wanted, uv: str | None, run: Runner) -> Path:
+def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
     """The interpreter of the version's environment, which is made if it is not there yet.
 
     An environment counts as there once it is complete: what a killed install left is made anew.
@@ -162,7 +162,7 @@ def ready(cache: Path, one: Wanted, uv: str | None, run: Runner) -> Path:
     return python
 
 
-def _check(python: Path, one: Wanted, run: Runner) -> None:
+def _check(python: Path, one: EngineVersion, run: Runner) -> None:
     """Ask the new interpreter for the version that it finds. Raises NotMeasuredError."""
     question = f"from importlib.metadata import version; print(version({one.engine!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)

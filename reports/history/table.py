@@ -10,18 +10,16 @@ from rich.table import Table
 from rich.text import Text
 
 from reports.history.changes import (
-    SAME,
-    STANDS_OUT,
-    Change,
-    Headline,
-    changes,
+    FollowedChange,
+    by_cell,
     headlines,
     largest,
     steps,
     times,
 )
-from reports.history.measured import Found, Outcome, Quantity
-from reports.history.overview import overview
+from reports.history.overview import overview, profiles_of
+from reports.history.version_result import VersionResult, errors_of
+from reports.results.changes.runs import CellName, StoredCell
 
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     "angle\nrad": ("angle",),
@@ -38,33 +36,30 @@ LINES = 9
 HEADLINES = 10
 
 
-def show(console: Console, outcomes: Sequence[Outcome], footer: str) -> None:
+def show(console: Console, results: Sequence[VersionResult], footer: str) -> None:
     """Print the whole history, what stands out first."""
-    _versions(console, outcomes)
-    _headlines(console, outcomes)
-    measured = [outcome for outcome in outcomes if outcome.cells]
-    for profile in dict.fromkeys(cell.profile for outcome in measured for cell in outcome.cells):
-        _profile(console, profile, measured)
+    _versions(console, results)
+    _headlines(console, results)
+    for profile in profiles_of(results):
+        _profile(console, profile, [result for result in results if result.cells])
     console.print(Text(footer, "dim"), highlight=False)
 
 
-def _versions(console: Console, outcomes: Sequence[Outcome]) -> None:
+def _versions(console: Console, results: Sequence[VersionResult]) -> None:
     """One row per version; one that could not be measured shows why."""
-    heads, rows = overview(outcomes)
+    heads, rows = overview(results)
     table = _plain()
     for head in heads:
         table.add_column(head, overflow="fold", no_wrap=head == "version")
-    for outcome, row in zip(outcomes, rows, strict=True):
-        table.add_row(*row, style="" if outcome.cells else "red")
+    for result, row in zip(results, rows, strict=True):
+        table.add_row(*row, style="" if result.cells else "red")
     console.print(table, "")
 
 
-def _headlines(console: Console, outcomes: Sequence[Outcome]) -> None:
+def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
     """What stands out between the versions."""
     styles = {True: "green", False: "bold red", None: ""}
-    lines: list[Headline] = []
-    for before, after in steps(outcomes):
-        lines += headlines(before, after)
+    lines = [line for step in steps(results) for line in headlines(step)]
     lines.sort(key=lambda line: line.good is not False)  # what became worse goes first
     for line in lines[:HEADLINES]:
         grid = Table.grid(padding=0)
@@ -80,21 +75,17 @@ def _headlines(console: Console, outcomes: Sequence[Outcome]) -> None:
         console.print()
 
 
-def _profile(console: Console, profile: str, measured: Sequence[Outcome]) -> None:
+def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) -> None:
     """The scenes of one profile that changed most, a row for each version."""
     cells = {
-        (outcome.version, cell.scene): cell
-        for outcome in measured
-        for cell in outcome.cells
-        if cell.profile == profile
+        (result.version, cell.name): cell
+        for result in measured
+        for cell in result.cells
+        if cell.name.variant == profile
     }
-    changed = [
-        change
-        for before, after in steps(measured)
-        for change in changes(before, after)
-        if change.profile == profile
-    ]
-    ranked = ranking(list(dict.fromkeys(scene for _, scene in cells)), changed)
+    changes = {key: found for key, found in by_cell(measured).items() if key in cells}
+    changed = [change for found in changes.values() for change in found]
+    ranked = ranking(list(dict.fromkeys(name for _, name in cells)), changed)
     shown = ranked[: max(1, LINES // max(1, len(measured)))]
     heads = tuple(COLUMNS) if console.width >= WIDE else NARROW
     table = _plain()
@@ -104,74 +95,72 @@ def _profile(console: Console, profile: str, measured: Sequence[Outcome]) -> Non
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
     table.add_column("against the\nversion before", overflow="fold", min_width=14)
-    for scene in shown:
-        for number, outcome in enumerate(measured):
-            here = [c for c in changed if (c.scene, c.after) == (scene, outcome.version)]
-            cell = cells.get((outcome.version, scene))
-            name = Text("" if number else scene)
-            table.add_row(name, outcome.version, *_row(cell, here, heads, bool(number)))
+    for name in shown:
+        for number, result in enumerate(measured):
+            key = (result.version, name)
+            numbers = _row(cells.get(key), changes.get(key, []), heads, bool(number))
+            table.add_row(Text("" if number else name.scene), result.version, *numbers)
     console.print(table, "")
 
 
-def ranking(scenes: Sequence[str], changed: Sequence[Change]) -> list[str]:
-    """The scenes: those that became worse first, then by the largest factor of any error; the
+def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> list[CellName]:
+    """The cells: those that became worse first, then by the largest factor of any error; the
     largest errors first where nothing changed."""
 
-    def rank(scene: str) -> tuple[float, float, float]:
-        here = [c for c in changed if c.scene == scene and not c.quantity.rate]
-        worse = max((c.factor for c in changed if c.scene == scene and c.ratio < 1.0), default=1.0)
-        most = max((c.factor for c in here), default=1.0)
-        error = max((c.now for c in here), default=0.0)
-        return -worse if worse >= STANDS_OUT else 0.0, -most if most > SAME else 0.0, -error
+    def rank(name: CellName) -> tuple[float, float, float]:
+        here = [change for change in changes if change.cell == name]
+        places = [change for change in here if not change.about.rate]
+        worse = max((c.factor for c in here if c.stands_out and c.word() == "worse"), default=0.0)
+        most = max((c.factor for c in places if c.changed), default=0.0)
+        return -worse, -most, -max((c.new for c in places), default=0.0)
 
-    return sorted(scenes, key=rank)
+    return sorted(names, key=rank)
 
 
-def _part(shown: Sequence[str], ranked: Sequence[str], changed: Sequence[Change]) -> str:
+def _part(
+    shown: Sequence[CellName], ranked: Sequence[CellName], changes: Sequence[FollowedChange]
+) -> str:
     """Which of the scenes a table shows."""
     if len(shown) == len(ranked):
         return "largest errors"
-    by = "changed most" if any(c.factor > SAME for c in changed) else "have the largest errors"
+    by = "changed most" if any(change.changed for change in changes) else "have the largest errors"
     return f"the {len(shown)} of {len(ranked)} scenes that {by} (-o DIR writes all)"
 
 
 def _row(
-    cell: Found | None, changed: Sequence[Change], heads: Sequence[str], later: bool
+    cell: StoredCell | None, changes: Sequence[FollowedChange], heads: Sequence[str], later: bool
 ) -> list[Text]:
     """The numbers of a version, those that changed coloured, and the largest change in words."""
     if cell is None:
         return [Text("-")] * len(heads) + [Text("")]
-    numbers = []
+    errors, numbers = errors_of(cell), []
     for head in heads:
-        known = [cell.errors[name] for name in COLUMNS[head] if name in cell.errors]
-        top = largest(change for change in changed if change.quantity.name in COLUMNS[head])
+        known = [errors[name] for name in COLUMNS[head] if name in errors]
+        top = largest(change for change in changes if change.quantity in COLUMNS[head])
         numbers.append(Text(f"{max(known):.1e}" if known else "-", _style(top)))
-    if cell.status != "ok":
+    if not cell.ok:
         return [*numbers, Text(cell.status, "red")]
-    return [*numbers, compared(changed) if later else Text("")]
+    return [*numbers, compared(changes) if later else Text("")]
 
 
-def compared(changed: Sequence[Change]) -> Text:
+def compared(changes: Sequence[FollowedChange]) -> Text:
     """The largest change of a cell in two or three words."""
-    top = largest(change for change in changed if not change.quantity.rate)
-    top = top if top and top.factor > SAME else largest(changed)
+    top = largest(change for change in changes if not change.about.rate)
+    top = top if top and top.changed else largest(changes)
     if top is None:
         return Text("")
-    if top.factor <= SAME:
+    if not top.changed:
         return Text("same", "dim")
     factor = "" if isinf(top.factor) else f"{times(top.factor)} x "
-    return Text(f"{factor}{top.word} ({_short(top.quantity)})", _style(top))
+    quantity = top.quantity.removeprefix("pin ").removeprefix("slider ")
+    return Text(f"{factor}{top.word()} ({quantity})", _style(top))
 
 
-def _short(quantity: Quantity) -> str:
-    return quantity.name.removeprefix("pin ").removeprefix("slider ")
-
-
-def _style(change: Change | None) -> str:
+def _style(change: FollowedChange | None) -> str:
     """Green and red for what stands out."""
-    if change is None or change.factor < STANDS_OUT:
+    if change is None or not change.stands_out:
         return ""
-    return "green" if change.ratio > 1.0 else "bold red"
+    return "green" if change.word() == "better" else "bold red"
 
 
 def _plain() -> Table:

@@ -12,7 +12,12 @@ from functools import partial
 from pathlib import Path
 
 from models.errors import CrankcheckError
-from reports.history.environments import NotMeasuredError, Wanted, clean_variables, held_numpy
+from reports.history.environments import (
+    EngineVersion,
+    NotMeasuredError,
+    clean_variables,
+    held_numpy,
+)
 from reports.history.install_errors import shortened
 from reports.output.provenance import crankcheck_version, processor
 from reports.workers.programs import Ended, Runner, run_child
@@ -68,7 +73,7 @@ def key_of(what: Iterable[object]) -> str:
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
 
 
-def place(cache: Path, one: Wanted, key: str) -> Path:
+def place(cache: Path, one: EngineVersion, key: str) -> Path:
     """The folder of the result of a version."""
     return cache / "results" / f"{one.name}-{key}"
 
@@ -80,7 +85,7 @@ def kept(folder: Path) -> bool:
 
 def measure(
     folder: Path,
-    one: Wanted,
+    one: EngineVersion,
     python: Path,
     arguments: Sequence[str],
     run: Runner = patient,

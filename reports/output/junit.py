@@ -26,16 +26,15 @@ def suite_of(
 ) -> Xml.Element:
     """Cases with their counts, and where they come from."""
     count = Counter(told.tag for case in cases for told in case)
-    suite = Xml.Element(
-        "testsuite",
-        name=f"crankcheck {name}",
-        tests=str(len(cases)),
-        failures=str(count["failure"]),
-        errors=str(count["error"]),
-        time=time,
-        skipped=str(count["skipped"]),
-        **attributes,
-    )
+    heads = {
+        "name": f"crankcheck {name}",
+        "tests": str(len(cases)),
+        "failures": str(count["failure"]),
+        "errors": str(count["error"]),
+        "time": time,
+        "skipped": str(count["skipped"]),
+    }
+    suite = Xml.Element("testsuite", heads | attributes)
     properties = Xml.SubElement(suite, "properties")
     for fact, value in facts.items():
         Xml.SubElement(properties, "property", name=clean(fact), value=clean(value))

@@ -14,10 +14,10 @@ from reports.cli.checking import HistoryRequest, VerifyRequest
 from reports.cli.commands import verify
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
-from reports.history.environments import NotMeasuredError, Wanted, ready, uv_here, wanted
-from reports.history.measured import Outcome, read, told_version
+from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
 from reports.history.table import show
 from reports.history.verification import kept, key_of, measure, place
+from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
@@ -46,24 +46,24 @@ def run_history(request: HistoryRequest, console: Console, progress: Console) ->
     _check_outputs(request, versions)
     uv = uv_here()
     # The files of a result hold the digests of the scenes' texts, by which they are compared later.
-    key, outcomes = key_of([*cells, scene_digests(request.scenes)]), []
+    key, results = key_of([*cells, scene_digests(request.scenes)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("", total=2 * len(versions))
         for one in versions:
 
-            def tell(what: str, steps: int = 0, one: Wanted = one) -> None:
+            def tell(what: str, steps: int = 0, one: EngineVersion = one) -> None:
                 bar.update(task, advance=steps, description=f"{one.engine} {one.version}: {what}")
 
-            outcomes.append(_outcome(request, one, place(cache, one, key), cache, uv, tell))
-            bar.update(task, completed=2 * len(outcomes))
-    footer = _footer(request, cells, outcomes)
+            results.append(_measured(request, one, place(cache, one, key), cache, uv, tell))
+            bar.update(task, completed=2 * len(results))
+    footer = _footer(request, cells, results)
     try:
-        _write(request, outcomes, footer)
+        _write(request, results, footer)
     finally:
-        show(console, outcomes, footer)
-    missing = [outcome for outcome in outcomes if not outcome.cells]
-    for outcome in missing:
-        text = f"crankcheck: {request.engine} {outcome.version}: {outcome.reason}"
+        show(console, results, footer)
+    missing = [result for result in results if not result.cells]
+    for result in missing:
+        text = f"crankcheck: {request.engine} {result.version}: {result.reason}"
         progress.print(text, markup=False, soft_wrap=True)
     return 2 if missing else 0
 
@@ -92,14 +92,14 @@ def _arguments(request: HistoryRequest) -> list[str]:
     return [*found, "--", *request.scenes]
 
 
-def _outcome(
+def _measured(
     request: HistoryRequest,
-    one: Wanted,
+    one: EngineVersion,
     folder: Path,
     cache: Path,
     uv: str | None,
     tell: Callable[..., None],
-) -> Outcome:
+) -> VersionResult:
     """The result of one version in ``folder``, kept from before or made now; or the reason why
     there is none."""
     with (
@@ -114,9 +114,8 @@ def _outcome(
                 tell("verifying", 1)
                 measure(folder, one, python, _arguments(request))
         except NotMeasuredError as error:
-            return Outcome(one, reason=str(error))
-        told = told_version(folder, one.engine)
-        return Outcome(one, read(folder), folder=folder, kept=there, calls_itself=told)
+            return VersionResult(one, reason=str(error))
+        return VersionResult(one, read_version(folder), folder=folder, kept=there)
 
 
 @contextmanager
@@ -131,7 +130,7 @@ def _in_cache(cache: Path) -> Iterator[None]:
         ) from None
 
 
-def _check_outputs(request: HistoryRequest, versions: Sequence[Wanted]) -> None:
+def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -> None:
     """Refuse outputs that can not be written, before anything is installed."""
     if request.folder is None:
         return
@@ -140,26 +139,28 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[Wanted]) -> None:
         check_folder(request.folder / one.name, "-o", verify.IN_FOLDER)
 
 
-def _write(request: HistoryRequest, outcomes: Sequence[Outcome], footer: str) -> None:
+def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
     """The verification of each version in a folder of its own, and the history of all."""
     if request.folder is None:
         return
-    for outcome in outcomes:
-        for path in sorted(outcome.folder.iterdir()) if outcome.folder else ():
-            write(request.folder / outcome.one.name / path.name, path.read_bytes())
-    write(request.folder / FILES[0], table_text(outcomes))
-    write(request.folder / FILES[1], page(outcomes, footer))
+    for result in results:
+        for path in sorted(result.folder.iterdir()) if result.folder else ():
+            write(request.folder / result.asked.name / path.name, path.read_bytes())
+    write(request.folder / FILES[0], table_text(results))
+    write(request.folder / FILES[1], page(results, footer))
 
 
-def _footer(request: HistoryRequest, cells: Sequence[Cell], outcomes: Sequence[Outcome]) -> str:
+def _footer(
+    request: HistoryRequest, cells: Sequence[Cell], results: Sequence[VersionResult]
+) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
     alike = {round(cell.steps_per_turn, 3) for cell in cells}
     step = f"{first.steps_per_turn:.4g} steps a turn"
     if len(alike) > 1:
         step = f"dt {first.dt_s:.4g} s"
-    measured = [outcome for outcome in outcomes if outcome.folder]
-    names = " ".join(outcome.version for outcome in measured) or "none"
+    measured = [result for result in results if result.folder]
+    names = " ".join(result.version for result in measured) or "none"
     facts = provenance({request.engine: names})
     lines = [
         "Largest errors against the closed form at the commanded time; L longest link, w driver's "
@@ -169,5 +170,5 @@ def _footer(request: HistoryRequest, cells: Sequence[Cell], outcomes: Sequence[O
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     if request.folder is None and measured:
-        lines.append("Results: " + ", ".join(str(outcome.folder) for outcome in measured))
+        lines.append("Results: " + ", ".join(str(result.folder) for result in measured))
     return "\n".join(lines)

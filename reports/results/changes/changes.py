@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import CrankcheckError
 from reports.judge.tolerance import DEFAULTS, ROUNDING
 from reports.results.changes.gone import refuse_gone
-from reports.results.changes.runs import CellName, StoredCell, StoredRun
+from reports.results.changes.runs import QUANTITIES, CellName, StoredCell, StoredRun
 
 FACTOR = 1.1
 """How much an error may grow before it is called worse."""
@@ -44,7 +44,16 @@ class ErrorChange:
             return 1.0
         return (self.new + self.floor) / (self.old + self.floor)
 
-    def word(self, factor: float) -> Word:
+    @property
+    def factor(self) -> float:
+        """By how many times the one exceeds the other, whichever does; at least 1."""
+        return max(self.growth, 1.0 / self.growth) if self.growth else math.inf
+
+    @property
+    def changed(self) -> bool:
+        return self.word() != "equal"
+
+    def word(self, factor: float = FACTOR) -> Word:
         """Worse or better if one exceeds ``factor`` times the other by more than the floor."""
         if self.new > factor * self.old + self.floor:
             return "worse"
@@ -93,8 +102,7 @@ class CellPair:
         """By how many times it is worse or better; infinite where it ended in another way."""
         if self.turned:
             return math.inf
-        growth = self.worst.growth if self.worst else 1.0
-        return max(growth, 1.0 / growth) if growth else math.inf
+        return self.worst.factor if self.worst else 1.0
 
 
 @dataclass(frozen=True)
@@ -172,18 +180,18 @@ def floor(quantity: str, steps_per_turn: float) -> float:
     return tolerance.floor + ROUNDING / step_rad**tolerance.differenced
 
 
-def other_settings(diff: Diff) -> Mapping[tuple[str, str], tuple[str, ...]]:
-    """The settings that an engine held otherwise, with both values, by engine and variant: not
-    the version alone changed. One example is given of each setting."""
+def other_settings(pairs: Iterable[CellPair]) -> Mapping[tuple[str, str], Mapping[str, str]]:
+    """The settings that an engine held otherwise, by engine and variant: not the version alone
+    changed. Each comes with both values of one example."""
     found: dict[tuple[str, str], dict[str, str]] = {}
-    for pair in diff.pairs:
+    for pair in pairs:
         was, now = pair.old.settings, pair.new.settings
         for name in was.keys() & now.keys():
             before, after = json.dumps(was[name]), json.dumps(now[name])
             if before != after:
                 here = found.setdefault((pair.name.engine, pair.name.variant), {})
                 here.setdefault(name, f"{name} {before} -> {after}")
-    return {key: tuple(here[name] for name in sorted(here)) for key, here in found.items()}
+    return {key: dict(sorted(here.items())) for key, here in found.items()}
 
 
 def _same_scene(old: StoredCell, new: StoredCell) -> bool:
@@ -205,7 +213,7 @@ def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
 
 def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
     """Every quantity that both runs know, and either has a number for."""
-    for quantity in (each for each in old.errors if each in new.errors):
+    for quantity in (q for q in QUANTITIES if q in old.errors and q in new.errors):
         was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
             yield ErrorChange(quantity, was, now, floor(quantity, new.name.steps_per_turn))

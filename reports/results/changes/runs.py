@@ -57,8 +57,9 @@ class StoredCell:
     """One cell of a run: how it ended, and its largest errors by quantity, as pure numbers.
 
     An error is infinite where the run has no number for it: it was not finite, or nothing of the
-    kind was reported. A quantity that the run does not know at all is not there. ``scene_digest``
-    is empty where the run does not tell which text the scene had.
+    kind was reported. A quantity that the run does not know at all is not there. Beside those that
+    are compared there are ``pin gap`` and ``slider gap``, of which ``gap`` is the larger.
+    ``verdict`` and ``scene_digest`` are empty where the run does not tell them.
     """
 
     name: CellName
@@ -69,6 +70,7 @@ class StoredCell:
     settings: Mapping[str, object] = field(default_factory=dict)
     scene_digest: str = ""
     cost: CellCost | None = None
+    verdict: str = ""
 
     @property
     def ok(self) -> bool:
@@ -151,10 +153,11 @@ def stored_cell(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) 
         version=text(row["version"]) or facts.get(engine, "?"),
         status=text(row["status"]),
         reason=" ".join(text(row["reason"]).split()),
-        errors={q: _error(row[column]) for q, column in columns.items() if column in row},
+        errors={q: _error(row[c]) for q, c in columns.items() if c in row} | _gaps(row),
         settings=_settings(text(row.get("settings")) or "{}"),
         scene_digest=text(row.get("scene_digest")) or digests.get(name.scene, ""),
         cost=_cost(row),
+        verdict=text(row.get("verdict")),
     )
 
 
@@ -164,6 +167,17 @@ def _error(value: object) -> float:
     if found is not None and found < 0.0:
         raise ValueError(f"an error of {found:g}")
     return math.inf if found is None else found
+
+
+def _gaps(row: Row) -> dict[str, float]:
+    """The gaps of pins and of sliders over the longest link, which the larger of both tells."""
+    pure = number(row.get("gap_pure"))
+    known = {kind: number(row.get(f"{kind}_gap_m")) for kind in ("pin", "slider")}
+    gaps = {f"{kind} gap": gap_m for kind, gap_m in known.items() if gap_m is not None}
+    if pure is None or not gaps:
+        return {}
+    share = pure / max(gaps.values()) if pure else 0.0
+    return {name: gap_m * share for name, gap_m in gaps.items()}
 
 
 def _positive(value: object, column: str) -> float:

@@ -16,8 +16,8 @@ from reports.history import environments
 from reports.history.cache import alone, cache_folder, user_cache
 from reports.history.environments import (
     COMPLETE,
+    EngineVersion,
     NotMeasuredError,
-    Wanted,
     clean_variables,
     commands,
     place,
@@ -28,7 +28,7 @@ from reports.history.environments import (
 from reports.history.install_errors import reason
 from reports.workers.programs import Ended, run_child
 
-ONE = Wanted("mujoco", Version("3.6.0"))
+ONE = EngineVersion("mujoco", Version("3.6.0"))
 
 
 class FakeInstaller:
@@ -142,7 +142,7 @@ def test_another_python_numpy_or_version_has_another_environment(
     elif changed == "numpy":
         monkeypatch.setattr(environments, "held_numpy", lambda: "1.0")
     else:
-        one = Wanted("mujoco", Version("3.7.0"))
+        one = EngineVersion("mujoco", Version("3.7.0"))
     assert place(tmp_path, one) != before
 
 

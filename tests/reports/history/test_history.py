@@ -168,12 +168,12 @@ def test_versions_are_installed_run_compared_and_kept(
 def measured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Path]:
     """The folders that were measured, with nothing installed or run for it."""
     folders: list[Path] = []
-    columns = "scene,profile,verdict,status,reason,settings,angle_pure,displacement_pure,"
-    columns += "position_pure,gap_pure,pin_gap_m,slider_gap_m,velocity_pure,acceleration_pure"
+    columns = "scene,engine,version,profile,drive,steps_per_turn,turns,status,reason,angle_pure"
+    row = f"{SCENE},mujoco,3.7.0,tuned,prescribed,360,1,ok,,1e-3"
 
     def measure(folder: Path, *_: object) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "verify.csv").write_text(f"{columns}\n{SCENE},tuned,out,ok,,,1e-3,,,,,,,\n")
+        (folder / "verify.csv").write_text(f"{columns}\n{row}\n")
         folders.append(folder)
 
     monkeypatch.setattr("reports.cli.commands.history.measure", measure)

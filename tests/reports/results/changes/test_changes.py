@@ -190,9 +190,9 @@ def test_settings_that_the_engine_held_otherwise_are_told() -> None:
         )
         for value in ("PGS", "Newton")
     )
-    found = other_settings(compare(was, now))
-    assert found == {("mujoco", "stiff"): ('solver "PGS" -> "Newton"',)}
-    assert other_settings(compare(was, was)) == {}
+    found = other_settings(compare(was, now).pairs)
+    assert found == {("mujoco", "stiff"): {"solver": 'solver "PGS" -> "Newton"'}}
+    assert other_settings(compare(was, was).pairs) == {}
 
 
 def test_a_ratio_is_of_the_numbers_as_they_stand() -> None:
