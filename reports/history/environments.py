@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import re
 import shutil
 import sys
 import sysconfig
@@ -18,28 +19,13 @@ from packaging.version import InvalidVersion, Version
 from models.errors import CrankcheckError
 from reports.history.install_errors import reason, shortened
 from reports.output.write import write
-from reports.workers.programs import Ended, Runner
+from reports.workers.programs import Runner
 
 COMPLETE = "complete.txt"
-LEAKS = (
-    "CONDA_PREFIX",
-    "PIP_CONSTRAINT",
-    "PIP_NO_DEPS",
-    "PIP_PREFIX",
-    "PIP_PYTHON",
-    "PIP_ROOT",
-    "PIP_TARGET",
-    "PIP_USER",
-    "PYTHONHOME",
-    "PYTHONPATH",
-    "UV_CONSTRAINT",
-    "UV_OVERRIDE",
-    "UV_PROJECT_ENVIRONMENT",
-    "UV_PYTHON",
-    "UV_SYSTEM_PYTHON",
-    "UV_TARGET",
-    "VIRTUAL_ENV",
-    "__PYVENV_LAUNCHER__",
+LEAK = re.compile(
+    "CONDA_PREFIX|VIRTUAL_ENV|__PYVENV_LAUNCHER__|PYTHON(HOME|PATH)|"
+    "PIP_(CONSTRAINT|NO_DEPS|PREFIX|PYTHON|ROOT|TARGET|USER)|"
+    "UV_(CONSTRAINT|OVERRIDE|PROJECT_ENVIRONMENT|PYTHON|SYSTEM_PYTHON|TARGET)"
 )
 """Variables that would put packages of another environment in front of those of a new one, install
 into another place, or hold the engine at another version."""
@@ -130,7 +116,7 @@ def commands(uv: str | None, folder: Path, one: EngineVersion, constraint: Path)
 
 def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]:
     """The environment variables without those that lead a new environment astray."""
-    return {name: text for name, text in variables.items() if name.upper() not in LEAKS}
+    return {name: text for name, text in variables.items() if not LEAK.fullmatch(name.upper())}
 
 
 def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
@@ -156,7 +142,7 @@ def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
         ended = run(command, clean_variables(), constraint.parent)
         if ended.code:
             _clear(folder)
-            raise NotMeasuredError(_not_installed(ended))
+            raise NotMeasuredError(f"not installed: {reason(ended.output, ended.complaint)}")
     _check(python, one, run)
     write(folder / COMPLETE, f"{one.requirement}\n")
     return python
@@ -178,11 +164,6 @@ def _check(python: Path, one: EngineVersion, run: Runner) -> None:
                 f"of {one.version}: look into the settings of pip or uv"
             )
         )
-
-
-def _not_installed(ended: Ended) -> str:
-    why = reason(f"{ended.output}\n{ended.complaint}")
-    return f"not installed: {why}"
 
 
 def _clear(folder: Path) -> None:

@@ -15,38 +15,23 @@ HOST = re.compile(r"host='([^']+)'")
 OFFERED = re.compile(r"requirement (\S+?)==(\S+) \(from versions: ([^)]*)\)")
 REFUSED = re.compile(r"there is no version of (\S+?)==(\S+?)(?:,| and|$)")
 NO_WHEEL = re.compile(r"(\S+?)==(\S+) has no (?:usable )?wheels")
-NETWORK = (
-    "connection broken",
-    "Failed to establish",
-    "Max retries exceeded",
-    "Failed to fetch",
-    "error sending request",
-    "Network is unreachable",
-    "dns error",
-    "Name or service not known",
-    "name resolution",
+NETWORK = re.compile(
+    "connection broken|Failed to establish|Max retries exceeded|Failed to fetch|dns error|"
+    "error sending request|Network is unreachable|Name or service not known|name resolution"
 )
-CAUSES = (
-    "refused",
-    "unreachable",
-    "resolution",
-    "lookup address",
-    "not known",
-    "timed out",
-    "certificate",
-    "Tunnel connection failed",
-    "Unauthorized",
-    "Forbidden",
+CAUSE = re.compile(
+    "refused|unreachable|resolution|lookup address|not known|timed out|certificate|"
+    "Tunnel connection failed|Unauthorized|Forbidden"
 )
 NUMBERED = re.compile(r"\[Errno -?\d+\]|\(os error \d+\)")
 NOISE = ("WARNING:", "Looking in", "[notice]", "hint:", "DEPRECATION", "Traceback", "Using Python")
 
 
-def reason(output: str) -> str:
+def reason(*outputs: str) -> str:
     """The one line that matters in what pip or uv wrote."""
-    text = _named(output)
+    text = _named("\n".join(outputs))
     flat = " ".join(text.split())
-    if any(sign in flat for sign in NETWORK):
+    if NETWORK.search(flat):
         return _network(text)
     if found := OFFERED.search(flat):
         return _not_offered(found[1], found[2], found[3].split(", "))
@@ -72,12 +57,10 @@ def _named(output: str) -> str:
 
 def _network(text: str) -> str:
     """No answer from where packages come from, and why as far as it is told."""
-    cause = ""
-    for line in text.splitlines():
-        if any(word in line for word in CAUSES):
-            parts = re.split(r": (?=\S)", line.strip())
-            told = [part for part in parts if any(word in part for word in CAUSES)]
-            cause = NUMBERED.sub("", told[-1]).strip(" ')]")
+    lines = [line.strip() for line in text.splitlines() if CAUSE.search(line)]
+    parts = [part for line in lines[-1:] for part in re.split(r": (?=\S)", line)]
+    cause = "".join([part for part in parts if CAUSE.search(part)][-1:])
+    cause = NUMBERED.sub("", cause).strip(" ')]")
     return shortened("the package index could not be reached" + (f" ({cause})" if cause else ""))
 
 
@@ -92,18 +75,13 @@ def _not_offered(name: str, version: str, offered: Iterable[str]) -> str:
 
 def _nearest(version: str, offered: Iterable[str]) -> list[str]:
     """The two offered versions below one, and the one above."""
-    known = []
-    for text in offered:
-        try:
-            known.append(Version(text.strip()))
-        except InvalidVersion:
-            continue
     try:
         asked = Version(version)
+        known = sorted(Version(text.strip()) for text in offered if text != "none")
     except InvalidVersion:
         return []
-    below = sorted(one for one in known if one < asked)[-2:]
-    above = sorted(one for one in known if one > asked)[:1]
+    below = [one for one in known if one < asked][-2:]
+    above = [one for one in known if one > asked][:1]
     return [str(one) for one in (*below, *above)]
 
 
