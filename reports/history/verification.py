@@ -11,7 +11,6 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from models.errors import CrankcheckError
 from reports.history.environments import (
     EngineVersion,
     NotMeasuredError,
@@ -96,7 +95,7 @@ def measure(
     ------
     NotMeasuredError
         It wrote no result.
-    CrankcheckError
+    OSError
         The cache can not be written.
     """
     aside = folder.with_name(f".{folder.name}.{os.getpid()}.tmp")
@@ -113,11 +112,6 @@ def measure(
         if folder.exists():
             shutil.rmtree(folder)
         aside.replace(folder)
-    except OSError as error:
-        raise CrankcheckError(
-            f"--cache {folder}: {error.strerror or error}; free some space there, or choose "
-            "another place"
-        ) from None
     finally:
         shutil.rmtree(aside, ignore_errors=True)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -22,17 +22,8 @@ CELLS, FACTS = "verify.csv", "verify.json"
 WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
 
 
-@dataclass(frozen=True)
-class _Contents:
-    """What stands in a folder: rows of the cells, facts, digests of scenes, and what is damaged
-    (see `reports.results.changes.runs.StoredRun`)."""
-
-    rows: list[Row]
-    facts: dict[str, str]
-    digests: dict[str, str]
-    notice: tuple[str, ...] = ()
-    gone: tuple[str, ...] = ()
-    lost: bool = False
+Contents = tuple[list[Row], StoredRun]
+"""The rows of the cells in a folder, and the run that they are of, still without them."""
 
 
 def read_run(folder: Path, version: str | None = None, option: str = "") -> StoredRun:
@@ -48,18 +39,18 @@ def read_run(folder: Path, version: str | None = None, option: str = "") -> Stor
     CrankcheckError
         No such folder, no stored run in it, one that can not be read, a version that it has not.
     """
-    there = _contents(folder)
+    rows, run = _contents(folder)
     try:
-        found = [stored_cell(row, there.facts, there.digests) for row in there.rows]
+        cells = [stored_cell(row, run.facts) for row in rows]
     except (KeyError, ValueError, OverflowError) as error:
         why = f"no column {error}" if isinstance(error, KeyError) else str(error)
         raise CrankcheckError(
             f"{folder}: not the cells of a run ({why}); make it again with {WRITERS}"
         ) from None
-    if not any(cell.errors for cell in found):
+    if not any(cell.errors for cell in cells):
         raise CrankcheckError(f"{folder}: no errors in its cells; make it again with {WRITERS}")
-    kept, notes = _chosen(found, folder, version, option)
-    return StoredRun(str(folder), kept, there.facts, notes, there.notice, there.gone, there.lost)
+    chosen, notes = _chosen(cells, folder, version, option)
+    return replace(run, cells=chosen, notes=notes)
 
 
 def scene_digests(names: Iterable[str]) -> dict[str, str]:
@@ -67,9 +58,9 @@ def scene_digests(names: Iterable[str]) -> dict[str, str]:
     return {name: digest(text) for name, text in scene_texts(names).items()}
 
 
-def _contents(folder: Path) -> _Contents:
+def _contents(folder: Path) -> Contents:
     """What stands in a folder, by its kind."""
-    kinds: dict[str, Callable[[Path], _Contents]] = {MANIFEST: _store, CELLS: _verification}
+    kinds: dict[str, Callable[[Path], Contents]] = {MANIFEST: _store, CELLS: _verification}
     try:
         there = [name for name in kinds if (folder / name).is_file()]
         if MANIFEST not in there and has_parts(folder):
@@ -103,23 +94,23 @@ def _not_a_run(folder: Path, there: list[str]) -> str:
     return f"no stored run there (no {MANIFEST}, no {CELLS}); {WRITERS} makes one"
 
 
-def _store(folder: Path) -> _Contents:
+def _store(folder: Path) -> Contents:
     stored = read_store(folder)
     runs = stored.manifest.runs
     facts = runs[-1].get("provenance") if runs else None
     rows = cast("list[Row]", stored.cells.to_dict("records"))
     gone = [each for each in stored.damage if each.hides]
-    return _Contents(
-        rows,
-        _texts(facts),
+    return rows, StoredRun(
+        str(folder),
         {},
-        tuple(stored.notice),
-        tuple(each.line for each in gone),
-        any(each.cure != "wait" and each.what != STOPPED for each in gone),
+        _texts(facts),
+        notice=tuple(stored.notice),
+        gone=tuple(each.line for each in gone),
+        lost=any(each.cure != "wait" and each.what != STOPPED for each in gone),
     )
 
 
-def _verification(folder: Path) -> _Contents:
+def _verification(folder: Path) -> Contents:
     path = folder / CELLS
     try:
         with path.open(encoding="utf-8", newline="") as lines:
@@ -142,7 +133,9 @@ def _verification(folder: Path) -> _Contents:
         raise CrankcheckError(f"{folder / FACTS}: no facts of a verification; verify again")
     if cut := _cut(rows, known.get("cells")):
         raise CrankcheckError(f"{path}: cut short ({cut}); verify again")
-    return _Contents(rows, _texts(known.get("provenance")), _texts(known.get("scenes")), notice)
+    digests = _texts(known.get("scenes"))
+    rows = [{"scene_digest": digests.get(text(row.get("scene")), ""), **row} for row in rows]
+    return rows, StoredRun(str(folder), {}, _texts(known.get("provenance")), notice=notice)
 
 
 def _cut(rows: Sequence[Row], cells: object) -> str:
@@ -161,18 +154,18 @@ def _texts(value: object) -> dict[str, str]:
 
 
 def _chosen(
-    found: list[StoredCell], folder: Path, version: str | None, option: str
+    cells: list[StoredCell], folder: Path, version: str | None, option: str
 ) -> tuple[dict[CellName, StoredCell], tuple[str, ...]]:
     """One cell of each name, and what to say of those that were passed over."""
     versions: dict[str, dict[str, None]] = {}
-    for cell in found:
+    for cell in cells:
         versions.setdefault(cell.name.engine, {})[cell.version] = None
     if version is not None:
         if not any(version in each for each in versions.values()):
             has = "; ".join(f"{engine} {', '.join(each)}" for engine, each in versions.items())
             raise CrankcheckError(f"{option} {version}: {folder} has {has}")
-        found = [
-            cell for cell in found
+        cells = [
+            cell for cell in cells
             if version not in versions[cell.name.engine] or cell.version == version
         ]  # fmt: skip
         versions = {e: {version: None} if version in v else v for e, v in versions.items()}
@@ -182,4 +175,4 @@ def _chosen(
         for engine, each in versions.items()
         if len(each) > 1
     )
-    return {cell.name: cell for cell in found}, notes
+    return {cell.name: cell for cell in cells}, notes

@@ -115,7 +115,8 @@ def run_of(
     checked: Sequence[Checked], facts: Mapping[str, str], digests: Mapping[str, str]
 ) -> StoredRun:
     """A verification that was just made; ``digests`` of the scenes by name."""
-    found = (stored_cell(cell_row(one), facts, digests) for one in checked)
+    rows = (cell_row(one) | {"scene_digest": digests.get(one.cell.scene.name)} for one in checked)
+    found = (stored_cell(row, facts) for row in rows)
     return StoredRun("this run", {cell.name: cell for cell in found}, facts)
 
 
@@ -129,8 +130,9 @@ def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
     return StoredRun("what was asked for", found)
 
 
-def stored_cell(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) -> StoredCell:
-    """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file.
+def stored_cell(row: Row, facts: Mapping[str, str]) -> StoredCell:
+    """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file,
+    with the ``scene_digest`` where that is known.
 
     Raises
     ------
@@ -155,7 +157,7 @@ def stored_cell(row: Row, facts: Mapping[str, str], digests: Mapping[str, str]) 
         reason=" ".join(text(row["reason"]).split()),
         errors={q: _error(row[c]) for q, c in columns.items() if c in row} | _gaps(row),
         settings=_settings(text(row.get("settings")) or "{}"),
-        scene_digest=text(row.get("scene_digest")) or digests.get(name.scene, ""),
+        scene_digest=text(row.get("scene_digest")),
         cost=_cost(row),
         verdict=text(row.get("verdict")),
     )
