@@ -63,6 +63,7 @@ engine's folder."""
 MENTIONING: Mapping[str, str] = {
     "models/tree.py": "why a massless block is refused, whose cure is a mass",
     "reports/judge/rules": "what to turn in which engine, as a cure",
+    "reports/quantities": "as in the rules",
     "reports/selftest/engines.py": "what a fault is called that one engine has by default",
     "reports/cli/checking.py": "an example in the help",
     "reports/cli/commands/sweep.py": "an example in a message",

@@ -60,10 +60,10 @@ def main() -> None:
     and one that is held to too little."""
     from rich.console import Console
 
-    from reports.diff.runs import QUANTITIES as COMPARED
     from reports.judge.cell import Cell, check
     from reports.judge.frames import cell_frame, error_frame
     from reports.page.sections.convergence import DIAGRAMS
+    from reports.results.changes.runs import COMPARED
     from reports.store.schema import table
     from reports.tune.table import OTHERS
     from reports.verify.table import show

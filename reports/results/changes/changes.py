@@ -11,7 +11,7 @@ from typing import Literal
 from models.errors import CrankcheckError
 from reports.judge.tolerance import DEFAULTS, ROUNDING
 from reports.results.changes.gone import refuse_gone
-from reports.results.changes.runs import QUANTITIES, CellName, StoredCell, StoredRun
+from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
 
 FACTOR = 1.1
 """How much an error may grow before it is called worse."""
@@ -213,7 +213,7 @@ def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:
 
 def _changes(old: StoredCell, new: StoredCell) -> Iterator[ErrorChange]:
     """Every quantity that both runs know, and either has a number for."""
-    for quantity in (q for q in QUANTITIES if q in old.errors and q in new.errors):
+    for quantity in (q for q in COMPARED if q in old.errors and q in new.errors):
         was, now = old.errors[quantity], new.errors[quantity]
         if math.isfinite(was) or math.isfinite(now):
             yield ErrorChange(quantity, was, now, floor(quantity, new.name.steps_per_turn))

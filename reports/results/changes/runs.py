@@ -12,7 +12,7 @@ from reports.judge.rows import cell_row
 from reports.judge.tolerance import DEFAULTS
 from reports.results.cost import apart
 
-QUANTITIES = tuple(DEFAULTS)
+COMPARED = tuple(DEFAULTS)
 """What is compared: the largest error of each, as a pure number."""
 Row = Mapping[str, object]
 
@@ -149,7 +149,7 @@ def stored_cell(row: Row, facts: Mapping[str, str]) -> StoredCell:
         steps_per_turn=same(steps),
         turns=same(turns),
     )
-    columns = {each: f"{each.replace('-', '_')}_pure" for each in QUANTITIES}
+    columns = {each: f"{each.replace('-', '_')}_pure" for each in COMPARED}
     return StoredCell(
         name=name,
         version=text(row["version"]) or facts.get(engine, "?"),

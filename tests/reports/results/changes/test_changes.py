@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
 from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
-from reports.results.changes.runs import QUANTITIES, CellName, StoredCell, StoredRun
+from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
 
 Make = Callable[..., StoredCell]
 Group = Callable[..., StoredRun]
@@ -63,7 +63,7 @@ def test_old_and_new_exchanged_exchange_better_and_worse(
         assert pair.word == (turned.word if mixed else OTHER[turned.word])
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", COMPARED)
 def test_growth_past_the_factor_is_worse_and_below_it_is_not(
     quantity: str, cell: Make, run: Group
 ) -> None:
