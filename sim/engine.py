@@ -1,6 +1,6 @@
 """What an engine is to crankcheck: a session that is opened, stepped and read; and what a run left.
 
-One adapter per engine, each in its own file, imported only when it is asked for (`sim.registry`).
+One adapter per engine, in a folder of its own, imported only when it is asked for (`sim.registry`).
 An adapter turns the engine's own coordinates into `Poses`; everything after that is shared.
 """
 

@@ -20,6 +20,7 @@ from models.errors import CrankcheckError
 from reports.history.install_errors import reason, shortened
 from reports.output.write import write
 from reports.workers.programs import Runner
+from sim.registry import declaration
 
 COMPLETE = "complete.txt"
 LEAK = re.compile(
@@ -37,7 +38,7 @@ class NotMeasuredError(Exception):
 
 @dataclass(frozen=True)
 class EngineVersion:
-    """An engine at a version. Its packages are called as the engine is."""
+    """An engine at a version."""
 
     engine: str
     version: Version
@@ -48,7 +49,7 @@ class EngineVersion:
 
     @property
     def requirement(self) -> str:
-        return f"{self.engine}=={self.version}"
+        return f"{declaration(self.engine).install}=={self.version}"
 
 
 def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
@@ -150,7 +151,8 @@ def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
 
 def _check(python: Path, one: EngineVersion, run: Runner) -> None:
     """Ask the new interpreter for the version that it finds. Raises NotMeasuredError."""
-    question = f"from importlib.metadata import version; print(version({one.engine!r}))"
+    package = declaration(one.engine).install
+    question = f"from importlib.metadata import version; print(version({package!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)
     found = ended.output.strip()
     try:

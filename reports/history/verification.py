@@ -21,6 +21,7 @@ from reports.history.install_errors import shortened
 from reports.output.provenance import crankcheck_version, processor
 from reports.workers.programs import Ended, Runner, run_child
 from reports.workers.signals import leave_to_parent
+from sim.registry import declaration
 
 ROOMS = Path(__file__).parents[2]
 """The folder of the packages of crankcheck: the checkout, or `crankcheck` where it is installed."""
@@ -102,9 +103,9 @@ def measure(
     try:
         aside.parent.mkdir(parents=True, exist_ok=True)
         shutil.rmtree(aside, ignore_errors=True)
-        code = LAUNCH.format(
-            engine=one.engine, folders=borrowed(), signals=leave_to_parent.__module__
-        )
+        package = declaration(one.engine).package
+        signals = leave_to_parent.__module__
+        code = LAUNCH.format(engine=package, folders=borrowed(), signals=signals)
         options = ["verify", "--engine", one.engine, "-o", str(aside), *arguments]
         ended = run([str(python), "-P", "-c", code, *options], clean_variables(), None)
         if not kept(aside):

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -148,7 +149,7 @@ def test_its_name_is_suggested(told: Told) -> None:
     ],
 )
 def test_a_capability_that_is_lacking_is_named_with_who_has_it(
-    ask: object, lacks: str, monkeypatch: pytest.MonkeyPatch
+    ask: Callable[[], object], lacks: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(registry.ENGINES, "fake", "tests.worlds.fake")
     assert engine("fake").version() == "1.0"
