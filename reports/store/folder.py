@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
-
-from reports.store.part import Part, UnreadableError, open_part
-from reports.store.schema import PART, TABLES
-
-Parts = Mapping[str, Part]
+from reports.store.part import NAME, Part, UnreadableError, open_part
+from reports.store.schema import TABLES
 
 
 @dataclass(frozen=True)
@@ -21,10 +19,21 @@ class Folder:
     ``fault`` is what is wrong with the folder itself, empty where it can be looked through.
     """
 
-    parts: Parts
+    parts: Mapping[str, Part]
     faults: Mapping[str, UnreadableError]
     foreign: tuple[str, ...] = ()
     fault: str = ""
+
+    @cached_property
+    def last(self) -> Mapping[str, list[bool]]:
+        """Which rows of each part count: of several of one cell the one written last."""
+        last = {
+            key: (name, at) for name, part in self.parts.items() for at, key in enumerate(part.keys)
+        }
+        return {
+            name: [last[key] == (name, at) for at, key in enumerate(part.keys)]
+            for name, part in self.parts.items()
+        }
 
 
 def has_parts(folder: Path) -> bool:
@@ -35,9 +44,15 @@ def has_parts(folder: Path) -> bool:
 def paths_of(folder: Path, table: str) -> list[Path]:
     """The parts of a table, in the order of writing; none where there is no folder to look at."""
     try:
-        return sorted(path for path in (folder / table).iterdir() if PART.fullmatch(path.name))
+        return sorted(path for path in (folder / table).iterdir() if is_part(path.name, table))
     except OSError:
         return []
+
+
+def is_part(name: str, table: str) -> bool:
+    """Whether a file is called as a part of a table is, and not as what others put there."""
+    named = NAME.fullmatch(name)
+    return named is not None and named[1] == table
 
 
 def open_folder(place: Path, table: str) -> Folder:
@@ -52,12 +67,14 @@ def open_folder(place: Path, table: str) -> Folder:
         return Folder({}, {}, fault=f"can not be read: {error.strerror or error}")
     parts, faults, foreign = {}, {}, []
     for path in entries:
-        if not PART.fullmatch(path.name):
+        if not is_part(path.name, table):
             foreign += [] if being_written(path.name) else [f"{table}/{path.name}"]
             continue
         try:
-            parts[path.name] = open_part(path, table)
+            parts[path.name] = open_part(path)
         except UnreadableError as error:
+            if not os.path.lexists(path):  # a sweep has put another part in its place
+                return open_folder(place, table)
             faults[path.name] = error
     return Folder(parts, faults, tuple(foreign))
 
@@ -65,27 +82,3 @@ def open_folder(place: Path, table: str) -> Folder:
 def being_written(name: str) -> bool:
     """Whether a file is one that is being written, or was when its sweep was killed."""
     return name.startswith(".") and name.endswith(".tmp")
-
-
-def owners_of(parts: Parts, beside: Parts) -> dict[str, str]:
-    """The part that the row of each key is taken from: the last written one, but rather one that
-    has its errors beside it."""
-    order = sorted(parts, key=lambda name: (name in beside, name))
-    return {key: name for name in order for key in parts[name].keys}
-
-
-def kept(part: Part, owners: Mapping[str, str]) -> tuple[list[bool], bool]:
-    """Which rows of a part count, and whether all do. Of several of one cell the last counts."""
-    counting = [owners.get(key) == part.name for key in part.keys]
-    if part.table in ("cells", "timings"):
-        last = {key: at for at, key in enumerate(part.keys)}
-        counting = [fine and last[part.keys[at]] == at for at, fine in enumerate(counting)]
-    return counting, all(counting)
-
-
-def joined(parts: Parts, owners: Mapping[str, str]) -> pa.Table | None:
-    found = []
-    for part in parts.values():
-        counting, whole = kept(part, owners)
-        found.append(part.content if whole else part.content.filter(pa.array(counting, pa.bool_())))
-    return pa.concat_tables(found, promote_options="permissive") if found else None

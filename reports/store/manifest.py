@@ -6,11 +6,14 @@ import hashlib
 import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from models.errors import CrankcheckError
+from reports.output.provenance import crankcheck_version
 from reports.plan.key import digest
-from reports.store.part import OtherFormatError, UnreadableError, regular_bytes
+from reports.store.damage import command, in_line
+from reports.store.part import UnreadableError, regular_bytes
 from reports.store.schema import FORMAT
 
 MANIFEST = "manifest.json"
@@ -18,25 +21,27 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class Manifest:
-    """Texts of the scenes by name; per run its command, study, versions, processor and time.
-
-    ``sealed`` is false for one that was read without a checksum, and may have changed unseen.
-    """
+    """Texts of the scenes by name; per run its command, study, versions, processor and time."""
 
     scenes: Mapping[str, str] = field(default_factory=dict)
     runs: tuple[Mapping[str, object], ...] = ()
-    sealed: bool = True
+
+    @cached_property
+    def lines(self) -> frozenset[str]:
+        """The lines of cells that its runs asked for."""
+        asked = (run.get("lines") for run in self.runs)
+        return frozenset(line for each in asked if isinstance(each, dict) for line in each)
 
     def joined(
-        self, later: Manifest, folder: Path, digests: Mapping[str, Collection[str]]
+        self, later: Manifest, folder: Path, digests: Collection[tuple[str, str]]
     ) -> Manifest:
-        """This one and a later run; ``digests`` are those of the scenes that there are cells of.
+        """This one and a later run; ``digests`` are the names and hashes of the scenes that there
+        are cells of.
 
         Raises CrankcheckError where a scene has changed since.
         """
         for name, text in later.scenes.items():
-            known = {digest(self.scenes[name])} if name in self.scenes else digests.get(name)
-            if known and digest(text) not in known:
+            if name in dict(digests) and (name, digest(text)) not in digests:
                 raise CrankcheckError(
                     f"{folder}: holds results of another scene called {name}; rename the scene, or "
                     "choose another folder"
@@ -63,7 +68,9 @@ def read_manifest(folder: Path) -> Manifest:
     Raises
     ------
     UnreadableError
-        Not to be read, not JSON, not as it was written, or of another format.
+        Not to be read, not JSON, or not as it was written.
+    CrankcheckError
+        One of another format, which is left alone.
     """
     try:
         raw = json.loads(regular_bytes(folder / MANIFEST).decode())
@@ -71,15 +78,14 @@ def read_manifest(folder: Path) -> Manifest:
         raise UnreadableError(f"not JSON ({' '.join(str(error).split())[:120]})") from None
     if not isinstance(raw, dict):
         raise UnreadableError(f"no manifest: a {type(raw).__name__}")
-    if raw.get("format", FORMAT) != FORMAT:
-        runs = raw.get("runs")
-        raise OtherFormatError(str(raw["format"])[:40], _writer(runs))
     scenes, runs = raw.get("scenes"), raw.get("runs")
+    if raw.get("format", FORMAT) != FORMAT:
+        raise CrankcheckError(_of_another_format(folder, raw["format"], runs))
     if not (isinstance(scenes, dict) and isinstance(runs, list) and _sound(scenes, runs)):
         raise UnreadableError("no manifest: without scenes or runs, or with others than a sweep's")
-    if "seal" in raw and raw["seal"] != _seal({"scenes": scenes, "runs": runs}):
+    if raw.get("seal") != _seal({"scenes": scenes, "runs": runs}):
         raise UnreadableError("not as it was written: its checksum differs")
-    return Manifest(scenes, tuple(runs), sealed="seal" in raw)
+    return Manifest(scenes, tuple(runs))
 
 
 def _seal(said: Mapping[str, object]) -> str:
@@ -87,11 +93,15 @@ def _seal(said: Mapping[str, object]) -> str:
     return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
 
-def _writer(runs: object) -> str:
-    """The version of crankcheck that made the last run, as far as a strange manifest tells."""
-    last = runs[-1] if isinstance(runs, list) and runs else None
-    facts = last.get("provenance") if isinstance(last, dict) else None
-    return str(facts.get("crankcheck", "?"))[:40] if isinstance(facts, dict) else "?"
+def _of_another_format(folder: Path, found: object, runs: object) -> str:
+    """What is said of a store that is laid out in another way, as far as its manifest tells."""
+    known = runs if isinstance(runs, list) else []
+    facts = known[-1].get("provenance") if known and isinstance(known[-1], dict) else None
+    writer = facts.get("crankcheck", "?") if isinstance(facts, dict) else "?"
+    return in_line(
+        f"{folder}: format {found!s:.40}, written by crankcheck {writer!s:.40}; this is crankcheck "
+        f"{crankcheck_version()}, which reads format {FORMAT}; move it away, and make it anew: "
+    ) + command(folder, known)
 
 
 def _sound(scenes: dict[object, object], runs: list[object]) -> bool:

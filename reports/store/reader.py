@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
-import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
+import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
 from models.errors import CrankcheckError
-from reports.store.damage import BUSY, Damage, notice
-from reports.store.examine import LACKING, STOPPED, Examined, examine
+from reports.store.damage import BUSY, Damage, command, notice
+from reports.store.examine import STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of
 from reports.store.lock import is_written
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.part import UnreadableError
+from reports.store.schema import unnested
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Stored:
     """A store in memory: what of it can be read, and what is wrong with the rest.
 
     ``cells`` has one row per cell, and the columns of its timing beside its own (NaN where it was
-    not timed); ``timings`` and ``errors`` are the tables as they stand.
+    not timed); ``timings`` is the table as it stands.
     """
 
     folder: Path
@@ -44,16 +45,17 @@ class Stored:
     @property
     def notice(self) -> list[str]:
         """The lines that name every damage; none where there is none."""
-        return notice(self.folder, self.damage, len(self.cells), self.manifest)
+        again = command(self.folder, self.manifest.runs)
+        return notice(self.folder, self.damage, len(self.cells), again)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
-        """Every error of every cell, in long form."""
-        return _frame(self.examined, "errors")
+        """Every error of every cell, in long form, with the key of the cell."""
+        return _frame(self.examined, "cells", "errors")
 
     @cached_property
     def _traces(self) -> Mapping[str, Mapping[str, Array]]:
-        frame = _frame(self.examined, "traces")
+        frame = _frame(self.examined, "cells", "trace")
         found: dict[str, dict[str, Array]] = {}
         for row in frame[["key", "series", "values"]].itertuples(index=False) if len(frame) else ():
             key, series, values = row
@@ -71,18 +73,19 @@ def read_store(folder: Path) -> Stored:
     Raises
     ------
     CrankcheckError
-        No store, or one without a cell that can be read.
+        No store, one of another format, or without a manifest or a cell that can be read.
     """
     try:
-        _refuse_none(folder)
+        _refuse_unknown(folder)
         found = _examined(folder)
     except OSError as error:
         raise CrankcheckError(
             f"{folder}: can not be read: {error.strerror or error}; name the folder of a sweep"
         ) from None
+    again = command(folder, found.manifest.runs)
     cells = _frame(found, "cells")
     if cells.empty:
-        lines = notice(folder, found.damage, 0, found.manifest)
+        lines = notice(folder, found.damage, 0, again)
         usual = f"{folder}: a store without cells; run its sweep again"
         raise CrankcheckError("\n".join(lines) or usual)
     timings = _frame(found, "timings")
@@ -106,21 +109,23 @@ def _while_written(found: Examined) -> Examined:
 
     They stay in the way of whoever must know all cells, as a comparison.
     """
-    later = [each for each in found.damage if each.what in (LACKING, STOPPED)]
+    later = [each for each in found.damage if each.what == STOPPED]
     if not later:
         return found
-    lost = sum(each.lost or 0 for each in later)
-    waiting = Damage("cells", BUSY, "wait", lost, lost > 0)
+    waiting = Damage("cells", BUSY, "wait", sum(each.lost for each in later))
     return replace(found, damage=(waiting, *(each for each in found.damage if each not in later)))
 
 
-def _refuse_none(folder: Path) -> None:
-    """Raise CrankcheckError for a folder that is no store, whole or not."""
-    if has_parts(folder):
-        return
+def _refuse_unknown(folder: Path) -> None:
+    """Raise CrankcheckError for a folder without a manifest that can be read."""
     try:
         read_manifest(folder)
     except UnreadableError as error:
+        if has_parts(folder):
+            raise CrankcheckError(
+                f"{folder}: {MANIFEST}: {error}; what mends it: {command(folder, ())} (keeps every "
+                "cell that is whole)"
+            ) from None
         raise CrankcheckError(
             f"{folder}: no store of a sweep there ({MANIFEST}: {error}); `crankcheck sweep -o` "
             "with a new folder makes one"
@@ -146,8 +151,7 @@ def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
 
 def stored_keys(folder: Path, name: str) -> set[str]:
     """The keys that a table holds already."""
-    found = _parts(folder, name, ["key"])
-    return set() if found is None else set(found.column("key").to_pylist())
+    return {str(key) for (key,) in _rows(folder, name, "key")}
 
 
 @dataclass(frozen=True)
@@ -160,31 +164,26 @@ class Ending:
 
 def stored_endings(folder: Path) -> dict[str, Ending]:
     """The cells that timed out or crashed, by key."""
-    found = _parts(folder, "cells", ["key", "status", "limit_s", "memory_gb"])
-    if found is None:
-        return {}
-    rows = zip(*(found.column(name).to_pylist() for name in found.column_names), strict=True)
+    rows = _rows(folder, "cells", "key", "status", "limit_s", "memory_gb")
     return {k: Ending(t, m) for k, status, t, m in rows if status in ("timeout", "crashed")}
 
 
 def stored_costs(folder: Path) -> dict[str, float]:
     """The rough cost of a step [microseconds] of each cell that ran well, by key."""
-    found = _parts(folder, "cells", ["key", "status", "logged_us_per_step"])
-    if found is None:
-        return {}
-    rows = zip(*(found.column(name).to_pylist() for name in found.column_names), strict=True)
+    rows = _rows(folder, "cells", "key", "status", "logged_us_per_step")
     return {key: cost for key, status, cost in rows if status == "ok" and cost is not None}
 
 
-def _frame(found: Examined | None, name: str) -> pd.DataFrame:
-    """What can be read of a table."""
-    table = found.table(name) if found else None
-    return pd.DataFrame() if table is None else table.to_pandas()
+def _rows(folder: Path, name: str, *columns: str) -> Iterator[tuple[Any, ...]]:
+    """Some columns of a table that was mended, row by row."""
+    for path in paths_of(folder, name):
+        part = pq.ParquetFile(path).read(columns, use_threads=False)
+        yield from zip(*(part.column(column).to_pylist() for column in columns), strict=True)
 
 
-def _parts(folder: Path, name: str, columns: list[str]) -> pa.Table | None:
-    """Some columns of all parts of a table that was mended; None where there are none."""
-    found = [
-        pq.ParquetFile(path).read(columns, use_threads=False) for path in paths_of(folder, name)
-    ]
-    return pa.concat_tables(found, promote_options="permissive") if found else None
+def _frame(store: Examined | None, name: str, nested: str = "") -> pd.DataFrame:
+    """What can be read of a table, or of the rows that one of its columns holds."""
+    rows = store.table(name, nested) if store else None
+    if rows is not None and nested:
+        rows = unnested(rows, nested)
+    return pd.DataFrame() if rows is None else rows.to_pandas()

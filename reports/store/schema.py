@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping, Sequence
-from functools import cache
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
+import pyarrow.compute as pc  # type: ignore[import-untyped]  # as above
 
-FORMAT = 1
-"""Raised when a store is laid out in a way that an older reader would take for something else."""
-TABLES = ("cells", "errors", "traces", "timings")
-"""A part of ``cells`` is written last of its name: what has none was cut short."""
-PART = re.compile(r"part-\d{20}-\d+-\d+\.parquet")
-"""The name of a part, by which it is told from what others put there: time [ns], process, count."""
+FORMAT = 2
+"""Raised when a store is laid out in a way that another reader would take for something else."""
+TABLES = ("cells", "timings")
+"""A row of ``cells`` is a whole cell; ``timings`` are taken later, and belong to it by key."""
 TRAJECTORIES, DAMAGED, LOCK = "trajectories", "damaged", ".lock"
 TEXT = {
     "key",
@@ -48,26 +45,23 @@ TEXT = {
     "processor",
     "made",
 }
-TEXTS = ("string", "large_string")
 FLAGS = {"gated"}
-NEEDED: Mapping[str, tuple[str, ...]] = {
-    "cells": (
-        *("key", "line", "variant", "asked", "scene", "engine", "version", "profile", "drive"),
-        *("dt_s", "steps_per_turn", "turns", "gated", "verdict", "status", "reason"),
-        *("failed_rules", "settings", "stopped_at_s", "logged_us_per_step"),
-        *("place_pure", "drive_pure", "gap_pure", "velocity_pure"),
+NESTED: Mapping[str, tuple[str, ...]] = {
+    "errors": (
+        *("quantity", "body_kind", "body", "source", "kind", "unit"),
+        *("maximum", "rms", "final", "maximum_pure", "limit_pure"),
+        *("time_of_maximum_s", "driver_at_maximum_rad", "reference_bound", "samples"),
     ),
-    "errors": ("key", "quantity", "body_kind", "body", "source", "kind", "maximum_pure"),
-    "traces": ("key", "series", "values"),
-    "timings": ("key", "us_per_step"),
+    "trace": ("series", "values"),
 }
-"""The columns that readers take for granted: a table without them is another table."""
+"""The columns of a cell that hold rows of their own, and the names in these."""
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
     """Rows, all with the same names, as a table whose types do not depend on what is missing.
 
-    Columns are text, flags, lists of numbers (``values``), or numbers; what is not there is null.
+    Columns are text, flags, lists of numbers (``values``), lists of rows, or numbers; what is not
+    there is null.
     """
     names = list(rows[0])
     return pa.table(
@@ -75,34 +69,16 @@ def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
     )
 
 
-def typed(found: pa.Table, name: str) -> pa.Table:
-    """A table that was read, with the types of its columns as they are written.
-
-    Raises
-    ------
-    ValueError
-        Not the table ``name``: a needed column is not there, or holds something else.
-    """
-    wanted = _wanted(tuple((one.name, str(one.type)) for one in found.schema), name)
-    if not found.schema.equals(wanted):
-        found = found.cast(wanted)
-    if found.column("key").null_count:
-        raise ValueError("rows without a key")
-    return found
-
-
-@cache
-def _wanted(found: tuple[tuple[str, str], ...], table: str) -> pa.Schema:
-    """The types that the columns of a table that was read should have, by name and found type."""
-    lacking = [column for column in NEEDED[table] if column not in dict(found)]
-    if lacking:
-        raise ValueError(f"no column {lacking[0]}")
-    # What another version of crankcheck adds may be text, and hurts nobody.
-    more = {name for name, kind in found if kind in TEXTS and name not in NEEDED[table]}
-    return pa.schema([(name, pa.string() if name in more else _type(name)) for name, _ in found])
+def unnested(cells: pa.Table, name: str) -> pa.Table:
+    """The rows that a column of some cells holds, each with the key of its cell."""
+    nested = cells.column(name).combine_chunks()
+    keys = cells.column("key").take(pc.list_parent_indices(nested))
+    return pa.Table.from_struct_array(pc.list_flatten(nested)).add_column(0, "key", keys)
 
 
 def _type(name: str) -> pa.DataType:
+    if name in NESTED:
+        return pa.list_(pa.struct([(field, _type(field)) for field in NESTED[name]]))
     if name in TEXT:
         return pa.string()
     if name in FLAGS:
@@ -114,6 +90,8 @@ def _plain(value: object) -> object:
     """A value as Arrow takes it: settings become JSON."""
     if isinstance(value, Mapping):
         return json.dumps(value)
+    if isinstance(value, list):
+        return [{name: _plain(each) for name, each in row.items()} for row in value]
     if isinstance(value, bool | str | np.ndarray) or value is None:
         return value
     return float(value)  # type: ignore[arg-type]  # all that is left are numbers

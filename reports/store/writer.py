@@ -18,9 +18,8 @@ from reports.store.examine import examine
 from reports.store.folder import has_parts, paths_of
 from reports.store.lock import locked
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
-from reports.store.mending import mend, refuse_other_format
-from reports.store.part import UnreadableError, open_part, part_bytes
-from reports.store.rebuilding import digests
+from reports.store.mending import mend
+from reports.store.part import UnreadableError, open_part, write_part
 from reports.store.schema import LOCK, TABLES, table
 
 EVERY_S = 1.0
@@ -31,8 +30,7 @@ Row = Mapping[str, object]
 class Writer:
     """A store that is open for adding; to be used as a context, which writes the rest at its end.
 
-    What was damaged in it is mended at once, as ``mended`` says; ``bare`` are the keys of cells
-    that are whole, and have lost their errors or their trace.
+    What was damaged in it is mended at once, as ``mended`` says.
 
     Raises
     ------
@@ -43,11 +41,9 @@ class Writer:
     def __init__(self, folder: Path, manifest: Manifest) -> None:
         check_folder(folder, "-o")
         self.folder = folder
-        self.bare: frozenset[str] = frozenset()
         self.mended: list[str] = []
         self._waiting: dict[str, list[Row]] = {name: [] for name in TABLES}
         self._written = time.monotonic()
-        self._count = 0
         self._manifest = ""
         _refuse_other(folder)
         _create(folder, ("",))
@@ -61,17 +57,17 @@ class Writer:
     def _open(self, later: Manifest) -> None:
         """Mend what is there, and write in the manifest what is to come, unless that is nothing
         new: then as soon as there is something to write."""
-        known, cells, lost = Manifest(), None, False
-        if not _is_new(self.folder):
-            found = examine(self.folder)
-            refuse_other_format(self.folder, found)
-            self.mended, self.bare = mend(self.folder, found), found.bare
-            known, cells = found.manifest, found.table("cells")
-            lost = any(each.path == MANIFEST and each.hides for each in found.damage)
-        joined = known.joined(later, self.folder, digests(cells)).text()
+        store = None if _is_new(self.folder) else examine(self.folder)
+        cells = store.table("cells") if store else None
+        scenes = cells.select(["scene", "scene_digest"]).to_pydict().values() if cells else ()
+        digests = set(zip(*scenes, strict=True))
+        known = store.manifest if store else Manifest()
+        joined = known.joined(later, self.folder, digests).text()
+        if store:
+            self.mended = mend(self.folder, store)
         _create(self.folder, TABLES)
         self._drop_unfinished()
-        if known.covers(later) and not lost:
+        if known.covers(later):
             self._manifest = joined
         else:
             write(self.folder / MANIFEST, joined)
@@ -92,12 +88,10 @@ class Writer:
 
     def cell(self, row: Row, errors: Sequence[Row], series: Mapping[str, object]) -> None:
         """Add a cell with its errors and its trace; on disk within a second or so."""
-        key = row["key"]
-        self._waiting["cells"].append(row)
-        self._waiting["errors"] += [{"key": key} | dict(error) for error in errors]
-        self._waiting["traces"] += [
-            {"key": key, "series": name, "values": values} for name, values in series.items()
-        ]
+        known = row.keys()  # what names the cell, which its errors say too
+        rows = [{name: each[name] for name in each.keys() - known} for each in errors]
+        trace = [{"series": name, "values": values} for name, values in series.items()]
+        self._waiting["cells"].append({**row, "errors": rows, "trace": trace})
         self._flush_in_time()
 
     def timing(self, row: Row) -> None:
@@ -113,29 +107,21 @@ class Writer:
         write(self.folder / "trajectories" / f"{key}.parquet", parquet(frame))
 
     def forget(self, keys: Collection[str]) -> None:
-        """Take cells out of the store with all that hangs on them, part by part, each of which is
-        whole at every moment; the cells last, so that one that is there again is there once."""
-        if not keys:
-            return
-        for each in ("errors", "traces", "cells"):
-            for path in paths_of(self.folder, each):
-                content = open_part(path, each).content
-                kept = content.filter([k not in keys for k in content.column("key").to_pylist()])
-                if kept.num_rows == 0:
-                    path.unlink()
-                elif kept.num_rows < content.num_rows:
-                    write(path, part_bytes(kept))
+        """Take cells out of the store; the others are in it at every moment."""
+        for path in paths_of(self.folder, "cells") if keys else ():
+            part = open_part(path)
+            staying = [key not in keys for key in part.keys]
+            if not all(staying):
+                part.write_again(staying)
+                path.unlink()
 
     def flush(self) -> None:
-        """Write what waits, the cells last: they are what says that a part is whole."""
+        """Write what waits."""
         self._written = time.monotonic()
-        name = f"part-{time.time_ns():020d}-{os.getpid()}-{self._count}.parquet"
-        self._count += 1
-        for each in ("errors", "traces", "cells", "timings"):
-            rows = self._waiting[each]
+        for name, rows in self._waiting.items():
             if rows:
                 self._write_manifest()
-                write(self.folder / each / name, part_bytes(table(rows)))
+                write_part(self.folder / name, name, table(rows), time.time_ns())
                 rows.clear()
 
     def _write_manifest(self) -> None:

@@ -47,12 +47,12 @@ class Running:
     progress: Console
 
     def errors(self, keep_motion: bool, where: Backend, again: bool = False) -> Done:
-        """Run every cell that the store has not, or has without its errors, and those that a limit
-        ended which is wider now; with ``again`` all that timed out or crashed."""
+        """Run every cell that the store has not, and those that a limit ended which is wider now;
+        with ``again`` all that timed out or crashed."""
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
         over = {key for key in asked & set(ended) if again or self._was_tighter(ended[key])}
-        self.writer.forget(over | (asked & self.writer.bare))
+        self.writer.forget(over)
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
         failed: dict[str, Counter[str]] = {}

@@ -79,10 +79,18 @@ def swept(fourbar: Scene) -> list[tuple[dict[str, object], dict[str, object]]]:
 
 @pytest.fixture
 def store(swept: list[tuple[dict[str, object], dict[str, object]]], tmp_path: Path) -> Copy:
-    """Write, or add to, the store of a sweep: columns of cells and of timings may be replaced."""
+    """Write, or add to, the store of a sweep: columns of cells and of timings may be replaced;
+    ``gaps`` are growths of the gap by steps per turn."""
     text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
 
-    def make(name: str, text: str = text, us: float = 2.0, cpu: str = "one", **other: str) -> Path:
+    def make(
+        name: str,
+        text: str = text,
+        us: float = 2.0,
+        cpu: str = "one",
+        gaps: Mapping[float, float] | None = None,
+        **other: str,
+    ) -> Path:
         version = other.get("version", "4.0.0")
         run = {"command": [], "provenance": {"mujoco": version, "processor": cpu}}
         manifest = Manifest({"fourbar-lecture-1": text}, (run,))
@@ -90,6 +98,7 @@ def store(swept: list[tuple[dict[str, object], dict[str, object]]], tmp_path: Pa
             for row, timing in swept:
                 key = f"{row['key']}-{version}"
                 changed = {**row, "scene_digest": digest(text), **other, "key": key}
+                changed["gap_pure"] *= (gaps or {}).get(row["steps_per_turn"], 1.0)
                 writer.cell(changed, (), {})
                 costs = {k: us for k in timing if k.startswith("us_")}
                 writer.timing({**costs, "key": key, "processor": cpu, "made": "now"})

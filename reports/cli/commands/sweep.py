@@ -19,7 +19,6 @@ from reports.plan.study import Study, StudyValue, Variant, load_study
 from reports.results.lines import lines
 from reports.results.recommend import recommendations
 from reports.results.table import noise_line, recommendation_table
-from reports.store.examine import STOPPED
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from reports.store.writer import Writer
@@ -65,8 +64,6 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
             raise
     _summary(console, request.folder, laid, done)
     stored = read_store(request.folder)
-    if any(each.cure == "sweep" and each.what != STOPPED for each in stored.damage):
-        tell(stored.notice)  # of cells that were not asked for now
     if not stored.timings.empty:
         _recommend(console, stored)
     return 0

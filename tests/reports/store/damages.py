@@ -8,11 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 
+from reports.store.part import write_part
+
 Change = Callable[[Path], object]
-LATER = "part-99999999999999999999-1-0.parquet"
+LATER = 10**20 - 10
+"""A time of writing after all others [ns]."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,7 @@ class Case:
 
 def first(folder: Path, table: str) -> Path:
     """The part with MuJoCo's two cells."""
-    return min((folder / table).glob("part-*"))
+    return min((folder / table).glob(f"{table}-*"))
 
 
 def cut(table: str) -> Change:
@@ -55,49 +58,37 @@ def without(table: str) -> Change:
     return lambda folder: shutil.rmtree(folder / table)
 
 
-def foreign(folder: Path) -> None:
-    pd.DataFrame({"wing": [1.0]}).to_parquet(first(folder, "cells"))
-
-
-def words_for_numbers(folder: Path) -> None:
-    frame = pq.ParquetFile(first(folder, "cells")).read().to_pandas()
-    frame["place_pure"] = "large"
-    frame.to_parquet(first(folder, "cells"))
-
-
 def rewritten(folder: Path) -> None:
     path = first(folder, "cells")
     pq.ParquetFile(path).read().to_pandas().to_parquet(path)
 
 
-def reformat(number: int) -> Change:
-    """Write the first part of cells as another version of crankcheck would."""
-
-    def change(folder: Path) -> None:
-        import pytest
-
-        from reports.store import part
-
-        path = first(folder, "cells")
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(part, "FORMAT", number)
-            path.write_bytes(part.part_bytes(pq.ParquetFile(path).read()))
-
-    return change
+def swapped(folder: Path) -> None:
+    a, b = sorted((folder / "cells").iterdir())
+    other = a.read_bytes()
+    shutil.copy(b, a)
+    b.write_bytes(other)
 
 
 def twice(folder: Path) -> None:
-    for table in ("cells", "errors", "traces", "timings"):
-        shutil.copy(first(folder, table), folder / table / LATER)
+    for table in ("cells", "timings"):
+        path = first(folder, table)
+        _, _time_ns, *rest = path.name.split("-")
+        shutil.copy(path, path.with_name("-".join([table, str(LATER), *rest])))
 
 
-def cells_twice(folder: Path) -> None:
-    shutil.copy(first(folder, "cells"), folder / "cells" / LATER)
+def of_another_store(folder: Path) -> None:
+    """Put in a part with two cells that no sweep into this store asked for."""
+    rows = pq.ParquetFile(first(folder, "cells")).read()
+    for name in ("key", "line"):
+        other = pa.array([f"other {value}" for value in rows.column(name).to_pylist()])
+        rows = rows.set_column(rows.column_names.index(name), name, other)
+    write_part(folder / "cells", "cells", rows, LATER)
 
 
-def strange_errors(folder: Path) -> None:
-    a, b = sorted((folder / "errors").glob("part-*"))
-    shutil.copy(b, a)
+def in_another_folder(folder: Path) -> None:
+    path = first(folder, "timings")
+    shutil.copy(path, folder / "cells" / path.name)
 
 
 def flipped(folder: Path) -> None:
@@ -143,6 +134,11 @@ def cut_manifest(folder: Path) -> None:
     path.write_text(path.read_text()[:500])
 
 
+def reformat(number: int) -> Callable[[dict[str, object]], object]:
+    """As another version of crankcheck would lay it out."""
+    return lambda said: said.update(format=number)
+
+
 def renamed(said: dict[str, object]) -> None:
     said["scenes"] = {name: str(text) + "\n# changed" for name, text in said["scenes"].items()}
 
@@ -154,50 +150,38 @@ def all_cells(folder: Path) -> None:
 
 CASES = {
     "cut": Case(cut("cells"), "cut short; 2 cells missing", 2, gate=2),
-    "empty": Case(content("cells", b""), "empty; 2 cells missing", 2, gate=2),
-    "text": Case(content("cells", b"dear diary"), "no Parquet file; 2 cells missing", 2, gate=2),
-    "foreign": Case(foreign, "table cells (no column key); 2 cells missing", 2, gate=2),
-    "words": Case(words_for_numbers, "no part of the table cells", 2, gate=2),
+    "empty": Case(content("cells", b""), "cut short; 2 cells missing", 2, gate=2),
+    "text": Case(content("cells", b"dear diary"), "cut short; 2 cells missing", 2, gate=2),
     "flipped": Case(flipped, "its checksum differs; 2 cells missing", 2, gate=2),
-    "newer": Case(reformat(2), "format 2, written by crankcheck", 2, "version", gate=2),
-    "older": Case(reformat(0), "format 0, written by crankcheck", 2, "version", gate=2),
-    "rewritten": Case(rewritten, "without a checksum", cure="nothing"),
+    "rewritten": Case(rewritten, "its checksum differs; 2 cells missing", 2, gate=2),
+    "swapped": Case(swapped, "its checksum differs; 2 cells missing", 0, gate=2),
     "twice": Case(twice, "rows that another part has too"),
-    "cells twice": Case(cells_twice, "rows that another part has too"),
-    "no cells": Case(gone("cells"), "not there, though its errors are; 2 cells", 2, gate=2),
-    "no errors": Case(gone("errors"), "not there; 2 cells without errors"),
-    "no traces": Case(gone("traces"), "not there; 2 cells without traces"),
-    "neither": Case(gone("errors", "traces"), "not there; 2 cells without errors"),
-    "errors folder": Case(without("errors"), "errors: not there; 4 cells without errors"),
-    "traces folder": Case(without("traces"), "traces: not there; 4 cells without traces"),
-    "cut errors": Case(cut("errors"), "cut short; 2 cells without errors"),
-    "cut traces": Case(cut("traces"), "cut short; 2 cells without traces"),
     "cut timings": Case(cut("timings"), "cut short; its times are lost"),
-    "strange errors": Case(strange_errors, "holds rows that are of no cell"),
-    "whole part": Case(
-        gone("cells", "errors", "traces", "timings"), "not all that its sweeps asked for", 2, gate=2
+    "timings file": Case(
+        in_place("timings", lambda path: path.write_text("x")), "in place of a folder; all times"
     ),
-    "cut manifest": Case(cut_manifest, "manifest.json: not JSON"),
-    "no manifest": Case(lambda folder: (folder / "manifest.json").unlink(), "json: not there"),
-    "other manifest": Case(manifest(renamed), "manifest.json: not as it was written"),
-    "listed": Case(in_place("manifest.json", lambda p: p.write_text("[]")), "a list"),
-    "newer manifest": Case(
-        manifest(lambda said: said.update(format=9)), "format 9, written by", cure="version"
-    ),
-    "plain manifest": Case(manifest(lambda s: s.pop("seal")), "without a checksum", cure="nothing"),
+    "whole part": Case(gone("cells", "timings"), "not all that its sweeps asked for", 2, gate=2),
+    "other store": Case(of_another_store, "no sweep in manifest.json asked for", cure="nothing"),
+    "other folder": Case(in_another_folder, "parquet: not of the store", cure="nothing"),
+    "cut manifest": Case(cut_manifest, "manifest.json: not JSON", 0, gate=2),
+    "no manifest": Case(in_place("manifest.json", lambda _: None), "json: not there", 0, gate=2),
+    "other manifest": Case(manifest(renamed), "manifest.json: not as it was written", 0, gate=2),
+    "plain manifest": Case(manifest(lambda said: said.pop("seal")), "checksum differs", 0, gate=2),
+    "listed": Case(in_place("manifest.json", lambda p: p.write_text("[]")), "a list", 0, gate=2),
+    "newer": Case(manifest(reformat(9)), "format 9, written by crankcheck", 0, "anew", gate=2),
+    "older": Case(manifest(reformat(1)), "format 1, written by crankcheck", 0, "anew", gate=2),
     "notes": Case(lambda f: (f / "notes.txt").write_text("x"), "notes.txt: not of", cure="nothing"),
     "finder": Case(
         lambda f: (f / "cells" / ".DS_Store").write_text("x"), "cells/.DS_Store: n", cure="nothing"
     ),
     "folder": Case(in_place("cells/*", Path.mkdir), "parquet: a folder; 2 cells", 2, gate=2),
-    "manifest folder": Case(in_place("manifest.json", Path.mkdir), "manifest.json: a folder"),
-    "loop": Case(in_place("cells/*", loop), "Too many levels of symbolic links", 2, gate=2),
-    "manifest loop": Case(in_place("manifest.json", loop), "Too many levels of symbolic links"),
-    "errors loop": Case(in_place("errors", loop), "errors: can not be read: Too many levels"),
-    "errors file": Case(
-        in_place("errors", lambda path: path.write_text("x")), "errors: a file in place of a folder"
+    "manifest folder": Case(
+        in_place("manifest.json", Path.mkdir), "manifest.json: a folder", 0, gate=2
     ),
-    "all cells": Case(all_cells, "empty; 2 cells missing", 0, gate=2),
+    "loop": Case(in_place("cells/*", loop), "Too many levels of symbolic links", 2, gate=2),
+    "manifest loop": Case(in_place("manifest.json", loop), "Too many levels", 0, gate=2),
+    "timings loop": Case(in_place("timings", loop), "timings: can not be read: Too many levels"),
+    "all cells": Case(all_cells, "cut short; 2 cells missing", 0, gate=2),
     "cells file": Case(
         in_place("cells", lambda path: path.write_text("x")), "cells: a file in place of", 0, gate=2
     ),

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from rich.console import Console
 
@@ -16,10 +18,11 @@ from models.errors import CrankcheckError
 from reports.cli.checking import DiffRequest, VerifyRequest
 from reports.cli.commands import diff, report, verify
 from reports.store.damage import notice
-from reports.store.examine import examine
+from reports.store.examine import UNASKED, examine
 from reports.store.manifest import MANIFEST
+from reports.store.part import write_part
 from reports.store.reader import Stored, read_store
-from tests.reports.store.damages import CASES, LATER, cut, first, gone, without
+from tests.reports.store.damages import CASES, cut, first
 
 BY_CHANCE = ["wall_s", "logged_us_per_step"]
 TIMES = ["us_per_step", "us_per_step_median", "us_per_step_a", "us_per_step_b", "s_per_turn"]
@@ -66,7 +69,7 @@ def test_what_can_be_read_is_reported_and_the_rest_is_named(
     named = [line.partition(": ")[0] for line in told.splitlines()]
     assert len(named) == len(set(named)), "each damaged thing is named once"
     assert ("what mends it: crankcheck sweep" in told) == (case.cure == "sweep")
-    assert ("into this one is refused" in told) == (case.cure == "version")
+    assert ("make it anew: crankcheck sweep" in told) == (case.cure == "anew")
     if not case.cells:
         return
     assert f"{case.cells} cells can be read" in told
@@ -98,7 +101,7 @@ def test_the_same_sweep_mends_it_and_throws_nothing_away(
     name: str, store: Path, whole: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
 ) -> None:
     CASES[name].change(store)
-    aside = {store / path for each in examine(store).damage for path in each.aside}
+    aside = {store / each.path for each in examine(store).damage if each.aside}
     kept = [path.read_bytes() for path in aside if path.is_file()]
     assert swept(store) == 0
     told = capsys.readouterr().err
@@ -126,21 +129,17 @@ def test_what_is_not_damaged_is_left_alone(
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "version"])
-def test_another_format_is_not_written_to(name: str, store: Path, swept: Sweep) -> None:
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.cure == "anew"])
+def test_another_format_is_refused_in_a_line_and_not_written_to(
+    name: str, store: Path, swept: Sweep
+) -> None:
     CASES[name].change(store)
     before = {path: path.read_bytes() for path in store.rglob("*") if path.is_file()}
     code, message = ended(swept, store)
     assert code == 2
-    assert "name a new folder, or use the crankcheck that wrote it" in message
+    assert "\n" not in message
+    assert "which reads format 2; move it away, and make it anew: crankcheck sweep" in message
     assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
-
-
-def test_of_a_cell_that_is_there_twice_the_one_beside_its_errors_counts(store: Path) -> None:
-    CASES["cells twice"].change(store)
-    found = read_store(store)
-    assert "without errors" not in "".join(found.notice)
-    assert set(found.errors.key) == set(found.cells.key)
 
 
 def test_an_unreadable_file_is_damaged_too(
@@ -193,42 +192,44 @@ def test_both_runs_may_have_lost_the_same_cell(store: Path) -> None:
     assert (code, "has lost too" in message) == (2, True)
 
 
-def test_a_lost_manifest_is_made_again_with_a_note(store: Path, swept: Sweep, whole: Path) -> None:
+def test_a_lost_manifest_is_made_again_and_no_whole_cell_is_run_again(
+    store: Path, swept: Sweep, whole: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (store / MANIFEST).unlink()
-    wanted = read_store(whole).manifest
-    for mended in (False, True):
-        if mended:
-            assert swept(store) == 0
-        found = read_store(store).manifest
-        assert found.scenes == wanted.scenes
-        facts = found.runs[0]["provenance"]
-        assert {facts[name] for name in ("mujoco", "pymunk")} == {
-            wanted.runs[-1]["provenance"][name] for name in ("mujoco", "pymunk")
-        }
-        assert "the manifest was lost" in facts["note"]
-        assert found.runs[0]["lines"] == wanted.runs[-1]["lines"]
-    assert len(found.runs) == 2
+    parts = {path: path.read_bytes() for path in store.glob("*/*.parquet")}
+    assert swept(store, "pymunk") == 0
+    found = read_store(store)
+    assert set(found.cells.engine) == {"pymunk"}
+    assert found.manifest.scenes == read_store(whole).manifest.scenes
+    assert UNASKED in "".join(found.notice)  # of MuJoCo
+    assert swept(store) == 0
+    same(read_store(store), read_store(whole))
+    assert read_store(store).notice == []
+    assert {path: path.read_bytes() for path in store.glob("*/*.parquet")} == parts
+    assert len(read_store(store).manifest.runs) == 2
 
 
 def test_a_lost_manifest_does_not_let_another_scene_in(store: Path, swept: Sweep) -> None:
     (store / MANIFEST).unlink()
     for path in (store / "cells").iterdir():
-        frame = pd.read_parquet(path)
-        frame["scene_digest"] = "another"
-        frame.to_parquet(path)
+        rows = pq.ParquetFile(path).read()
+        at = rows.column_names.index("scene_digest")
+        other = pa.array(["another"] * rows.num_rows)
+        path.unlink()
+        write_part(store / "cells", "cells", rows.set_column(at, "scene_digest", other), 1)
     code, message = ended(swept, store)
     assert (code, "another scene called fourbar-lecture-1" in message) == (2, True)
 
 
-def test_cells_that_nobody_asks_for_again_stay_and_are_told(
-    store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
+def test_cells_that_nobody_asks_for_again_stay_lost_and_pass_no_gate(
+    store: Path, whole: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    gone("errors")(store)  # of MuJoCo
+    cut("cells")(store)  # of MuJoCo
     assert swept(store, "pymunk") == 0
-    told = capsys.readouterr().err
-    assert "4 cells can be read, none missing" in told
-    assert "2 cells without errors" in told
-    assert len(read_store(store).cells) == 4
+    assert "cut short; 2 cells missing" in capsys.readouterr().err
+    assert "2 cells can be read, 2 missing" in read_store(store).notice[0]
+    code, message = ended(diff.run_diff, diff.DiffRequest(whole, store), paper())
+    assert (code, "may be among what is missing there" in message) == (2, True)
 
 
 def test_what_was_moved_before_is_not_overwritten(store: Path, swept: Sweep) -> None:
@@ -303,9 +304,7 @@ def test_a_name_can_not_speak_to_the_terminal(store: Path) -> None:
 
 
 def test_a_notice_is_no_longer_than_one_reads(store: Path) -> None:
-    found = read_store(store)
-    without("errors")(store)
+    cut("cells")(store)
     many = read_store(store).damage * 100
-    assert len(notice(store, many, 4, found.manifest)) <= 25
-    assert notice(store, (), 4, found.manifest) == []
-    assert LATER not in "".join(found.notice)
+    assert len(notice(store, many, 2, "again")) <= 25
+    assert notice(store, (), 4, "again") == []

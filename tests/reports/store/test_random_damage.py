@@ -13,7 +13,10 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.commands.report import run_report
+from reports.store.manifest import MANIFEST
+from reports.store.part import UnreadableError, open_part
 from reports.store.reader import Stored, read_store
+from tests.reports.store.damages import first
 
 SEED = 20261121
 
@@ -81,7 +84,20 @@ def test_no_number_changes_without_a_word(count: int, whole: Path, tmp_path: Pat
             if number % 10 == 0:
                 assert run_report(copy, None, "md", Console(file=StringIO())) == 0
         except CrankcheckError:
+            assert name == Path(MANIFEST), "one damaged part of two leaves cells to read"
             unread += 1
         (copy / name).write_bytes(raw)
-    assert said > 0.8 * count
-    assert unread == 0, "one damaged part of two leaves cells to read"
+    assert said + unread > 0.8 * count
+
+
+def test_a_bit_turned_over_anywhere_in_a_part_is_seen(whole: Path, tmp_path: Path) -> None:
+    part = first(whole, "timings")
+    raw, path = bytearray(part.read_bytes()), tmp_path / part.name
+    for at in (*range(0, len(raw), 1 + len(raw) // 500), *range(-40, 0)):
+        raw[at] ^= 1 << at % 8
+        path.write_bytes(raw)
+        with pytest.raises(UnreadableError):
+            open_part(path)
+        raw[at] ^= 1 << at % 8
+    path.write_bytes(raw)
+    assert len(open_part(path).keys) == 2

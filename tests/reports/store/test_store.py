@@ -6,15 +6,17 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 import pytest
 
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
+from reports.plan.key import digest
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.reader import read_store, stored_costs, stored_keys
-from reports.store.schema import table
+from reports.store.schema import NESTED, table
 from reports.store.writer import Writer
 from reports.sweep.measured import Outcome, measured
 
@@ -35,9 +37,6 @@ def filled(folder: Path, outcome: Outcome, *keys: str) -> None:
     with Writer(folder, Manifest({"a": TEXT}, ({"command": list(keys)},))) as writer:
         for key in keys:
             writer.cell({**names(key), **outcome.row}, outcome.errors, outcome.trace)
-
-
-LIMITS = {"limit_s": 60.0, "memory_gb": 2.0}
 
 
 def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: Outcome) -> None:
@@ -76,7 +75,9 @@ def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None
     assert list(found.cells.key) == ["k1", "k2"]
     assert found.cells.place_pure[0] == outcome.row["place_pure"]
     assert json.loads(found.cells.asked[0]) == {"a": 1}
-    assert len(found.errors) == 2 * len(outcome.errors)
+    rows = [{"key": key} | dict(each) for key in ("k1", "k2") for each in outcome.errors]
+    wanted = pd.DataFrame(rows).astype({"samples": float})[["key", *NESTED["errors"]]]
+    pd.testing.assert_frame_equal(found.errors, wanted, check_exact=True)
     trace = found.trace("k2")
     assert set(trace) == set(outcome.trace)
     for series, values in outcome.trace.items():
@@ -99,9 +100,15 @@ def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: Outcome
     assert [run["command"] for run in read_manifest(folder).runs] == [["k1"], ["k2"]]
 
 
+def test_a_cell_keeps_all_that_is_said_of_its_errors(outcome: Outcome) -> None:
+    of_the_cell = outcome.row.keys()
+    assert {name for row in outcome.errors for name in row} - of_the_cell == {*NESTED["errors"]}
+
+
 def test_types_of_columns_do_not_depend_on_what_is_missing() -> None:
-    full = {"key": "k", "gated": True, "place_pure": 1, "reason": "x", "values": np.ones(2)}
-    empty = dict.fromkeys(full)
+    full = {"key": "k", "gated": True, "place_pure": 1, "reason": "x"}
+    full |= {"trace": [{"series": "drive", "values": np.ones(2)}], "errors": [{"samples": 3}]}
+    empty = dict.fromkeys(full) | {"trace": []}
     assert table([full]).schema == table([empty]).schema
 
 
@@ -127,10 +134,13 @@ def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: Outcome)
 
 
 def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: Outcome) -> None:
-    filled(tmp_path / "s", outcome, "k1")
-    with pytest.raises(CrankcheckError, match="another scene called a"):
-        Writer(tmp_path / "s", Manifest({"a": TEXT.replace("1.0", "2.0")}))
-    Writer(tmp_path / "s", Manifest({"a": "# the same\n" + TEXT})).__exit__(None, None, None)
+    name = str(outcome.row["scene"])
+    with Writer(tmp_path / "s", Manifest({name: TEXT})) as writer:
+        row = {**names("k1"), "scene_digest": digest(TEXT), **outcome.row}
+        writer.cell(row, outcome.errors, outcome.trace)
+    with pytest.raises(CrankcheckError, match=f"another scene called {name}"):
+        Writer(tmp_path / "s", Manifest({name: TEXT.replace("1.0", "2.0")}))
+    Writer(tmp_path / "s", Manifest({name: "# the same\n" + TEXT})).__exit__(None, None, None)
 
 
 def test_a_folder_with_something_else_is_refused(tmp_path: Path) -> None:

@@ -15,14 +15,10 @@ from reports.cli.checking import DiffRequest
 from reports.cli.commands import diff, report
 from reports.store import lock
 from reports.store.damage import BUSY
+from reports.store.part import Part, open_part
 from reports.store.reader import read_store
-from tests.reports.store.damages import LATER, cut, gone
+from tests.reports.store.damages import cut, gone
 from tests.reports.store.test_damage import ended, paper
-
-NOT_YET = {
-    "errors first": gone("cells"),
-    "not begun": gone("cells", "errors", "traces", "timings"),
-}
 
 
 @pytest.fixture
@@ -32,11 +28,10 @@ def held(store: Path) -> Iterator[FileLock]:
         yield taken
 
 
-@pytest.mark.parametrize("name", NOT_YET)
 def test_cells_that_a_sweep_is_to_write_yet_are_no_damage(
-    name: str, store: Path, whole: Path, held: FileLock, capsys: pytest.CaptureFixture[str]
+    store: Path, held: FileLock, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    NOT_YET[name](store)
+    gone("cells", "timings")(store)
     assert report.run_report(store, None, "md", paper()) == 0
     told = capsys.readouterr().err.splitlines()
     assert told == [f"crankcheck: {store}: {BUSY}; 2 cells can be read, 2 missing"]
@@ -60,12 +55,30 @@ def test_a_comparison_with_a_running_sweep_waits_for_its_cells(
 
 
 def test_what_is_damaged_is_told_while_a_sweep_writes_too(store: Path, held: FileLock) -> None:
-    cut("errors")(store)
-    min((store / "traces").iterdir()).rename(store / "traces" / LATER)  # of cells to come
+    gone("cells")(store)
+    cut("timings")(store)
     lines = read_store(store).notice
     assert BUSY in lines[0]
-    assert "cut short; 2 cells without errors" in "\n".join(lines)
+    assert "cut short; its times are lost" in "\n".join(lines)
     assert "what mends it" in "\n".join(lines)
+
+
+def test_a_part_that_a_sweep_replaces_meanwhile_is_read_where_it_is_now(
+    store: Path, held: FileLock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replaced = []
+
+    def opened(path: Path) -> Part:
+        if not replaced:  # as where a cell that a limit ended is to be run again
+            replaced.append(path)
+            open_part(path).write_again([False, True])
+            path.unlink()
+        return open_part(path)
+
+    monkeypatch.setattr("reports.store.folder.open_part", opened)
+    found = read_store(store)
+    assert len(found.cells) == 3
+    assert [each.what for each in found.damage] == [BUSY]
 
 
 def test_a_sweep_without_a_cell_yet_is_said_to_run(store: Path, held: FileLock) -> None:
@@ -107,7 +120,7 @@ def test_a_lock_that_can_not_be_tried_hinders_no_reader(
 
         monkeypatch.setattr(lock.FileLock, "acquire", refused)
     before = sorted(store.rglob("*"))
-    assert "not there, though its errors are; 2 cells missing" in "".join(read_store(store).notice)
+    assert "was one stopped?; 2 cells missing" in "".join(read_store(store).notice)
     assert sorted(store.rglob("*")) == before
 
 
