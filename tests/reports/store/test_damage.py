@@ -291,6 +291,18 @@ def test_a_sweep_killed_at_its_very_start_goes_on(tmp_path: Path, swept: Sweep) 
     assert swept(tmp_path / "s", "pymunk", steps="90") == 0
 
 
+def test_what_a_killed_sweep_was_writing_is_no_damage_and_goes_with_the_next(
+    store: Path, swept: Sweep, capsys: pytest.CaptureFixture[str]
+) -> None:
+    half = [store / f".{MANIFEST}.1.tmp", store / "cells" / ".cells-1.parquet.1.tmp"]
+    for path in half:
+        path.write_bytes(b"half")
+    assert read_store(store).notice == []
+    assert swept(store) == 0
+    assert capsys.readouterr().err == ""
+    assert not any(path.exists() for path in half)
+
+
 def test_a_lock_that_can_not_be_taken_is_said(store: Path, swept: Sweep) -> None:
     (store / ".lock").unlink(missing_ok=True)
     (store / ".lock").mkdir()
