@@ -19,15 +19,14 @@ from reports.history.changes import (
 )
 from reports.history.overview import overview, profiles_of
 from reports.history.version_result import VersionResult, errors_of
+from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell
 
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     "angle\nrad": ("angle",),
     "place\n/ L": ("place",),
     "gap\n/ L": ("pin gap", "slider gap"),
-    "veloc.\n/ w": ("velocity",),
-    "accel.\n/ w^2": ("acceleration",),
-}
+} | {QUANTITIES[name].head: (name,) for name in named("derived") if QUANTITIES[name].head}
 """Head, and the quantities that the column shows the largest of."""
 NARROW = ("angle\nrad", "gap\n/ L")
 WIDE = 100

@@ -11,6 +11,7 @@ from packaging.version import InvalidVersion, Version
 
 from models.errors import CrankcheckError
 from reports.history.environments import EngineVersion
+from reports.quantities import QUANTITIES, named
 from reports.results.changes.reading import read_run
 from reports.results.changes.runs import StoredCell, StoredRun
 
@@ -36,8 +37,9 @@ FOLLOWED: Mapping[str, FollowedError] = {
     "place": FollowedError("of L", ("displacement", "position"), "position"),
     "pin gap": FollowedError("of L", ("pin gap",), "gap"),
     "slider gap": FollowedError("of L", ("slider gap",), "gap"),
-    "velocity": FollowedError("of w", ("velocity",), "velocity", rate=True),
-    "acceleration": FollowedError("of w^2", ("acceleration",), "acceleration", rate=True),
+} | {
+    name: FollowedError(f"of {QUANTITIES[name].share}", (name,), name, rate=True)
+    for name in named("derived")
 }
 
 

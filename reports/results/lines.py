@@ -149,16 +149,15 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
     )
 
 
-UNITS = ("rad_s2", "m_s2", "rad_s", "m_s", "rad", "m")
-
-
 def _unit(quantity: str) -> str:
     """The unit of a column of errors."""
     if quantity.endswith("_pure"):
-        entry = QUANTITIES.get(quantity.partition("_")[0])
-        return entry.share if entry else "rad"
-    found = next((unit for unit in UNITS if quantity.endswith(f"_{unit}")), "")
-    return found.replace("_s2", "/s^2").replace("_s", "/s")
+        names = [n for n in QUANTITIES if quantity.startswith(f"{n.replace('-', '_')}_")]
+        return QUANTITIES[names[0]].share if names else "rad"
+    units = {measure.unit for entry in QUANTITIES.values() for measure in entry.measures}
+    ends = {f"_{re.sub('[ /]', '_', unit).replace('^', '')}": unit for unit in units}
+    end = max((end for end in ends if quantity.endswith(end)), key=len, default="")
+    return ends.get(end, "")
 
 
 def _rounding(rows: pd.DataFrame) -> float:

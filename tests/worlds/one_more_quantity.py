@@ -60,6 +60,8 @@ def main() -> None:
     and one that is held to too little."""
     from rich.console import Console
 
+    from reports.history.table import COLUMNS
+    from reports.history.version_result import FOLLOWED
     from reports.judge.cell import Cell, check
     from reports.judge.frames import cell_frame, error_frame
     from reports.page.sections.convergence import DIAGRAMS
@@ -88,6 +90,7 @@ def main() -> None:
         "table": text.getvalue(),
         "page": DIAGRAMS,
         "tune": OTHERS,
+        "history": [vars(FOLLOWED["pull"]), COLUMNS],
         "diff": COMPARED,
     }
     print(json.dumps(told))

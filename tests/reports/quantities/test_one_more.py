@@ -73,6 +73,9 @@ def test_it_has_its_columns_in_frames_store_and_tables(told: Told) -> None:
     assert told["page"]["pull_pure"] == ["pull at C", "F"]
     assert told["tune"]["pull_pure"] == "pull / F"
     assert told["diff"][-1] == "pull"
+    followed, heads_of_history = told["history"]
+    assert followed == {"unit": "of F", "stored": ["pull"], "tolerance": "pull", "rate": True}
+    assert heads_of_history["pull\n/ F"] == ["pull"]
 
 
 def test_all_else_is_as_it_was(told: Told) -> None:
