@@ -6,7 +6,8 @@ message and exits with 2; anything else that escapes is a fault of crankcheck.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import difflib
+from collections.abc import Iterable, Sequence
 
 SHOWN = 20
 """Faults of one scene that a message lists; the others are counted."""
@@ -18,6 +19,31 @@ def harmless(text: str) -> str:
     ``\\x1b`` moves a cursor, ``\\u202e`` turns text round; new lines and tabs stay.
     """
     return "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in text)
+
+
+def nearest(name: str, names: Iterable[str], most: int = 3, cutoff: float = 0.4) -> list[str]:
+    """The names that one may have meant, the nearest first; ``cutoff`` is how alike, 0 to 1."""
+    return difflib.get_close_matches(name[:200], names, most, cutoff)
+
+
+def suggestion(
+    name: str, names: Iterable[str], otherwise: str, most: int = 3, cutoff: float = 0.4
+) -> str:
+    """What would work in place of a name: the nearest names, or all of them after ``otherwise``."""
+    if near := nearest(name, names, most, cutoff):
+        return f"did you mean {' or '.join(near)}?"
+    return f"{otherwise} {', '.join(names)}"
+
+
+def few(names: Iterable[str], most: int) -> str:
+    """The first names of a list, and how many more there are."""
+    each = list(names)
+    return ", ".join(each[:most]) + (f" and {len(each) - most} more" if len(each) > most else "")
+
+
+def cut(text: str, most: int = 60) -> str:
+    """A text short enough for a message."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 class CrankcheckError(Exception):

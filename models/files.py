@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 import tomllib
@@ -13,7 +12,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
-from models.errors import CrankcheckError, SceneError
+from models.errors import CrankcheckError, SceneError, cut, nearest, suggestion
 from models.names import faults_of_names
 from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
@@ -67,10 +66,11 @@ def find_scene(name_or_path: str) -> Path:
         there = False
     if there:
         return path
-    near = difflib.get_close_matches(path.stem[:200], known, n=3, cutoff=0.5)
+    near = nearest(path.stem, known, cutoff=0.5)
     hint = f"Did you mean {' or '.join(near)}?" if near else "`crankcheck scenes` lists the names."
-    shown = name_or_path if len(name_or_path) <= 80 else name_or_path[:77] + "..."
-    raise CrankcheckError(f"scene {shown!r}: neither a shipped scene nor a file. {hint}")
+    raise CrankcheckError(
+        f"scene {cut(name_or_path, 80)!r}: neither a shipped scene nor a file. {hint}"
+    )
 
 
 def read_scene(path: Path) -> Scene:
@@ -186,14 +186,13 @@ def _line(
 ) -> str:
     """One fault in one line: key, what was found, what would work."""
     parts = [str(part) for part in loc if part != "[key]"]
-    key = prefix + ".".join(part if len(part) <= 60 else part[:57] + "..." for part in parts)
+    key = prefix + ".".join(map(cut, parts))
     if kind == "missing":
         return f"{key}: missing; add it"
     if kind == "extra_forbidden":
-        known = _keys_at(model, loc)
-        near = difflib.get_close_matches(parts[-1][:200], known, n=1)
-        cure = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
-        return f"{key}: unknown key; {cure}"
+        return (
+            f"{key}: unknown key; {suggestion(parts[-1], _keys_at(model, loc), 'known:', 1, 0.6)}"
+        )
     if kind == "string_pattern_mismatch":
         text = parts[-1] in ("source", "note")
         message = (

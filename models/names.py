@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from models.errors import cut
 from models.scene import GROUND
 
 
@@ -25,14 +26,9 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _cut(name: str) -> str:
-    """A name short enough for a message; a long one is a fault of its own."""
-    return name if len(name) <= 60 else name[:57] + "..."
-
-
 def _list(names: Iterable[str]) -> str:
     """The first of the names, for a message."""
-    shown = [_cut(name) for name in names]
+    shown = [cut(name) for name in names]
     return ", ".join(shown[:12]) + (", ..." if len(shown) > 12 else "")
 
 
@@ -55,7 +51,7 @@ def _links(points: Mapping[str, set[str]], sliders: Mapping[str, Any]) -> Iterat
             yield f"links.{name}: that name stands for what does not move; name the link otherwise"
     for name in sliders:
         if name in points:
-            yield f"sliders.{_cut(name)}: a link has that name too; name the slider after its point"
+            yield f"sliders.{cut(name)}: a link has that name too; name the slider after its point"
 
 
 def _sliders(
@@ -71,22 +67,22 @@ def _sliders(
     for name, slider in sliders.items():
         if not isinstance(slider, Mapping):
             continue
-        key, point = f"sliders.{_cut(name)}", slider.get("point", name)
+        key, point = f"sliders.{cut(name)}", slider.get("point", name)
         if not isinstance(point, str):
             continue
         on, link = slider.get("on"), slider.get("link")
         if isinstance(on, str) and on != GROUND and on not in points:
-            yield f"{key}.on: found {_cut(on)}; use one of {_list([GROUND, *points])}"
+            yield f"{key}.on: found {cut(on)}; use one of {_list([GROUND, *points])}"
         if isinstance(link, str) and link not in points:
-            yield f"{key}.link: found {_cut(link)}; use one of {_list(points)}"
+            yield f"{key}.link: found {cut(link)}; use one of {_list(points)}"
         elif isinstance(link, str) and link == on:
-            yield f"{key}.on: link {_cut(link)} slides on itself; name another body"
+            yield f"{key}.on: link {cut(link)} slides on itself; name another body"
         elif isinstance(link, str) and point not in points[link]:
             have = _list(sorted(points[link]))
-            yield f"{key}.point: {_cut(link)} has no point {_cut(point)}; it has {have}"
+            yield f"{key}.point: {cut(link)} has no point {cut(point)}; it has {have}"
         elif link is None and point not in everywhere and blocks.count(point) < 2:
             have = _list(sorted(everywhere))
-            yield f"{key}.point: no body has a point {_cut(point)}; set point to one of {have}"
+            yield f"{key}.point: no body has a point {cut(point)}; set point to one of {have}"
 
 
 def _driver(
@@ -97,12 +93,12 @@ def _driver(
     if not isinstance(link, str):
         return
     if link not in points:
-        yield f"driver.link: found {_cut(link)}; use one of {_list(points)}"
+        yield f"driver.link: found {cut(link)}; use one of {_list(points)}"
     elif not points[link] & ground:
-        yield f"driver.link: {_cut(link)} has no ground pin to turn about; give it a ground point"
+        yield f"driver.link: {cut(link)} has no ground pin to turn about; give it a ground point"
 
 
 def _branch(branch: Mapping[str, Any], choices: set[str]) -> Iterator[str]:
     for name in branch:
         if name not in choices:
-            yield f"branch.{_cut(name)}: no pin or slider of that name"
+            yield f"branch.{cut(name)}: no pin or slider of that name"

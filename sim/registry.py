@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, cast
 
-from models.errors import EngineError
+from models.errors import EngineError, suggestion
 from sim.engine import Engine
 
 ENGINES: Mapping[str, str] = {
@@ -47,9 +46,7 @@ class Availability:
 def declaration(name: str) -> Declaration:
     """What an engine's folder holds. Raises EngineError, with near names, for an unknown one."""
     if name not in ENGINES:
-        near = difflib.get_close_matches(name, ENGINES, n=2, cutoff=0.4)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(ENGINES)}"
-        raise EngineError(f"engine {name!r}: unknown; {hint}")
+        raise EngineError(f"engine {name!r}: unknown; {suggestion(name, ENGINES, 'there are')}")
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 
-from models.errors import EngineError
+from models.errors import EngineError, nearest
 from sim.engine import Engine, Profile, Settings, SettingValue
 
 
@@ -33,7 +32,7 @@ def resolved(profile: Profile, overrides: Settings | None) -> dict[str, SettingV
     settings = {name: setting.value for name, setting in profile.settings.items()}
     for name, value in (overrides or {}).items():
         if name not in settings:
-            near = difflib.get_close_matches(name, settings, n=1, cutoff=0.6)
+            near = nearest(name, settings, 1, 0.6)
             hint = f"did you mean {near[0]}? " if near else ""
             raise SettingError(
                 f"setting {name!r}: {profile.engine} has none of that name; {hint}"

@@ -12,11 +12,11 @@ A link that is pinned at two or more points to bodies that move without it is re
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from analytic.structure.groups import Bridge, Group, Pairs, decompose
-from models.errors import StructureError
+from models.errors import StructureError, few
 from models.joints import block_name
 from models.scene import GROUND, Scene, Slider
 
@@ -158,17 +158,11 @@ def _no_closed_form(
         inside, outside = _pairs_of(set(group), left, pins, prismatics)
         if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
             return (
-                f"links {_named(group)} form an Assur group of {size} links and "
+                f"links {few(group, SHOWN)} form an Assur group of {size} links and "
                 f"{3 * size // 2} pairs (class III or higher), which has no closed form here; "
                 "dyads (RRR, RRP, RPR, PRP, RPP) have"
             )
-    return f"{_named(left)} do not hang on the driver and the ground by dyads; check their pins"
-
-
-def _named(links: Sequence[str]) -> str:
-    """Links by name, as many as are read, and how many more there are."""
-    more = f" and {len(links) - SHOWN} more" if len(links) > SHOWN else ""
-    return ", ".join(links[:SHOWN]) + more
+    return f"{few(left, SHOWN)} do not hang on the driver and the ground by dyads; check their pins"
 
 
 def _parts(

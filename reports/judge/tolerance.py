@@ -32,12 +32,11 @@ is taken as it stands.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.quantities import QUANTITIES
@@ -130,8 +129,7 @@ def _known(name: str, place: str) -> str:
     """The name, or a CrankcheckError that suggests the near ones."""
     if name in DEFAULTS:
         return name
-    near = difflib.get_close_matches(name, DEFAULTS, n=2)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"use one of {', '.join(DEFAULTS)}"
+    hint = suggestion(name, DEFAULTS, "use one of", 2, 0.6)
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 

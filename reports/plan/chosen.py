@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from analytic.kinematics import solve
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, nearest
 from models.files import load_scene, shipped
 from models.scene import Scene
 from reports.judge.tolerance import check_names
@@ -71,7 +70,7 @@ def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[
         for each in engines:
             known = list(engine(each).profiles)
             if name not in known:
-                near = difflib.get_close_matches(name, known, n=2, cutoff=0.4) or known
+                near = nearest(name, known, 2) or known
                 raise CrankcheckError(
                     f"profile {name!r}: {each} has none of that name; "
                     f"did you mean {' or '.join(near)}?"

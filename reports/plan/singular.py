@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.kinematics import repeats_after, solve, solve_driven
 from models.array import Array, Mask
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.motion import Crossing, Motion
 from models.scene import Scene
 from reports.compare.change_points import near
@@ -87,8 +87,7 @@ def singular_note(scene: Scene, motion: Motion) -> str:
     ]
     if not places:
         return ""
-    more = f" and {len(places) - SHOWN} more" if len(places) > SHOWN else ""
-    return f"singular at {', '.join(places[:SHOWN])}{more}: rates are not determined there"
+    return f"singular at {few(places, SHOWN)}: rates are not determined there"
 
 
 def _range(scene: Scene, duration_s: float) -> tuple[float, float]:

@@ -17,7 +17,6 @@ A list of values makes a variant for each of them, or for each combination of se
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import tomllib
 from pathlib import Path
@@ -27,7 +26,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, ValidationError
 from pydantic_core import ErrorDetails
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, suggestion
 from models.files import read_text
 from sim.engine import SettingValue
 
@@ -115,9 +114,7 @@ def _fault(fault: ErrorDetails) -> str:
     key, message = ".".join(parts) or "study", fault["msg"]
     if fault["type"] == "extra_forbidden":
         known = Variant.model_fields if parts[0] == "variants" else Study.model_fields
-        near = difflib.get_close_matches(parts[-1][:80], known, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
-        return f"{key}: unknown key; {hint}"
+        return f"{key}: unknown key; {suggestion(parts[-1], known, 'known:', 1, 0.6)}"
     if fault["type"] == "missing":
         return f"{key}: missing; add it"
     if not parts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from models.errors import few
 from reports.results.candidates import NOT_RUN, Candidate
 from reports.results.fits.words import short
 from reports.results.lines import called
@@ -42,7 +43,7 @@ def broken(one: Candidate, known: Sequence[Candidate], target: float) -> str:
     if not finer:
         return ""
     first = min(finer, key=lambda c: c.steps_per_turn)
-    return f"not at {first.steps_per_turn:g} steps a turn: {_list(_missed(first, target))}"
+    return f"not at {first.steps_per_turn:g} steps a turn: {few(_missed(first, target), SHOWN)}"
 
 
 def about(known: Sequence[Candidate], best: Candidate, target: float) -> tuple[str, ...]:
@@ -74,7 +75,7 @@ def _shortfall(one: Candidate, target: float) -> str:
         scene = min(one.errors, key=lambda name: one.errors[name])
         return f"on no scene, {short(one.errors[scene])} on {scene} at best"
     missing = [f"{scene} {why}" for scene, why in one.faults.items() if why == NOT_RUN]
-    rest = _list([*_missed(one, target), *missing])
+    rest = few([*_missed(one, target), *missing], SHOWN)
     return f"on {one.reaching(target)} of {one.scenes} scenes; {rest}"
 
 
@@ -83,12 +84,6 @@ def _missed(one: Candidate, target: float) -> list[str]:
     failed = [f"{scene} {why}" for scene, why in one.faults.items() if why != NOT_RUN]
     over = sorted(((e, s) for s, e in one.errors.items() if e > target), reverse=True)
     return failed + [f"{scene} {short(error)}" for error, scene in over]
-
-
-def _list(parts: Sequence[str]) -> str:
-    shown = ", ".join(parts[:SHOWN])
-    rest = len(parts) - SHOWN
-    return shown + (f" and {rest} more" if rest > 0 else "")
 
 
 def _worst(one: Candidate) -> float:

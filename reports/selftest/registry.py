@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Sequence
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, suggestion
 from reports.selftest import clock, engines, mechanism, misplaced, missing, values
 from reports.selftest.fault import Fault
 
@@ -36,8 +35,7 @@ def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
     held = set(engines)
     for name in names:
         if name not in FAULTS:
-            near = difflib.get_close_matches(name, FAULTS, n=3, cutoff=0.4)
-            hint = f"did you mean {' or '.join(near)}?" if near else f"use {', '.join(FAULTS)}"
+            hint = suggestion(name, FAULTS, "use")
             raise CrankcheckError(f"--fault {name!r}: there is none of that name; {hint}")
         if not any(map(FAULTS[name].possible, held)):
             able = " and ".join(FAULTS[name].engines) or "engines that are not installed"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.progress import track
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, suggestion
 from models.schema import NAME
 from reports.figures.registry import FIGURES
 from reports.figures.saving import FORMATS, saved
@@ -94,7 +93,6 @@ def _chosen(asked: Sequence[str], known: Iterable[str], option: str, noun: str) 
     every = list(known)
     for name in asked:
         if name not in every:
-            near = difflib.get_close_matches(name, every, n=2, cutoff=0.4)
-            hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(every)}"
+            hint = suggestion(name, every, "there are", 2)
             raise CrankcheckError(f"{option} {name}: no such {noun} here; {hint}")
     return list(dict.fromkeys(asked)) or every

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 from rich.console import Console
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, suggestion
 from reports.cli.measuring import StabilityRequest
 from reports.output.numbers import count
 from reports.output.provenance import provenance
@@ -76,9 +75,7 @@ def _cases(names: Sequence[str]) -> list[Case]:
     """The named cases, or all."""
     for name in names:
         if name not in CATALOGUE:
-            near = difflib.get_close_matches(name, CATALOGUE, n=3, cutoff=0.4)
-            hint = f"did you mean {' or '.join(near)}?" if near else f"use {', '.join(CATALOGUE)}"
-            raise CrankcheckError(f"case {name!r}: unknown; {hint}")
+            raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
     return [CATALOGUE[name] for name in dict.fromkeys(names or CATALOGUE)]
 
 
