@@ -5,8 +5,9 @@ from __future__ import annotations
 import statistics
 from dataclasses import dataclass
 
+from reports.output.numbers import count
 from reports.results.changes.changes import Diff
-from reports.results.changes.runs import counted, few
+from reports.results.changes.runs import each_once
 from reports.results.cost import equal, noise_of
 
 LEAST_NOISE = 0.1
@@ -48,7 +49,7 @@ def cost_text(diff: Diff) -> str:
     if not found:
         return ""
     told = [
-        f"{one.engine} {one.variant} {one.ratio:.2f} x (median of {counted(one.cells, 'cell')})"
+        f"{one.engine} {one.variant} {one.ratio:.2f} x (median of {count(one.cells, 'cell')})"
         for one in sorted(found, key=lambda one: -one.ratio)
         if not one.equal(noise)
     ]
@@ -56,4 +57,4 @@ def cost_text(diff: Diff) -> str:
     if not told:
         return f"time of a step, as advice: equal {rest}"
     others = f"; the others equal {rest}" if len(told) < len(found) else ""
-    return f"time of a step, new over old, as advice: {few(told, 6)}{others}"
+    return f"time of a step, new over old, as advice: {each_once(told, 6)}{others}"

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from reports.diff.costs import cost_text
+from reports.output.numbers import count
 from reports.results.changes.changes import CellPair, Diff, ErrorChange, Word, other_settings
-from reports.results.changes.runs import CellName, StoredCell, StoredRun, counted, few
+from reports.results.changes.runs import CellName, StoredCell, StoredRun, each_once
 
 REASON = 120
 """Characters of the reason that an engine gave for how it ended."""
@@ -81,13 +82,13 @@ def remarks(diff: Diff) -> list[str]:
     found += [note for note in diff.new.notes if note not in diff.old.notes]
     scenes = list(dict.fromkeys(cell.name.scene for cell in diff.other_scene))
     if scenes:
-        number = counted(len(diff.other_scene), "cell")
-        found.append(f"the text of {few(scenes, 10)} changed: {number} not compared")
+        number = count(len(diff.other_scene), "cell")
+        found.append(f"the text of {each_once(scenes, 10)} changed: {number} not compared")
     failed = [pair.new.status for pair in diff.pairs if pair.failed]
     if failed:
-        found.append(f"{len(failed)} of the equal ones failed in both ({few(failed)})")
+        found.append(f"{len(failed)} of the equal ones failed in both ({each_once(failed)})")
     for (engine, variant), changed in other_settings(diff.pairs).items():
-        found.append(f"settings of {engine} {variant} differ: {few(changed.values(), 6)}")
+        found.append(f"settings of {engine} {variant} differ: {each_once(changed.values(), 6)}")
     return [text for text in (*found, cost_text(diff)) if text]
 
 
@@ -115,7 +116,7 @@ def versions(diff: Diff) -> str:
     found: dict[str, dict[str, None]] = {}
     for pair in diff.pairs:
         found.setdefault(pair.name.engine, {})[_versions(pair)] = None
-    return "; ".join(f"{engine} {few(each)}" for engine, each in found.items())
+    return "; ".join(f"{engine} {each_once(each)}" for engine, each in found.items())
 
 
 def told(pair: CellPair) -> str:

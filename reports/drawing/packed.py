@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from models.array import Array
-from reports.output.numbers import plain
+from reports.output.numbers import DIGITS, finite
 
 LEVELS = 32767
 MISSING = -32768
@@ -26,7 +26,7 @@ ESCAPES = {
 
 def embedded(value: object) -> Markup:
     """A value as JSON that may stand inside a script element: no ``</script>``, no ``<!--``."""
-    text = json.dumps(plain(value), allow_nan=False, separators=(",", ":"))
+    text = json.dumps(finite(value, DIGITS), allow_nan=False, separators=(",", ":"))
     for character, escape in ESCAPES.items():
         text = text.replace(character, escape)
     return Markup(text)

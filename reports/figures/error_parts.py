@@ -21,8 +21,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 from models.array import Array
 from reports.figures.grids import grid
 from reports.figures.style import INK, TINY, power_of_ten
+from reports.output.numbers import short
 from reports.results.error_parts import Parts, Split, split, worst_body
-from reports.results.fits.words import short
 from reports.results.lines import Line, named
 from reports.results.looks import label
 from reports.results.origin import notes

@@ -9,6 +9,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from reports.history.version_result import FOLLOWED, FollowedError, VersionResult, errors_of
+from reports.output.numbers import count
 from reports.results.changes.changes import (
     CellPair,
     Diff,
@@ -17,7 +18,7 @@ from reports.results.changes.changes import (
     floor,
     other_settings,
 )
-from reports.results.changes.runs import CellName, counted
+from reports.results.changes.runs import CellName
 
 STANDS_OUT = 2.0
 """The factor from which on an error that changed is told of in words."""
@@ -134,7 +135,7 @@ def _ended(step: VersionStep) -> list[Headline]:
     lines = []
     for (profile, was, now), members in groups.items():
         first = members[0]
-        more = f" and {counted(len(members) - 1, 'more scene')}" if len(members) > 1 else ""
+        more = f" and {count(len(members) - 1, 'more scene')}" if len(members) > 1 else ""
         why = f": {first.new.reason[:120]}" if first.new.reason else ""
         text = (
             f"{step.after.version} ends as {now}, {step.before.version} as {was}, in "
@@ -163,7 +164,7 @@ def _judged(step: VersionStep) -> list[Headline]:
 
 def _scenes(members: Sequence[CellPair]) -> str:
     """One scene by its name, several by their number."""
-    return members[0].name.scene if len(members) == 1 else counted(len(members), "scene")
+    return members[0].name.scene if len(members) == 1 else count(len(members), "scene")
 
 
 def _factors(changes: Sequence[FollowedChange]) -> list[Headline]:

@@ -13,14 +13,19 @@ DIGITS = 6
 """Significant digits of an embedded number: more than a screen shows."""
 
 
+def short(value: float, digits: int = 2) -> str:
+    """7.5e-4 for 0.00075; what is not finite by its name."""
+    mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
+
+
 def error_text(value: float | None, digits: int = 2) -> str:
     """A pure error with few digits, such as 2.7e-4; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return NONE
     if value == 0.0:
         return "0"
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
+    return short(value, digits)
 
 
 def duration(value_s: float | None) -> str:
@@ -51,20 +56,19 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
-def plain(value: object) -> object:
-    """A value as JSON holds it: numbers to six digits, what is not finite as None."""
-    if isinstance(value, bool | str) or value is None:
-        return value
+def finite(value: object, digits: int | None = None) -> object:
+    """A value, and all that it holds, as JSON knows it: what is not finite is None.
+
+    With ``digits`` numbers are cut to so many significant ones, and whole ones have no point.
+    """
     if isinstance(value, Mapping):
-        return {str(key): plain(each) for key, each in value.items()}
+        return {str(key): finite(each, digits) for key, each in value.items()}
     if isinstance(value, np.ndarray | list | tuple):
-        return [plain(each) for each in value]
-    number = float(value)  # type: ignore[arg-type]  # all that is left are numbers
-    if not math.isfinite(number):
-        return None
-    return _whole(number if number.is_integer() else float(f"{number:.{DIGITS}g}"))
-
-
-def _whole(number: float) -> float | int:
-    """A whole number without its point."""
-    return int(number) if number.is_integer() and abs(number) < 1e15 else number
+        return [finite(each, digits) for each in value]
+    number = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(number, float):
+        return number
+    if digits is None or not math.isfinite(number):
+        return number if math.isfinite(number) else None
+    near = number if number.is_integer() else float(f"{number:.{digits}g}")
+    return int(near) if near.is_integer() and abs(near) < 1e15 else near

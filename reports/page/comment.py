@@ -8,10 +8,9 @@ from collections.abc import Iterator
 
 from reports.judge.rules import RULES
 from reports.output.markdown import code, fitted, folded, plain, table
-from reports.output.numbers import count, listed
+from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.fits.words import short
 from reports.results.lines import named
 from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from reports.output.numbers import short
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import equal, noise, reached
-from reports.results.fits.words import short
 from reports.results.lines import Line, lines
 from reports.results.why_not import about, broken, nearest, nothing
 from reports.store.reader import Stored

@@ -10,8 +10,8 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
-from reports.results.fits.words import short
 from reports.results.lines import called
 from reports.results.one_processor import left_out, machine
 from reports.results.recommend import Recommendation
@@ -82,7 +82,7 @@ def _row(
 
 def short_target(target: float) -> str:
     """1e-3 for 0.001."""
-    return f"{target:.0e}".replace("e-0", "e-") if target < 1.0 else f"{target:g}"
+    return short(target, 1) if target < 1.0 else f"{target:g}"
 
 
 def _note(one: Recommendation) -> str:

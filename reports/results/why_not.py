@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from models.errors import few
+from reports.output.numbers import short
 from reports.results.candidates import NOT_RUN, Candidate
-from reports.results.fits.words import short
 from reports.results.lines import called
 
 SHOWN = 3

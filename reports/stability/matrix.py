@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 from pydantic import TypeAdapter
 
 from models.errors import CrankcheckError
-from reports.output.json_numbers import finite
+from reports.output.numbers import finite
 
 Outcome = Literal[
     "ok",

@@ -12,7 +12,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.drawing.moving import INSTANTS, displacements, drawing, drawn_links, moving_points
-from reports.output.numbers import plain
+from reports.output.numbers import DIGITS, finite
 from reports.stability.case import Case, Trial
 from reports.stability.matrix import Graded, Picture
 from sim.engine import Run
@@ -53,8 +53,8 @@ def picture(
         value=found.value,
         label=found.label,
         title=f"{case.title}: {case.parameter} {found.label} {case.unit}".strip(),
-        drawing=cast(Mapping[str, object], plain(shape)),
-        rows=plain(rows),
+        drawing=cast(Mapping[str, object], finite(shape, DIGITS)),
+        rows=finite(rows, DIGITS),
     )
 
 

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from reports.output.numbers import short
 from reports.stability.case import WITHIN
 from reports.stability.grades import MEANINGS
 from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
@@ -84,18 +85,14 @@ def _cell(case: CaseFacts, run: Graded | None) -> Text:
         return Text("")
     letter = LETTERS[run.outcome]
     bare = letter in BARE or math.isnan(run.error)
-    return Text(letter + ("" if bare else _short(run.error)), _style(case, run.outcome))
+    return Text(
+        letter + ("" if bare else short(run.error, 1).removesuffix("e0")), _style(case, run.outcome)
+    )
 
 
 def _style(case: CaseFacts, outcome: Outcome) -> str:
     """The colour of an outcome, in the eyes of its case."""
     return "green" if outcome in case.good else STYLES.get(outcome, "red")
-
-
-def _short(number: float) -> str:
-    """A number with one digit."""
-    digit, _, power = f"{number:.0e}".partition("e")
-    return digit if int(power) == 0 else f"{digit}e{int(power)}"
 
 
 def _legend(matrix: Matrix) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import harmless
+from reports.output.numbers import count
 
 Cure = Literal["sweep", "wait", "nothing"]
 BUSY = "a sweep is writing here: what it has finished is shown"
@@ -41,17 +42,12 @@ class Damage:
     def line(self) -> str:
         """In a line: what is wrong with what, and how many cells that costs."""
         said = in_line(f"{self.path}: {self.what}")
-        return f"{said}; {counted(self.lost)} missing" if self.lost else said
+        return f"{said}; {count(self.lost, 'cell')} missing" if self.lost else said
 
 
 def in_line(text: str) -> str:
     """A text without characters that a terminal would obey, in one line."""
     return harmless(text).replace("\n", "\\n").replace("\t", "\\t")
-
-
-def counted(number: int) -> str:
-    """A number of cells."""
-    return f"{number} cell{'s' * (number != 1)}"
 
 
 def notice(folder: object, damage: Sequence[Damage], safe: int, again: str) -> list[str]:
@@ -63,7 +59,8 @@ def notice(folder: object, damage: Sequence[Damage], safe: int, again: str) -> l
     other = [each.line for each in damage if each.cure == "nothing"]
     busy = f"{BUSY}; " * any(each.cure == "wait" for each in damage)
     lost = sum(each.lost for each in damage) or "none"
-    head = f"{folder}: {busy}{'not whole; ' * bool(bad)}{counted(safe)} can be read, {lost} missing"
+    whole = "not whole; " * bool(bad)
+    head = f"{folder}: {busy}{whole}{count(safe, 'cell')} can be read, {lost} missing"
     if not bad:
         return [f"{head}; there is also", *indented(other)] if other else [head]
     cure = (

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 
+from models.errors import few
 from reports.store.damage import Damage
 from reports.store.folder import Folder, being_written, open_folder
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
@@ -126,14 +127,9 @@ def _harmless(folder: Path, store: Examined) -> Iterator[Damage]:
         if not asked.issuperset(part.rows.column("line").to_pylist())
     ]
     if asked and strange:
-        yield Damage(_few(strange), UNASKED, "nothing")
+        yield Damage(few(strange, 3), UNASKED, "nothing")
     top = sorted(path.name for path in folder.iterdir() if path.name not in OWN)
     foreign = [name for name in top if not being_written(name)]
     foreign += [name for here in store.folders.values() for name in here.foreign]
     if foreign:
-        yield Damage(_few(foreign), "not of the store; left alone", "nothing")
-
-
-def _few(names: list[str]) -> str:
-    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return ", ".join(names[:3]) + more
+        yield Damage(few(foreign, 3), "not of the store; left alone", "nothing")

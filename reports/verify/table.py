@@ -164,7 +164,7 @@ def _advice(console: Console, checked: Sequence[Checked]) -> None:
             groups.setdefault(key, []).append((one, finding))
     for (rule, engine, profile), members in groups.items():
         one, finding = members[0]
-        others = f" (and {_count(len(members) - 1, 'more scene')})" if len(members) > 1 else ""
+        others = f" (and {count(len(members) - 1, 'more scene')})" if len(members) > 1 else ""
         head = f"{rule} {engine} {profile}, {one.cell.scene.name}{others}: "
         console.print(Text(f"{head}{finding.text}"))
         console.print(Text(f"  {finding.cure}", "cyan"))
@@ -177,17 +177,12 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
     gated = [one for one in checked if one.cell.gated]
     scenes = len({one.cell.scene.name for one in gated})
     engines = len({one.cell.engine for one in gated})
-    counted = f"{_count(scenes, 'scene')} x {_count(engines, 'engine')}"
-    what = f"{_count(len(gated), 'cell')} ({counted})"
+    counted = f"{count(scenes, 'scene')} x {count(engines, 'engine')}"
+    what = f"{count(len(gated), 'cell')} ({counted})"
     if failed:
         return Text(f"OUT OF TOLERANCE: {len(failed)} of {what}", "bold red")
     every = "all " if len(gated) > 1 else ""
     return Text(f"WITHIN TOLERANCE: {every}{what}", "bold green")
-
-
-def _count(number: int, thing: str) -> str:
-    """A number of things, in the singular or the plural."""
-    return f"{number} {thing}" + ("" if number == 1 else "s")
 
 
 def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:

@@ -12,6 +12,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, harmless
 from reports.cli.measuring import SweepRequest
 from reports.output.notice import tell
+from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.plan.chosen import chosen_engines
 from reports.plan.grid import Grid, grid
@@ -134,7 +135,7 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
     """What was run now, what there is, and what to do with it."""
     number = len(laid.tasks)
     console.print(
-        f"{number} cell{'s' * (number != 1)}: {done.ran} run now, {number - done.ran} were there; "
+        f"{count(number, 'cell')}: {done.ran} run now, {number - done.ran} were there; "
         f"{done.timed} timed now"
     )
     for status, reasons in sorted(done.failed.items()):

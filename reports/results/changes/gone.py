@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from models.errors import CrankcheckError
-from reports.results.changes.runs import StoredRun, counted
+from reports.output.numbers import count
+from reports.results.changes.runs import StoredRun
 from reports.store.damage import BUSY
 
 
@@ -24,7 +25,7 @@ def refuse_gone(old: StoredRun, new: StoredRun) -> None:
             continue
         missing = [name for name in other.cells if name not in run.cells]
         if missing:
-            which = f"{counted(len(missing), 'cell')} of {other.label}, such as {missing[0].label},"
+            which = f"{count(len(missing), 'cell')} of {other.label}, such as {missing[0].label},"
         elif run.lost and other.lost:
             which = f"cells that {other.label} has lost too"
         else:

@@ -7,9 +7,11 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import DEFAULTS
+from reports.output.numbers import count
 from reports.results.cost import apart
 
 COMPARED = tuple(DEFAULTS)
@@ -102,11 +104,11 @@ class StoredRun:
         """What there is to compare, in a sentence."""
         names = list(self.cells)
         parts = [
-            f"{counted(len(names), 'cell')}: scenes {few(name.scene for name in names)}",
-            few(f"{name.engine} {name.variant}" for name in names),
-            f"{few(f'{name.steps_per_turn:g}' for name in names)} steps a turn",
-            f"{few(f'{name.turns:g}' for name in names)} turns",
-            f"drive {few(name.drive for name in names)}",
+            f"{count(len(names), 'cell')}: scenes {each_once(name.scene for name in names)}",
+            each_once(f"{name.engine} {name.variant}" for name in names),
+            f"{each_once(f'{name.steps_per_turn:g}' for name in names)} steps a turn",
+            f"{each_once(f'{name.turns:g}' for name in names)} turns",
+            f"drive {each_once(name.drive for name in names)}",
         ]
         return f"{self.label} holds {'; '.join(parts)}"
 
@@ -221,13 +223,6 @@ def text(value: object) -> str:
     return value if isinstance(value, str) else ""
 
 
-def counted(count: int, thing: str) -> str:
-    """A number of things, in the singular or the plural."""
-    return f"{count} {thing}" + ("" if count == 1 else "s")
-
-
-def few(values: Iterable[str], most: int = 4) -> str:
+def each_once(values: Iterable[str], most: int = 4) -> str:
     """Each value once, and the number of those beyond the first few."""
-    each = list(dict.fromkeys(values))
-    more = f" and {len(each) - most} more" if len(each) > most else ""
-    return ", ".join(each[:most]) + more
+    return few(dict.fromkeys(values), most)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from reports.output.numbers import count, short
 from reports.results.fits.forms import LEVEL
 from reports.results.fits.line import LineFit
 
@@ -53,14 +54,6 @@ def numbers(fit: LineFit, unit: str, period_s: float) -> str:
     return ", ".join(texts)
 
 
-def short(number: float) -> str:
-    """7.5e-4 for 0.00075."""
-    if not math.isfinite(number):
-        return str(number)
-    digits, power = f"{number:.1e}".split("e")
-    return f"{digits}e{int(power)}"
-
-
 def _told(fit: LineFit, unit: str) -> str:
     """The verdict on the runs that ended well."""
     if fit.kind == "order":
@@ -73,7 +66,7 @@ def _told(fit: LineFit, unit: str) -> str:
         return _irregular(fit, unit)
     if fit.kind == "too few":
         number = len({dt for dt, _ in fit.runs})
-        return f"{number} step{'s'[: number != 1]}: too few to tell"
+        return f"{count(number, 'step')}: too few to tell"
     if fit.kind == "not run":
         return NOT_RUN.get(next(iter(fit.statuses), ""), "not run")
     return "at rounding"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from reports.drawing.packed import LEVELS, embedded, packed, policy, size_of
-from reports.output.numbers import NONE, count, duration, error_text, listed, plain
+from reports.output.numbers import DIGITS, NONE, count, duration, error_text, finite, listed
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
 
@@ -26,8 +26,8 @@ def test_a_hostile_text_stays_in_its_script() -> None:
 def test_numbers_are_thinned_and_what_is_no_number_is_null() -> None:
     text = str(embedded({"a": np.array([1 / 3, math.nan, math.inf, 2.0]), "b": True, "c": None}))
     assert text == '{"a":[0.333333,null,null,2],"b":true,"c":null}'
-    assert plain(np.float64(-1.23456789e-9)) == -1.23457e-9
-    assert plain(np.int64(7)) == 7
+    assert finite(np.float64(-1.23456789e-9), DIGITS) == -1.23457e-9
+    assert finite(np.int64(7), DIGITS) == 7
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-12, 1e300, 5e-324])

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from reports.drawing.packed import embedded
-from reports.output.numbers import plain
+from reports.output.numbers import DIGITS, finite
 from reports.page import build
 from reports.page.build import page, stability_page
 from reports.page.heat import SHADES, SIGNS, heat, same, shade
@@ -122,7 +122,7 @@ def test_a_matrix_that_was_stored_gives_the_same_page(
     hard_matrix: Matrix, text: str, tmp_path: pytest.TempPathFactory
 ) -> None:
     drawn = [
-        replace(one, drawing=plain(one.drawing), rows=plain(one.rows))
+        replace(one, drawing=finite(one.drawing, DIGITS), rows=finite(one.rows, DIGITS))
         for one in hard_matrix.pictures
     ]
     (tmp_path / FILE).write_text(to_json(replace(hard_matrix, pictures=tuple(drawn))))

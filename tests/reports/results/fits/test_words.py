@@ -8,8 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from reports.output.numbers import short
 from reports.results.fits.line import fit_line
-from reports.results.fits.words import numbers, short, words
+from reports.results.fits.words import numbers, words
 
 PERIOD = 0.36
 PER_TURN = np.array([45, 90, 180, 360, 720, 1440])
