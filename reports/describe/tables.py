@@ -11,6 +11,7 @@ from rich.table import Table
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
+from reports.output.columns import plain_table
 
 WIDE = 100
 Columns = list[tuple[str, Array]]
@@ -73,7 +74,7 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     driver = np.degrees(motion.links[scene.driver.link].theta)
     tables = []
     for first in range(0, len(bodies), together):
-        table = Table(box=None, padding=(0, 2, 0, 0))
+        table = plain_table(gap=2)
         columns: Columns = [
             ("\ntime\ns", motion.time_s),
             (f"{scene.driver.link}\ntheta\ndeg", driver),
@@ -91,7 +92,7 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
 
 
 def _table(head: str, columns: Sequence[str]) -> Table:
-    table = Table(box=None, padding=(0, 1, 0, 0), title_justify="left")
+    table = plain_table()
     table.add_column(head, no_wrap=True)
     for column in columns:
         table.add_column(column.replace(" ", "\n"), justify="right", no_wrap=True)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Literal
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from reports.diff.words import (
@@ -19,6 +18,7 @@ from reports.diff.words import (
     remarks,
     verdict,
 )
+from reports.output.columns import hanging, plain_table
 from reports.results.changes.changes import Diff
 from reports.results.changes.runs import StoredCell
 
@@ -35,7 +35,7 @@ def show(console: Console, diff: Diff, strict: bool = False) -> None:
     style = STYLES["worse"] if diff.code(strict) else "bold green"
     console.print(Text(f"{verdict(diff, strict)}: {headline(diff)}", style))
     for remark in remarks(diff):
-        _hanging(console, "  ", remark)
+        hanging(console, "  ", remark)
     console.print()
     _table(console, "worse", lines(diff, "worse"))
     _table(console, "better", lines(diff, "better"))
@@ -50,14 +50,7 @@ def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
         return
     wide = console.width >= NARROW
     shown = found[: MOST[word]]
-    table = Table(
-        title=word,
-        title_justify="left",
-        title_style=STYLES[word],
-        box=None,
-        padding=(0, 1, 0, 0),
-        collapse_padding=True,
-    )
+    table = plain_table(word, STYLES[word])
     for head in HEADS:
         number = head in ("old", "new", "ratio")
         if wide or not number or head == "ratio":
@@ -73,7 +66,7 @@ def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
         more = f"and {len(found) - len(shown)} more rows; --junit FILE names every cell"
         console.print(more, style="dim", highlight=False)
     for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
-        _hanging(console, "  ", text)
+        hanging(console, "  ", text)
     console.print()
 
 
@@ -84,16 +77,7 @@ def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
         return
     console.print(Text(word, "bold"))
     for text in found[:LEFT_OUT]:
-        _hanging(console, "  ", text)
+        hanging(console, "  ", text)
     if len(found) > LEFT_OUT:
         console.print(f"  and {len(found) - LEFT_OUT} more lines like these", style="dim")
     console.print()
-
-
-def _hanging(console: Console, head: str, text: str) -> None:
-    """A paragraph whose later lines stand below its text."""
-    grid = Table.grid(padding=0)
-    grid.add_column(no_wrap=True)
-    grid.add_column(overflow="fold")
-    grid.add_row(head, Text(text))
-    console.print(grid)

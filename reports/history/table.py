@@ -19,6 +19,7 @@ from reports.history.changes import (
 )
 from reports.history.overview import overview, profiles_of
 from reports.history.version_result import VersionResult, errors_of
+from reports.output.columns import plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell
 
@@ -47,7 +48,7 @@ def show(console: Console, results: Sequence[VersionResult], footer: str) -> Non
 def _versions(console: Console, results: Sequence[VersionResult]) -> None:
     """One row per version; one that could not be measured shows why."""
     heads, rows = overview(results)
-    table = _plain()
+    table = plain_table()
     for head in heads:
         table.add_column(head, overflow="fold", no_wrap=head == "version")
     for result, row in zip(results, rows, strict=True):
@@ -87,7 +88,7 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
     ranked = ranking(list(dict.fromkeys(name for _, name in cells)), changed)
     shown = ranked[: max(1, LINES // max(1, len(measured)))]
     heads = tuple(COLUMNS) if console.width >= WIDE else NARROW
-    table = _plain()
+    table = plain_table()
     console.print(Text(f"profile {profile}: {_part(shown, ranked, changed)}", "bold"))
     table.add_column("scene", overflow="fold", min_width=16)
     table.add_column("version", no_wrap=True)
@@ -160,8 +161,3 @@ def _style(change: FollowedChange | None) -> str:
     if change is None or not change.stands_out:
         return ""
     return "green" if change.word() == "better" else "bold red"
-
-
-def _plain() -> Table:
-    """A table without lines."""
-    return Table(box=None, padding=(0, 1, 0, 0), collapse_padding=True)

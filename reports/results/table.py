@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
+from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
 from reports.results.lines import called
@@ -26,7 +26,7 @@ def recommendation_table(
 ) -> RenderableType:
     """The cheapest settings for each target and engine, with what is to be said of them below."""
     wide = width >= WIDE
-    table = _table("cheapest settings that keep every scene within a target")
+    table = plain_table("cheapest settings that keep every scene within a target")
     table.add_column("target\nrad", no_wrap=True, justify="right")
     table.add_column("engine", no_wrap=True)
     table.add_column("settings", overflow="fold", min_width=10)
@@ -42,17 +42,6 @@ def recommendation_table(
         if one.steadier is not None:
             table.add_row(*_row(one.steadier, "", wide, steadier=True), style="dim")
     return Group(table, *(Text(f"[{i}] {note}") for i, note in enumerate(notes, 1)))
-
-
-def _table(title: str) -> Table:
-    return Table(
-        title=title,
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        padding=(0, 1, 0, 0),
-        collapse_padding=True,
-    )
 
 
 def _row(

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
+from reports.output.columns import plain_table
 from reports.selftest.fault import Fault
 from reports.selftest.registry import GROUPS
 from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Verdict, passes
@@ -84,7 +85,7 @@ def _told(console: Console, verdict: Verdict) -> None:
 def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> Table:
     """One row a fault, in groups."""
     wide = width >= WIDE
-    table = Table(box=None, padding=(0, 1, 0, 0), collapse_padding=True)
+    table = plain_table()
     table.add_column("")
     table.add_column("fault", no_wrap=True)
     if wide:

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.stability.case import WITHIN
 from reports.stability.grades import MEANINGS
@@ -53,7 +53,8 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
     """One case: what is made harder, and how far each engine holds it."""
     unit = f" [{case.unit}]" if case.unit else ""
     console.print(Text.assemble((case.name, "bold"), f"  {case.title}; {case.parameter}{unit}"))
-    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
+    table = plain_table()
+    table.pad_edge = False
     table.add_column("", no_wrap=True)
     for text in case.labels:
         table.add_column(text, justify="right", no_wrap=True, header_style="dim")

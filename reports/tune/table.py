@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from reports.output.columns import plain_table
 from reports.quantities import QUANTITIES, named
 from reports.tune.attempt import Attempt, Goal, Row
 from reports.tune.timing import Taken
@@ -35,7 +35,7 @@ def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]
     """Print the table, and the ratio of the last side to the first."""
     names = ", ".join(scene.name for scene in goal.scenes)
     console.print(Text(f"{names}, {goal.engine}: error of place up to {goal.target:g}", "bold"))
-    table = Table(box=None, padding=(0, 2, 0, 0))
+    table = plain_table(gap=2)
     table.add_column("", overflow="fold")
     for side in sides:
         table.add_column(side.title, justify="right", no_wrap=True)

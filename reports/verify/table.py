@@ -15,6 +15,8 @@ from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.judge.rules.base import Finding
+from reports.output.columns import hanging, plain_table
+from reports.output.numbers import count
 from reports.quantities import QUANTITIES
 
 MARKS = {
@@ -53,22 +55,13 @@ def _failures(console: Console, failed: Sequence[Checked]) -> None:
         console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
         for finding in one.failures:
             rule = RULES[finding.rule]
-            _hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
+            hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
     cures = {(finding.rule, finding.cure) for one in failed for finding in one.failures}
     for rule_id, cure in sorted(cures):
         if cure:
-            _hanging(console, f"{rule_id} cure: ", cure, style="cyan")
+            hanging(console, f"{rule_id} cure: ", cure, style="cyan")
     if failed:
         console.print()
-
-
-def _hanging(console: Console, head: str, text: str, style: str = "") -> None:
-    """A paragraph whose later lines stand below its text."""
-    grid = Table.grid(padding=0)
-    grid.add_column(no_wrap=True)
-    grid.add_column(overflow="fold")
-    grid.add_row(Text(head, style), Text(text, style))
-    console.print(grid)
 
 
 def _mark(one: Checked) -> Text:
@@ -88,14 +81,7 @@ def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> 
     """The cells of one profile, those out of tolerance first."""
     heads, stacked = _heads(width), width < STACKED
     role = "gated" if gated else "shown, not gated"
-    table = Table(
-        title=f"profile {profile} ({role})",
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        padding=(0, 1, 0, 0),
-        collapse_padding=True,
-    )
+    table = plain_table(f"profile {profile} ({role})")
     table.add_column("")
     table.add_column("scene\nengine" if stacked else "scene", overflow="fold", min_width=22)
     if not stacked:

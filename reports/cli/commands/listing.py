@@ -17,13 +17,14 @@ from models.files import load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
 from reports.describe.law import describe_law
+from reports.output.columns import plain_table
 from reports.output.write import check_file, write
 from sim.registry import available, engine
 
 
 def scenes(console: Console) -> None:
     """The shipped scenes: structure, driver and source."""
-    table = Table(box=None, padding=(0, 2, 0, 0))
+    table = plain_table(gap=2)
     for head in ("scene", "groups", "driver", "source"):
         table.add_column(head, overflow="fold", no_wrap=head == "scene")
     for name in shipped():
