@@ -69,14 +69,6 @@ class Allowed:
     order: tuple[float, float]
     floor: tuple[float, float]
 
-    def joined(self, other: Allowed) -> Allowed:
-        """What either allows."""
-        return Allowed(_joined(self.order, other.order), _joined(self.floor, other.floor))
-
-
-def _joined(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
-    return min(one[0], other[0]), max(one[1], other[1])
-
 
 def straight(dt_s: Array, error: Array) -> Curve:
     """C dt^p, p of any sign, through two points or more (shape (n,))."""

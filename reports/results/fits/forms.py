@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
-from reports.results.fits.bent import ORDERS, bent, bent_within
-from reports.results.fits.curves import Allowed, Curve, curvature, straight
-from reports.results.fits.opposed import opposed, opposed_within
+from reports.results.fits.curves import Curve, curvature, straight
+from reports.results.fits.floor_fit import ORDERS, added, opposed
 
 LEAST_SCATTER = 0.02
 """The largest error of a run is not known better than this: samples miss its peak."""
@@ -38,13 +37,12 @@ class Form:
     """A form with its least number of points."""
 
     fit: Callable[[Array, Array], Curve | None]
-    within: Callable[[Array, Array, Curve, float], Allowed]
     least: int
 
 
-POWER = Form(straight, bent_within, 3)
-FLOOR = Form(bent, bent_within, 3)
-OPPOSED = Form(opposed, opposed_within, 5)
+POWER = Form(straight, 3)
+FLOOR = Form(added, 3)
+OPPOSED = Form(opposed, 5)
 
 
 def scatter(curve: Curve) -> float:
@@ -120,10 +118,10 @@ def opposed_seen(dts: Array, errors: Array) -> Curve | None:
         return None
     for number in range(len(dts), OPPOSED.least - 1, -1):
         points = dts[:number], errors[:number]
-        curve, added = OPPOSED.fit(*points), FLOOR.fit(*points)
-        if curve is None or added is None or curve.alignment >= 0.0:
+        curve, bend = OPPOSED.fit(*points), FLOOR.fit(*points)
+        if curve is None or bend is None or curve.alignment >= 0.0:
             continue
-        if better(curve, added) and floor_seen(curve, dts, errors):
+        if better(curve, bend) and floor_seen(curve, dts, errors):
             return curve
     return None
 

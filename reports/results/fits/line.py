@@ -18,17 +18,14 @@ import numpy as np
 
 from models.array import Array
 from reports.judge.three_steps import AT_ROUNDING
-from reports.results.fits.aligned import aligned_within
-from reports.results.fits.bent import ORDERS
 from reports.results.fits.curves import Curve, straight
+from reports.results.fits.floor_fit import ALIGNMENTS, ORDERS, within
 from reports.results.fits.forms import (
     FLAT,
     FLOOR,
     LOWEST,
-    OPPOSED,
     POWER,
     WILD,
-    Form,
     floor_seen,
     leaves,
     longest,
@@ -55,7 +52,7 @@ class LineFit:
     ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` and ``coefficient``
     where the error follows no power of the step. Uncertainties hold the true value two times in
     three, and more often next to a floor, where they allow floor and step to add or to oppose in
-    any proportion (`reports.results.fits.aligned`). ``floor_below`` is the largest floor that two
+    any proportion (`reports.results.fits.floor_fit`). ``floor_below`` is the largest floor that two
     such uncertainties allow, NaN where the line says nothing about it; a floor that works against
     the step, rather than adds to it, may hide up to about the finest error where none is seen.
     ``scatter`` is by what share of itself an error is off its curve. ``curve`` is None where no
@@ -168,21 +165,19 @@ def _fitted(line: LineFit, fit: tuple[int, ...]) -> LineFit:
         return _without_floor(line, fit, dts, errors)
     against = opposed_seen(dts, errors)
     if against is not None:
-        return _with_floor(_on(line, fit, against), OPPOSED, dts, errors, against)
+        return _with_floor(_on(line, fit, against), dts, errors, against)
     bend = longest(FLOOR, dts, errors)
     if bend is not None and floor_seen(bend, dts, errors):
-        return _with_floor(_on(line, fit, bend), FLOOR, dts, errors, bend)
+        return _with_floor(_on(line, fit, bend), dts, errors, bend)
     return _without_floor(line, fit, dts, errors)
 
 
-def _with_floor(line: LineFit, form: Form, dts: Array, errors: Array, curve: Curve) -> LineFit:
+def _with_floor(line: LineFit, dts: Array, errors: Array, curve: Curve) -> LineFit:
     """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
-    alone = form.within(dts, errors, curve, more**2)
+    (alone,) = within(dts, errors, curve, [more**2])
     told = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
-    near = alone.joined(aligned_within(dts, errors, curve, more**2))
-    wide = (2.0 * more) ** 2
-    far = form.within(dts, errors, curve, wide).joined(aligned_within(dts, errors, curve, wide))
+    near, far = within(dts, errors, curve, [more**2, (2.0 * more) ** 2], ALIGNMENTS)
     return replace(
         line,
         kind="floor",
@@ -201,7 +196,7 @@ def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Arra
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     if curve.scatter > WILD or abs(curve.order) < FLAT or leaves(dts, errors):
         return replace(line, kind="irregular", scatter=curve.scatter)
-    far = POWER.within(dts, errors, curve, (2.0 * more) ** 2)
+    (far,) = within(dts, errors, curve, [(2.0 * more) ** 2])
     x, falls = np.log(dts), curve.order > 0.0
     return replace(
         _on(line, fit, curve),

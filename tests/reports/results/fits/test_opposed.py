@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reports.results.fits.bent import bent
-from reports.results.fits.opposed import opposed, opposed_within
+from reports.results.fits.floor_fit import ALIGNMENTS, added, opposed, within
 from tests.reports.results.fits.measured import MUJOCO_AS_SHIPPED, ORDERS, STEPS, THIRD_THEN_SECOND
 
 DTS = 1e-2 / 2.0 ** np.arange(6)[::-1]
@@ -31,13 +30,13 @@ def test_floor_order_and_alignment_are_found(alignment: float, order: float) -> 
 
 
 def test_parts_that_point_the_same_way_add_up() -> None:
-    """Full alignment is floor + C dt^p, for which there is `bent`."""
-    added = bent(DTS, errors(1.0, 2.0))
-    assert (added.floor, added.order) == (
+    """Full alignment is floor + C dt^p, for which there is `added`."""
+    curve = added(DTS, errors(1.0, 2.0))
+    assert (curve.floor, curve.order) == (
         pytest.approx(FLOOR, rel=1e-3),
         pytest.approx(2.0, abs=1e-3),
     )
-    assert added.misfit < 1e-6
+    assert curve.misfit < 1e-6
 
 
 LINES = [
@@ -58,6 +57,6 @@ def test_a_larger_misfit_allows_more_orders_and_floors() -> None:
     exact = errors(-0.5, 1.0)
     curve = opposed(DTS, exact)
     assert curve is not None
-    narrow, wide = (opposed_within(DTS, exact, curve, more**2) for more in (0.02, 0.06))
+    narrow, wide = within(DTS, exact, curve, [0.02**2, 0.06**2], ALIGNMENTS)
     assert wide.floor[0] < narrow.floor[0] < FLOOR < narrow.floor[1] < wide.floor[1]
     assert wide.order[0] < narrow.order[0] <= 1.0 <= narrow.order[1] < wide.order[1]
