@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from models.files import load_scene
     from models.motion import Motion, State
     from models.scene import Scene
-    from reports.compare.compare import compare
-    from reports.compare.errors import Errors
     from reports.judge.cell import Cell, Checked, check
     from sim.engine import Run
     from sim.run import run
@@ -33,7 +31,6 @@ __all__ = [
     "Checked",
     "CrankcheckError",
     "EngineError",
-    "Errors",
     "Motion",
     "ReachError",
     "Run",
@@ -43,7 +40,6 @@ __all__ = [
     "StructureError",
     "__version__",
     "check",
-    "compare",
     "load_scene",
     "run",
     "solve",
@@ -66,10 +62,6 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from models import motion as home
             case "Scene":
                 from models import scene as home
-            case "compare":
-                from reports.compare import compare as home
-            case "Errors":
-                from reports.compare import errors as home
             case "Cell" | "Checked" | "check":
                 from reports.judge import cell as home
             case "Run":
