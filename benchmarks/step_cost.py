@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 
 import numpy as np
 
@@ -18,9 +19,9 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.sweep.measured import timed
+from reports.sweep.measured import Repeats, timed_in_turns
 from reports.tune.timing import GUESS_US
-from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings
 from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
@@ -60,19 +61,14 @@ def start(scene: Scene) -> State:
 
 def measure(what: Sequence[Point], rounds: int = ROUNDS) -> list[float]:
     """The least time of each point in all rounds [microseconds per step]; NaN where it is lost."""
-    isolated: Isolated[tuple[float, ...]] = Isolated(Limits())
-    least = [float("nan")] * len(what)
-    try:
-        for _ in range(rounds):
-            for index, (scene, engine, settings) in enumerate(what):
-                dt_s = scene.driver.law.period_s / STEPS_PER_TURN
-                cell = Cell(scene, engine, "tuned", dt_s, 1, converge=False, settings=settings)
-                found = isolated.call(timed, cell, GUESS_US)
-                if not isinstance(found, Lost):
-                    least[index] = float(np.fmin(least[index], min(found)))
-    finally:
-        isolated.close()
-    return least
+    cells = [
+        (Cell(scene, engine, "tuned", dt_s, 1, converge=False, settings=settings), GUESS_US)
+        for scene, engine, settings in what
+        for dt_s in [scene.driver.law.period_s / STEPS_PER_TURN]
+    ]
+    with closing(Isolated[Repeats](Limits())) as isolated:
+        timings = timed_in_turns(isolated, cells, rounds)
+    return [float("nan") if each is None else min(*each[0], *each[1]) for each in timings]
 
 
 def fit(counts: Sequence[Sequence[float]], us: Sequence[float]) -> list[float]:

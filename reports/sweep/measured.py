@@ -1,10 +1,11 @@
-"""What is measured of one cell: its rows, and how it moved, ready to travel between processes."""
+"""What is measured of cells: rows, and how they moved, ready to travel between processes; times."""
 
 from __future__ import annotations
 
 import statistics
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
@@ -15,15 +16,18 @@ from reports.compare.last_turn import trace
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows
 from reports.output.provenance import crankcheck_version
+from reports.workers.isolated import Isolated, Lost
 from sim.run import time_run
 
 REPEATS = 2
-"""Timed repeats of a cell in one pass."""
+"""Timed repeats of a cell in one round."""
 REPEAT_S = 0.015
 """About how long a repeat lasts: long over the clock's resolution, short enough for hundreds."""
 UNMEASURED: Mapping[str, object] = {"logged_us_per_step": None, "wall_s": None}
 """The columns of a cell that was lost."""
 LEAST_TIMED, MOST_TIMED = 200, 50_000
+Repeats = tuple[float, ...]
+"""What a step cost each time [microseconds]."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,33 @@ def measured(cell: Cell, keep_motion: bool) -> Outcome:
     )
 
 
-def timed(cell: Cell, us_per_step: float) -> tuple[float, ...]:
+def timed_in_turns(
+    isolated: Isolated[Repeats],
+    cells: Sequence[tuple[Cell, float]],
+    rounds: int,
+    done: Callable[[], None] = lambda: None,
+) -> list[tuple[Repeats, Repeats] | None]:
+    """What a step of each cell costs, in repeats of the rounds A and B, which take turns.
+
+    Every cell, which comes with a first guess [microseconds], is timed once a round: a slow minute
+    slows all of them. How far the minima of A and B lie apart is the noise. None for a cell that
+    was lost in any round. ``done`` is called after every cell of every round.
+    """
+    taken: list[list[Repeats]] = [[] for _ in cells]
+    for number in range(rounds):
+        for (cell, us_per_step), before in zip(cells, taken, strict=True):
+            if len(before) == number:  # it was not lost
+                repeats = isolated.call(timed, cell, us_per_step)
+                if not isinstance(repeats, Lost):
+                    before.append(repeats)
+            done()
+    return [
+        (tuple(chain(*each[::2])), tuple(chain(*each[1::2]))) if len(each) == rounds else None
+        for each in taken
+    ]
+
+
+def timed(cell: Cell, us_per_step: float) -> Repeats:
     """What a step of a cell costs without logging, in several repeats [microseconds].
 
     ``us_per_step`` is a first guess, which sets how many steps a repeat has.
@@ -81,7 +111,7 @@ def timed(cell: Cell, us_per_step: float) -> tuple[float, ...]:
 
 
 def timing_row(cell: Cell, a: Sequence[float], b: Sequence[float]) -> dict[str, object]:
-    """The columns of a timing, from passes A and B over the same cells, some time apart.
+    """The columns of a timing, from rounds A and B over the same cells, some time apart.
 
     How far their minima lie apart is the noise of comparing cells with each other.
     """

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from itertools import chain
 
 from rich.console import Console
 
@@ -16,15 +15,15 @@ from reports.judge.rows import cell_row
 from reports.plan.grid import Task
 from reports.store.reader import Ending, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.measured import UNMEASURED, Outcome, timed, timing_row
+from reports.sweep.measured import UNMEASURED, Outcome, Repeats, timed_in_turns, timing_row
 from reports.sweep.parallel import Backend, run_all
 from reports.workers.isolated import Isolated, Limits, Lost
 from reports.workers.progress import progress_bar
 
-PASSES = 6
-"""Passes of timing over the same cells, A and B in turn: a disturbance is shorter than most."""
+ROUNDS = 6
+"""Rounds of timing over the same cells, A and B in turn: a disturbance is shorter than most."""
 BLOCK = 150
-"""Cells of a pass, which takes some ten seconds; their timings are lost when a sweep is ended."""
+"""Cells of a round, which takes some ten seconds; their timings are lost when a sweep is ended."""
 
 
 @dataclass(frozen=True)
@@ -74,37 +73,23 @@ class Running:
         there = stored_keys(self.writer.folder, "timings")
         guesses = stored_costs(self.writer.folder)
         missing = [t for t in self.tasks if t.key in guesses and t.key not in there]
-        isolated: Isolated[tuple[float, ...]] = Isolated(self.limits)
-        count = 0
-        try:
-            with progress_bar(self.progress, "timings", PASSES * len(missing)) as advance:
-                for at in range(0, len(missing), BLOCK):
-                    block = missing[at : at + BLOCK]
-                    found: dict[str, list[tuple[float, ...] | Lost]] = {t.key: [] for t in block}
-                    for _ in range(PASSES):
-                        for task in block:
-                            guess = guesses[task.key]
-                            found[task.key].append(isolated.call(timed, task.cell, guess))
-                            advance()
-                    count += self._keep_timings(block, found)
-        finally:
-            isolated.close()
-        return replace(done, timed=count)
-
-    def _keep_timings(
-        self, block: Sequence[Task], found: Mapping[str, Sequence[tuple[float, ...] | Lost]]
-    ) -> int:
-        """Add the timings of some cells; how many were not lost in any pass."""
         where = {"processor": self.facts["processor"], "made": self.facts["made"]}
         count = 0
-        for task in block:
-            passes = [one for one in found[task.key] if not isinstance(one, Lost)]
-            if len(passes) == PASSES:
-                a, b = (list(chain(*passes[half::2])) for half in (0, 1))
-                self.writer.timing({"key": task.key, **timing_row(task.cell, a, b), **where})
-                count += 1
-        self.writer.flush()
-        return count
+        with (
+            progress_bar(self.progress, "timings", ROUNDS * len(missing)) as advance,
+            closing(Isolated[Repeats](self.limits)) as isolated,
+        ):
+            for at in range(0, len(missing), BLOCK):
+                block = missing[at : at + BLOCK]
+                cells = [(task.cell, guesses[task.key]) for task in block]
+                timings = timed_in_turns(isolated, cells, ROUNDS, advance)
+                for task, timing in zip(block, timings, strict=True):
+                    if timing is not None:
+                        row = timing_row(task.cell, *timing)
+                        self.writer.timing({"key": task.key, **row, **where})
+                        count += 1
+                self.writer.flush()
+        return replace(done, timed=count)
 
     def _keep(self, task: Task, outcome: Outcome, run_on: str) -> None:
         """Add a cell to the store, with the names that it has in the study."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 
-from reports.sweep.measured import timed
+from reports.sweep.measured import Repeats, timed_in_turns
 from reports.tune.attempt import Attempt, Goal
-from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.isolated import Isolated, Limits
 
 ROUNDS = 12
 """How often each is timed, one after the other: a slow minute then slows both."""
@@ -32,23 +33,16 @@ def times(goal: Goal, attempts: Sequence[Attempt], limits: Limits) -> list[Taken
 
     The A/A noise is that of the least times of odd and even rounds over all scenes.
     """
-    isolated: Isolated[tuple[float, ...]] = Isolated(limits)
-    cells = [
-        [goal.cell(scene, one.settings, one.tried) for scene in goal.scenes] for one in attempts
-    ]
-    least = {(i, j): [float("inf")] * 2 for i, row in enumerate(cells) for j in range(len(row))}
-    try:
-        for turn in range(ROUNDS):
-            for (i, j), halves in least.items():
-                found = isolated.call(timed, cells[i][j], GUESS_US)
-                if isinstance(found, Lost):
-                    return None
-                halves[turn % 2] = min(halves[turn % 2], *found)
-    finally:
-        isolated.close()
+    cells = [goal.cell(scene, a.settings, a.tried) for a in attempts for scene in goal.scenes]
+    with closing(Isolated[Repeats](limits)) as isolated:
+        timings = timed_in_turns(isolated, [(cell, GUESS_US) for cell in cells], ROUNDS)
+    least = [(min(timing[0]), min(timing[1])) for timing in timings if timing is not None]
+    if len(least) < len(cells):
+        return None
+    each = len(goal.scenes)
     return [
-        _taken([least[i, j] for j in range(len(goal.scenes))], one.tried)
-        for i, one in enumerate(attempts)
+        _taken(least[each * index : each * (index + 1)], attempt.tried)
+        for index, attempt in enumerate(attempts)
     ]
 
 

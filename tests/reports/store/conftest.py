@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import pytest
 from rich.console import Console
@@ -16,9 +17,10 @@ from reports.workers.isolated import Limits
 
 SCENE = "fourbar-lecture-1"
 Sweep = Callable[..., int]
+Answer = TypeVar("Answer")
 
 
-class Here:
+class Here(Generic[Answer]):
     """Calls a function where others would start a process for it."""
 
     closed = False
@@ -26,7 +28,7 @@ class Here:
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
 
-    def call(self, function: Callable[..., object], *arguments: object) -> object:
+    def call(self, function: Callable[..., Answer], *arguments: object) -> Answer:
         return function(*arguments)
 
     def close(self) -> None:
