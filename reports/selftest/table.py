@@ -65,8 +65,8 @@ def _told(console: Console, verdict: Verdict) -> None:
     head = "caught" if verdict.caught else "ESCAPES"
     style = "bold green" if verdict.caught else "bold red"
     console.print(Text(f"{head}  {fault.name}: {fault.what}", style))
-    if not verdict.places:
-        console.print("  it ended the process")
+    if verdict.lost:
+        console.print(Text(f"  {verdict.lost}"))
     for place in verdict.places:
         where = f"  {place.scene}, {place.engine}: "
         if place.finding is not None:

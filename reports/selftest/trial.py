@@ -17,7 +17,8 @@ from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.base import Finding
 from reports.selftest.fault import Fault
 from reports.selftest.registry import FAULTS
-from reports.workers.pool import do_all
+from reports.workers.isolated import Limits, Lost
+from reports.workers.scheduler import run_all
 from sim.registry import ENGINES
 
 STEPS = 360
@@ -26,6 +27,8 @@ DECADES = 12
 """How many powers of ten below the planted size are looked at."""
 CLOSE = 1.1
 """Sizes over each other that are near enough."""
+LIMITS = Limits(600.0, 4.0)
+"""A fault takes some seconds, with the search for its smallest size."""
 NEEDS_FINER_RUNS = "CC110"
 """The rule that looks at runs with half and a quarter of the step."""
 
@@ -51,11 +54,13 @@ class FaultTrial:
 @dataclass(frozen=True)
 class Verdict:
     """A fault, by name, in all its places; ``sound`` says that the runs without it pass every
-    rule. There are no places where the fault ended the process."""
+    rule. There are no places where the fault ended the process, or took too much: ``lost`` says
+    which."""
 
     name: str
     places: tuple[FaultTrial, ...]
     sound: bool
+    lost: str = ""
 
     @property
     def fault(self) -> Fault:
@@ -100,11 +105,11 @@ def tried_all(
     names: Sequence[str], engines: Sequence[str], jobs: int, done: Callable[[Verdict], None]
 ) -> list[Verdict]:
     """Plant all faults, in ``jobs`` processes (0: one per processor)."""
-    return do_all(partial(tried, engines=engines), names, jobs, _lost, done)
+    return run_all(partial(tried, engines=engines), names, jobs, LIMITS, _lost, done)
 
 
-def _lost(name: str) -> Verdict:
-    return Verdict(name, (), sound=False)
+def _lost(name: str, lost: Lost) -> Verdict:
+    return Verdict(name, (), sound=False, lost=lost.reason)
 
 
 def passes(checked: Checked) -> bool:

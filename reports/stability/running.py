@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import queue
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
@@ -14,6 +13,7 @@ from reports.stability.critical import critical, line
 from reports.stability.grading import GradedPicture, graded
 from reports.stability.matrix import Critical, Graded, Picture
 from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.scheduler import as_they_end
 
 LIMIT_S = 120.0
 MEMORY_GB = 4.0
@@ -45,36 +45,19 @@ def run_lines(
 
     ``done`` hears of each as it ends, in this thread.
     """
-    apart = [Isolated[GradedPicture | str](limits) for _ in range(max(min(jobs, len(lines)), 1))]
-    free: queue.SimpleQueue[Isolated[GradedPicture | str]] = queue.SimpleQueue()
-    for one in apart:
-        free.put(one)
-    pool = ThreadPoolExecutor(len(apart))
-    waiting: dict[Future[Held], int] = {}
-    found: dict[int, Held] = {}
-    try:
-        for index in sorted(range(len(lines)), key=lambda i: -_work(CATALOGUE[lines[i].case])):
-            waiting[pool.submit(_line, lines[index], free)] = index
-        for future in as_completed(waiting):
-            held = future.result()
-            found[waiting[future]] = held
+    order = sorted(range(len(lines)), key=lambda index: -_work(CATALOGUE[lines[index].case]))
+    results: dict[int, Held] = {}
+    with closing(as_they_end(_line, [lines[index] for index in order], jobs, limits)) as ends:
+        for place, held in ends:
+            results[order[place]] = held
             done(held)
-    finally:
-        for future in waiting:
-            future.cancel()
-        for one in apart:
-            one.close()
-        pool.shutdown()
-    return [found[index] for index in range(len(lines))]
+    return [results[index] for index in range(len(lines))]
 
 
 def run_one(given: Line, value: float, limits: Limits) -> Graded:
     """One run in a process apart. Raises CrankcheckError where it cannot be asked for."""
-    isolated = Isolated[GradedPicture | str](limits)
-    try:
-        return _graded(given, value, isolated, grid=False)[0]
-    finally:
-        isolated.close()
+    with closing(Isolated[GradedPicture](limits)) as child:
+        return _graded(given, value, child, grid=False)[0]
 
 
 def _work(case: Case) -> int:
@@ -82,48 +65,41 @@ def _work(case: Case) -> int:
     return sum(case.trial(value).steps for value in case.values)
 
 
-def _line(given: Line, free: queue.SimpleQueue[Isolated[GradedPicture | str]]) -> Held:
-    """One line, in a child process that is free."""
-    case, isolated = CATALOGUE[given.case], free.get()
+def _line(child: Isolated[GradedPicture], given: Line) -> Held:
+    """One line, run by run in a child process."""
+    case = CATALOGUE[given.case]
     pictures: list[Picture] = []
 
     def grade(value: float, grid: bool) -> Graded:
-        found, drawn = _graded(given, value, isolated, grid=grid)
+        found, drawn = _graded(given, value, child, grid=grid)
         if drawn is not None:
             pictures.append(drawn)
         return found
 
-    try:
-        runs = list(line(case, grade))
-    finally:
-        free.put(isolated)
+    runs = list(line(case, grade))
     return Held(given, tuple(runs), critical(case, runs), tuple(pictures))
 
 
 def _graded(
-    given: Line, value: float, isolated: Isolated[GradedPicture | str], *, grid: bool
+    given: Line, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
-    """A run in the child process, with its picture where it is of the grid."""
-    answer = isolated.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
-    if isinstance(answer, Lost):
-        return _lost(given, value, answer, grid), None
-    if isinstance(answer, str):
-        raise CrankcheckError(f"case {given.case} at {label(value)}: {answer}")
-    found, drawn = answer
-    return replace(found, grid=grid), drawn
+    """A run in the child process, with its picture where it is of the grid.
 
-
-def graded_by_name(
-    case: str, engine: str, profile: str, value: float, draw: bool
-) -> GradedPicture | str:
-    """As `grading.graded`, for a case by its name: what travels to the child process is small.
-
-    What has no reference, or cannot be asked of the engine, is no fault of the engine: its message.
+    What has no reference, or cannot be asked of the engine, is no fault of the engine: it raises
+    CrankcheckError.
     """
-    try:
-        return graded(CATALOGUE[case], engine, profile, value, draw=draw)
-    except CrankcheckError as error:
-        return str(error)
+    answer = child.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
+    if not isinstance(answer, Lost):
+        found, drawn = answer
+        return replace(found, grid=grid), drawn
+    if isinstance(answer.error, CrankcheckError):
+        raise CrankcheckError(f"case {given.case} at {label(value)}: {answer.error}")
+    return _lost(given, value, answer, grid), None
+
+
+def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> GradedPicture:
+    """As `grading.graded`, for a case by its name: what travels to the child process is small."""
+    return graded(CATALOGUE[case], engine, profile, value, draw=draw)
 
 
 def _lost(given: Line, value: float, lost: Lost, grid: bool) -> Graded:

@@ -6,19 +6,32 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.judge.cell import unfinished
+from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
 from reports.plan.grid import Task
 from reports.store.reader import Ending, stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
-from reports.sweep.measured import UNMEASURED, Outcome, Repeats, timed_in_turns, timing_row
-from reports.sweep.parallel import Backend, run_all
+from reports.sweep.cluster import on_cluster
+from reports.sweep.measured import (
+    UNMEASURED,
+    Outcome,
+    Repeats,
+    measured,
+    timed_in_turns,
+    timing_row,
+)
 from reports.workers.isolated import Isolated, Limits, Lost
 from reports.workers.progress import progress_bar
+from reports.workers.scheduler import as_they_end
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 ROUNDS = 6
 """Rounds of timing over the same cells, A and B in turn: a disturbance is shorter than most."""
@@ -45,9 +58,14 @@ class Running:
     facts: Mapping[str, str]
     progress: Console
 
-    def errors(self, keep_motion: bool, where: Backend, again: bool = False) -> Done:
+    def errors(
+        self, keep_motion: bool, jobs: int, client: Client | None = None, again: bool = False
+    ) -> Done:
         """Run every cell that the store has not, and those that a limit ended which is wider now;
-        with ``again`` all that timed out or crashed."""
+        with ``again`` all that timed out or crashed.
+
+        So many ``jobs`` at a time here (0: one per processor), or all on the cluster of ``client``.
+        """
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
         over = {key for key in asked & set(ended) if again or self._was_tighter(ended[key])}
@@ -55,12 +73,16 @@ class Running:
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
         failed: dict[str, Counter[str]] = {}
-        found = run_all(missing, self.limits, keep_motion, where)
-        with progress_bar(self.progress, "errors", len(missing)) as advance, closing(found):
-            for index, how in found:
+        cells = [task.cell for task in missing]
+        if client is None:
+            ends = as_they_end(partial(_measured, keep_motion), cells, jobs, self.limits)
+        else:
+            ends = on_cluster(client, cells, self.limits, keep_motion)
+        with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
+            for index, how in ends:
                 task = missing[index]
                 outcome = how if isinstance(how, Outcome) else _lost(task, how)
-                self._keep(task, outcome, "cluster" if where["backend"] == "dask" else "local")
+                self._keep(task, outcome, "cluster" if client else "local")
                 status, reason = str(outcome.row["status"]), str(outcome.row["reason"])
                 if status != "ok":
                     failed.setdefault(status, Counter())[f"{task.label}: {reason}"] += 1
@@ -137,6 +159,11 @@ class Running:
             raise CrankcheckError(
                 f"a worker has no {engine}; install {engine}=={task.version} there"
             )
+
+
+def _measured(keep_motion: bool, child: Isolated[Outcome], cell: Cell) -> Outcome | Lost:
+    """A cell in a child process."""
+    return child.call(measured, cell, keep_motion)
 
 
 def _lost(task: Task, lost: Lost) -> Outcome:

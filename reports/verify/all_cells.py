@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from reports.judge.cell import Cell, Checked, check, unfinished
-from reports.workers.pool import do_all
+from reports.workers.isolated import Limits, Lost
+from reports.workers.scheduler import run_all
+
+LIMITS = Limits(3600.0, 16.0)
+"""Far beyond what any sound cell takes: one that hangs, or fills the memory, is a row all the
+same. Longer runs are asked for with one job, which has no limits."""
 
 
 def check_all(
@@ -18,8 +23,8 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
-    return do_all(check, cells, jobs, _lost, done)
+    return run_all(check, cells, jobs, LIMITS, _lost, done)
 
 
-def _lost(cell: Cell) -> Checked:
-    return unfinished(cell, "crashed", "the engine ended its process")
+def _lost(cell: Cell, lost: Lost) -> Checked:
+    return unfinished(cell, lost.status, lost.reason)

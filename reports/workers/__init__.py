@@ -1,1 +1,1 @@
-"""Other processes: isolated children, pools, signals, programs."""
+"""Other processes: isolated children, their scheduler, signals, programs."""

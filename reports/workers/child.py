@@ -13,13 +13,16 @@ import pickle
 import queue
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-Answer = tuple[str, object, bool]
-"""How a job ended (``done``, ``crashed``), its result or reason, and whether another child should
-do the next, as this one has much memory that it did not give back."""
+Ending = tuple[str, object, Exception | None]
+"""How a job ended (``done``, ``crashed``), its result or reason, and what it raised."""
+Answer = tuple[*Ending, bool]
+"""An ending, and whether another child should do the next job, as this one has much memory that it
+did not give back."""
 WORN = 0.5
 """The share of its memory that a child may have kept from job to job."""
 
@@ -35,11 +38,11 @@ def main(memory_bytes: int) -> None:
     pickle.loads(jobs.get())  # what it imports is no part of any cell's time or memory
     at_first = _taken()
     _limit(at_first + memory_bytes)
-    send(answers, ("ready", None, False))
+    send(answers, ("ready", None, None, False))
     while True:
         function, arguments = pickle.loads(jobs.get())
-        how, value = _done(function, arguments, memory_bytes)
-        answer: Answer = (how, value, _taken() - at_first > WORN * memory_bytes)
+        ending = _done(function, arguments, memory_bytes)
+        answer: Answer = (*ending, _taken() - at_first > WORN * memory_bytes)
         send(answers, answer)
 
 
@@ -52,14 +55,23 @@ def _listen(source: IO[bytes], jobs: queue.SimpleQueue[bytes]) -> None:
 
 def _done(
     function: Callable[..., object], arguments: tuple[object, ...], memory_bytes: int
-) -> tuple[str, object]:
-    """How one job ended, and its result or the reason."""
+) -> Ending:
+    """How one job ended."""
     try:
-        return "done", function(*arguments)
+        return "done", function(*arguments), None
     except MemoryError:
-        return "crashed", f"out of memory: a cell has {memory_bytes / 1e9:.3g} GB"
+        return "crashed", f"out of memory: a cell has {memory_bytes / 1e9:.3g} GB", None
     except Exception as error:  # whatever an engine throws costs its own cell alone
-        return "crashed", f"{type(error).__name__}: {error}"
+        return "crashed", f"{type(error).__name__}: {error}", _portable(error)
+
+
+def _portable(error: Exception) -> Exception | None:
+    """The error, which tells where it was raised; None where it cannot travel."""
+    error.add_note("".join(traceback.format_exception(error)))
+    with contextlib.suppress(Exception):
+        pickle.loads(pickle.dumps(error))
+        return error
+    return None
 
 
 def _taken() -> int:

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import IO, Generic, TypeVar, cast
 
 from models.errors import CrankcheckError
@@ -48,10 +48,12 @@ def checked_limits(time_s: float, memory_gb: float) -> Limits:
 
 @dataclass(frozen=True)
 class Lost:
-    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason."""
+    """A cell that came to no end of its own: status (``crashed``, ``timeout``) and reason; what it
+    raised, where that is why."""
 
     status: str
     reason: str
+    error: Exception | None = field(default=None, compare=False)
 
 
 class Isolated(Generic[Result]):
@@ -92,10 +94,10 @@ class Isolated(Generic[Result]):
                 raw = b""
         if not raw:
             return self._lost(child, late.is_set())
-        how, value, worn = pickle.loads(raw)
+        how, value, error, worn = pickle.loads(raw)
         if worn or late.is_set():  # an answer in the last moment stands; the child is gone
             self._end(child)
-        return cast(Result, value) if how == "done" else Lost(how, str(value))
+        return cast(Result, value) if how == "done" else Lost(how, str(value), error)
 
     def close(self) -> None:
         """End the child, also in the middle of a job that another thread waits for."""
@@ -117,6 +119,8 @@ class Isolated(Generic[Result]):
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
+        if self.closed:  # meanwhile
+            child.kill()
         jobs, answers = _pipes(child)
         with _watched(child, START_S), contextlib.suppress(OSError):
             send(jobs, function)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -52,9 +51,6 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     end = threading.Timer(PATIENCE_S, os._exit, [128 + number])  # a lock may never be released
     end.daemon = True
     end.start()
-    if "multiprocessing" in sys.modules:
-        for worker in sys.modules["multiprocessing"].active_children():
-            worker.kill()
     _seen.append(Stopped(number))
     raise _seen[0]
 

@@ -22,7 +22,6 @@ from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
 from reports.stability.running import Line, run_lines, run_one
 from reports.stability.table import show, show_run
 from reports.workers.isolated import Limits, checked_limits
-from reports.workers.pool import processors
 from reports.workers.progress import progress_bar
 from sim.registry import engine
 
@@ -52,7 +51,7 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
         for case, engine_, profile in itertools.product(cases, engines, profiles)
     ]
     with progress_bar(progress, "lines", len(lines)) as advance:
-        held = run_lines(lines, request.jobs or processors(), limits, lambda _: advance())
+        held = run_lines(lines, request.jobs, limits, lambda _: advance())
     matrix = Matrix(
         facts=_facts(engines),
         cases=tuple(case.facts() for case in cases),

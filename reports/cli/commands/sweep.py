@@ -23,7 +23,7 @@ from reports.results.table import noise_line, recommendation_table
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from reports.store.writer import Writer
-from reports.sweep.parallel import backend
+from reports.sweep.cluster import connected
 from reports.sweep.running import Done, Running
 from reports.workers.isolated import checked_limits
 from reports.workers.signals import Stopped
@@ -43,7 +43,7 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
     limits = checked_limits(request.limit_s, request.memory_gb)
     study = asked(request)
     laid = grid(study)
-    where = backend(request.jobs, request.dask)
+    client = None if request.dask is None else connected(request.dask)
     facts = provenance({task.cell.engine: task.version for task in laid.tasks})
     run = {
         "command": ["crankcheck", *sys.argv[1:]],
@@ -57,7 +57,8 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
         tell(writer.mended)
         running = Running(writer, laid.tasks, limits, facts, progress)
         try:
-            done = running.errors(request.keep_trajectories, where, request.again)
+            keep, jobs = request.keep_trajectories, request.jobs
+            done = running.errors(keep, jobs, client, request.again)
             if request.timing:
                 done = running.timings(done)
         except Stopped:

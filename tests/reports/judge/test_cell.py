@@ -15,7 +15,7 @@ from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
 from reports.verify.all_cells import check_all
-from reports.workers.pool import FEW
+from reports.workers.scheduler import FEW
 from sim.engine import Run
 from sim.run import run
 

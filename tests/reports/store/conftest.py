@@ -39,7 +39,7 @@ class Here(Generic[Answer]):
 def swept() -> Iterator[Sweep]:
     """Sweeps two steps of both engines, or of one, into a folder."""
     patch = pytest.MonkeyPatch()
-    patch.setattr("reports.sweep.parallel.Isolated", Here)
+    patch.setattr("reports.workers.scheduler.Isolated", Here)
     patch.setattr("reports.sweep.running.Isolated", Here)
     patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
     patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)

@@ -1,0 +1,89 @@
+"""Many things at a time, each in a process apart."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Generator
+from contextlib import closing
+from functools import partial
+
+import psutil
+import pytest
+
+from models.errors import CrankcheckError
+from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.scheduler import FEW, as_they_end, run_all
+from tests.worlds.programs import ROOT, until
+
+MANY = list(range(FEW + 2))
+
+
+def test_results_come_in_order_and_what_is_lost_has_one_too() -> None:
+    heard: list[str] = []
+    results = run_all(unlucky, MANY, 2, Limits(), lost, heard.append)
+    assert results == ["0", "1", "2: the engine ended its process (exit code 3)", "3", "4", "5"]
+    assert sorted(heard) == sorted(results)
+
+
+def test_what_takes_too_long_is_lost_and_few_are_done_here() -> None:
+    assert run_all(sleepy, [0, *[60] * FEW], 3, Limits(1.0), lost) == [
+        "0",
+        *["60: no end within 1 s"] * FEW,
+    ]
+    assert run_all(where, MANY[:FEW], 2, Limits(), lost) == [str(os.getpid())] * FEW
+    assert run_all(where, MANY, 1, Limits(), lost) == [str(os.getpid())] * len(MANY)
+    assert str(os.getpid()) not in run_all(where, MANY, 2, Limits(), lost)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_what_the_work_raises_is_raised_here(jobs: int) -> None:
+    with pytest.raises(CrankcheckError, match="no 3"):
+        run_all(refuse, MANY, jobs, Limits(), lost)
+
+
+def test_at_the_end_all_children_are_ended_in_the_middle_of_their_work() -> None:
+    def drive(child: Isolated[None], seconds: float) -> object:
+        return child.call(time.sleep, seconds)
+
+    ends: Generator[tuple[int, object]] = as_they_end(drive, [0.0, 600.0, 600.0], 2, Limits(900.0))
+    with closing(ends):
+        assert next(ends) == (0, None)
+        until(lambda: len(psutil.Process().children()) == 2)
+    assert psutil.Process().children() == []
+
+
+def test_nothing_to_do_is_done() -> None:
+    assert list(as_they_end(partial(Isolated.call, function=where), [], 0, Limits())) == []
+
+
+def unlucky(number: int) -> str:
+    if number == 2:
+        os._exit(3)
+    return str(number)
+
+
+def sleepy(seconds: int) -> str:
+    time.sleep(seconds)
+    return str(seconds)
+
+
+def where(_: int) -> str:
+    return str(os.getpid())
+
+
+def refuse(number: int) -> str:
+    if number == 3:
+        raise CrankcheckError("no 3")
+    return ""
+
+
+def lost(number: int, how: Lost) -> str:
+    return f"{number}: {how.reason}"
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The child imports this file's functions by the name that pytest gave it."""
+    monkeypatch.syspath_prepend(ROOT)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
