@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from types import ModuleType
 
 import pytest
 
 from tests.worlds.fake import engine
+from tests.worlds.programs import Start, hear_signals
+from tests.worlds.programs import programs as started
+
+
+def pytest_configure() -> None:
+    hear_signals()
+
+
+@pytest.fixture
+def programs() -> Iterator[Start]:
+    """Starts programs, which end with the test."""
+    with started() as start:
+        yield start
 
 
 @pytest.fixture(scope="session")

@@ -145,8 +145,8 @@ def test_a_mistake_ends_with_2_and_says_what_would_work(
 
 
 def test_a_run_over_its_limit_is_a_row_with_its_reason(crank: Crank) -> None:
-    args = ["stability", "tiny-step", "--engine", "pymunk", "--profile", "as-shipped"]
-    result = crank(*args, "--limit-s", "0.3")
+    args = ["stability", "wrong-branch", "--engine", "pymunk", "--profile", "as-shipped"]
+    result = crank(*args, "--limit-s", "1e-4")
     assert result.exit_code == 0, result.output
     assert "crashed" in result.stdout
 

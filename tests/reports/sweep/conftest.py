@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from sim import registry
 from tests.worlds.command import COMMAND, script
+from tests.worlds.programs import Start
 
 BAD_ENGINE = '''
 """MuJoCo, with a fault that a setting chooses."""
@@ -29,8 +29,6 @@ class BadEngine(MujocoEngine):
         fault = settings["fault"]
         if fault == "abort":
             os.abort()
-        elif fault == "slow":
-            time.sleep(5)
         elif fault == "hang":
             time.sleep(1000)
         elif fault == "fill":
@@ -49,35 +47,23 @@ from sim.registry import Declaration
 DECLARATION = Declaration("mujoco", "mujoco")
 """
 KNOWN = "from sim import registry\nregistry.ENGINES['bad'] = 'bad_engine'\n"
-Started = Callable[..., "subprocess.Popen[str]"]
-
-
-@pytest.fixture(scope="session")
-def start() -> Started:
-    """Starts `crankcheck` with arguments; its output is to be read from the process."""
-
-    def begin(
-        *arguments: object, more: Mapping[str, str] | None = None, cwd: Path | None = None
-    ) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [COMMAND, *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=cwd,
-            env={**os.environ, **(more or {})},
-        )
-
-    return begin
 
 
 @pytest.fixture
-def bad_engine(tmp_path: Path) -> dict[str, str]:
-    """The environment in which an engine `bad` is known."""
+def start(programs: Start) -> Start:
+    """Starts `crankcheck` with arguments; its output is to be read from the process."""
+    return partial(programs, COMMAND)
+
+
+@pytest.fixture
+def _bad_engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An engine `bad` is known here, and in processes that are started."""
     folder = tmp_path / "bad"
     folder.mkdir()
     (folder / "bad_engine").mkdir()
     (folder / "bad_engine" / "__init__.py").write_text(script(DECLARATION))
     (folder / "bad_engine" / "engine.py").write_text(script(BAD_ENGINE))
     (folder / "sitecustomize.py").write_text(script(KNOWN))
-    return {"PYTHONPATH": str(folder)}
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    monkeypatch.syspath_prepend(folder)
+    monkeypatch.setitem(registry.ENGINES, "bad", "bad_engine")

@@ -4,51 +4,48 @@ from __future__ import annotations
 
 import socket
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
+from models.errors import CrankcheckError
 from reports.store.reader import read_store
+from reports.sweep import cluster as clusters
 from tests.worlds.command import PYTHON
+from tests.worlds.programs import Start, programs
 
 GRID = ("fourbar-lecture-1", "slotted-lever", "--steps-per-turn", "90,180", "--no-timing")
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on"}
-Start = Callable[..., "subprocess.Popen[str]"]
 
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a scheduler with two workers."""
     pytest.importorskip("distributed", reason="pip install 'crankcheck[dask]'")
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
+    address = nowhere()
+    port = address.rpartition(":")[2]
     folder = tmp_path_factory.mktemp("cluster")
-    scheduler = dask("scheduler", "--host", "127.0.0.1", "--port", address.rpartition(":")[2])
-    workers = [
-        dask("worker", address, "--nthreads", "1", "--local-directory", str(folder))
-        for _ in range(2)
-    ]
     wait = f"import distributed; distributed.Client({address!r}).wait_for_workers(2, 60)"
-    try:
+    with programs() as start:
+
+        def dask(*arguments: str) -> None:
+            command = (PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard")
+            start(*command, output=subprocess.DEVNULL)
+
+        dask("scheduler", "--host", "127.0.0.1", "--port", port)
+        for _ in range(2):
+            dask("worker", address, "--nthreads", "1", "--local-directory", str(folder))
         subprocess.run([PYTHON, "-W", "ignore", "-c", wait], check=True, timeout=120)
         yield address
-    finally:
-        for process in (*workers, scheduler):
-            process.terminate()
-        for process in (*workers, scheduler):
-            process.wait(timeout=30)
 
 
-def dask(*arguments: str) -> subprocess.Popen[bytes]:
-    """A part of a cluster, as a user starts it."""
-    return subprocess.Popen(
-        [PYTHON, "-P", "-m", "dask", *arguments, "--no-dashboard"],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+def nowhere() -> str:
+    """An address at which nobody listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp://127.0.0.1:{probe.getsockname()[1]}"
 
 
 def test_a_cluster_gives_the_same_rows_bit_by_bit(
@@ -57,7 +54,7 @@ def test_a_cluster_gives_the_same_rows_bit_by_bit(
     stores = []
     for name, more in (("here", ()), ("there", ("--dask", cluster))):
         done = start("sweep", *GRID, "-o", tmp_path / name, *more)
-        _, err = done.communicate(timeout=120)
+        _, err = done.communicate(timeout=300)
         assert done.returncode == 0, err
         assert "Traceback" not in err
         stores.append(read_store(tmp_path / name).cells.set_index("key").sort_index())
@@ -69,12 +66,11 @@ def test_a_cluster_gives_the_same_rows_bit_by_bit(
     pd.testing.assert_frame_equal(here[names], there[names], check_exact=True)
 
 
-def test_no_scheduler_is_said_in_one_line(start: Start, tmp_path: Path) -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        address = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
-    done = start("sweep", *GRID, "-o", tmp_path / "x", "--dask", address)
-    _, err = done.communicate(timeout=60)
-    assert done.returncode == 2
-    assert "no scheduler answers there" in err
-    assert "Traceback" not in err
+def test_no_scheduler_is_said_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(clusters, "ANSWER_S", 0.3)
+    with pytest.raises(CrankcheckError, match="no scheduler answers there") as caught:
+        clusters.connected(nowhere())
+    assert "\n" not in str(caught.value)
+    assert capfd.readouterr() == ("", "")

@@ -5,10 +5,8 @@ from __future__ import annotations
 import random
 import re
 import signal
-import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
@@ -16,6 +14,8 @@ import psutil
 import pytest
 
 from reports.store.reader import Stored, read_store, stored_keys
+from tests.worlds.command import COMMAND
+from tests.worlds.programs import Start, programs, until
 
 SEED = 20261121
 STEPS = "90,120,180,240,360,480,720,960,1440,1920"
@@ -23,16 +23,16 @@ GRID = ("slider-crank-offset", "--steps-per-turn", STEPS, "--turns", "2")
 NUMBER = 8 * 10
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on", "us_per_step"}
 SLOW_KILLS = [pytest.param(kill, marks=pytest.mark.slow) for kill in range(2, 5)]
-Start = Callable[..., "subprocess.Popen[str]"]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL is POSIX")
 
 
 @pytest.fixture(scope="module")
-def whole(start: Start, tmp_path_factory: pytest.TempPathFactory) -> Stored:
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Stored:
     """The same sweep, never disturbed."""
     folder = tmp_path_factory.mktemp("whole") / "store"
-    done = start("sweep", *GRID, "-o", folder, "--no-timing")
-    _, err = done.communicate(timeout=120)
+    with programs() as start:
+        done = start(COMMAND, "sweep", *GRID, "-o", folder, "--no-timing")
+        _, err = done.communicate(timeout=300)
     assert done.returncode == 0, err
     return read_store(folder)
 
@@ -42,14 +42,6 @@ def counts(text: str) -> tuple[int, ...]:
     found = re.search(r"(\d+) cells: (\d+) run now, (\d+) were there; (\d+) timed now", text)
     assert found, text
     return tuple(map(int, found.groups()))
-
-
-def until(condition: Callable[[], bool]) -> None:
-    """Wait for it, a minute at most."""
-    end = time.monotonic() + 60.0
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.02)
 
 
 def parts(folder: Path, table: str) -> int:
@@ -89,7 +81,7 @@ def test_a_killed_sweep_goes_on_where_it_was(
     there = len(read_store(folder).cells)
     assert 0 < there < NUMBER
     done = start(*arguments)
-    out, err = done.communicate(timeout=120)
+    out, err = done.communicate(timeout=300)
     assert done.returncode == 0, err
     assert counts(out) == (NUMBER, NUMBER - there, there, 0)
     same(read_store(folder), whole)
@@ -98,7 +90,7 @@ def test_a_killed_sweep_goes_on_where_it_was(
 
 def test_a_third_run_finds_everything_there(start: Start, whole: Stored) -> None:
     before = sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet"))
-    out, _ = start("sweep", *GRID, "-o", whole.folder, "--no-timing").communicate(timeout=60)
+    out, _ = start("sweep", *GRID, "-o", whole.folder, "--no-timing").communicate(timeout=300)
     assert counts(out) == (NUMBER, 0, NUMBER, 0)
     assert before
     assert sorted(path.stat().st_mtime_ns for path in whole.folder.glob("*/*.parquet")) == before
@@ -114,7 +106,7 @@ def test_ctrl_c_keeps_what_is_done(start: Start, tmp_path: Path, cells: int) -> 
     time.sleep(0.5)
     started = children(running.pid)
     running.send_signal(signal.SIGINT)
-    _, err = running.communicate(timeout=30)
+    _, err = running.communicate(timeout=300)
     assert running.returncode == 130
     assert err.splitlines()[-2:] == [
         "what is done is kept; the same command goes on from there",
@@ -125,7 +117,7 @@ def test_ctrl_c_keeps_what_is_done(start: Start, tmp_path: Path, cells: int) -> 
     kept = read_store(folder)
     missing = [int(kept.cells.us_per_step.isna().sum()), 40 - len(kept.cells)]
     assert sum(missing) > 0
-    out, _ = start(*arguments).communicate(timeout=120)
+    out, _ = start(*arguments).communicate(timeout=300)
     assert counts(out) == (40, missing[1], len(kept.cells), sum(missing))
     assert not read_store(folder).cells.key.duplicated().any()
 
@@ -135,9 +127,9 @@ def test_two_sweeps_into_one_folder_do_not_mix(start: Start, tmp_path: Path) -> 
     first = start("sweep", *GRID, "-o", folder)
     until(lambda: parts(folder, "cells") > 0)
     second = start("sweep", *GRID, "-o", folder)
-    _, err = second.communicate(timeout=30)
+    _, err = second.communicate(timeout=300)
     first.send_signal(signal.SIGTERM)
-    first.communicate(timeout=30)
+    first.communicate(timeout=300)
     assert second.returncode == 2
     assert "another sweep writes there now" in err
     assert first.returncode == 143

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,6 +21,7 @@ from reports.cli.measuring import TuneRequest
 from sim.mujoco.knobs import EVALUATIONS
 from sim.tuning import Knob, search_space
 from tests.worlds.command import PYTHON, script
+from tests.worlds.programs import Start
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[TuneRequest], tuple[int, str]]
@@ -254,18 +254,12 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
-def test_ctrl_c_keeps_the_trials_and_leaves_no_process(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_trials_and_leaves_no_process(programs: Start, tmp_path: Path) -> None:
     path, program = tmp_path / "kept.db", tmp_path / "run.py"
     program.write_text(script(SCRIPT), encoding="utf-8")
-    running = subprocess.Popen(
-        [PYTHON, str(program), str(path)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
+    running = programs(PYTHON, program, path)
     # The pipes end when the last process that holds them does.
-    output, complaint = running.communicate(timeout=60)
+    output, complaint = running.communicate(timeout=300)
     assert running.returncode == 130
     assert output == ""
     study = optuna.load_study(study_name=None, storage=f"sqlite:///{path}")
