@@ -42,20 +42,25 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
     low, high = _range(scene, duration_s)
     theta = np.linspace(low, high, 1 + (GRID - 1) * max(1, round((high - low) / math.tau)))
     motion = _steady(scene, theta)
-    for key in motion.conditioning:
-        places = theta[_valleys(np.abs(motion.conditioning[key]))]
-        smallest = np.full_like(places, np.inf)
-        width = (high - low) / (theta.size - 1)
-        for _ in range(ZOOMS if places.size else 0):
-            near = np.clip(places[:, None] + np.linspace(-width, width, FINER), low, high)
-            sines = np.abs(_steady(scene, near.ravel()).conditioning[key]).reshape(near.shape)
-            best = np.arange(len(near)), np.argmin(sines, axis=1)
-            places, smallest = near[best], sines[best]
-            width *= 2.0 / (FINER - 1)
-        lost = places[(smallest < SINGULAR) & ~_is_passed(motion.crossings, key, places)]
-        if lost.size:
+    sines = {key: np.abs(sine) for key, sine in motion.conditioning.items()}
+    # A row for every valley of every dyad: all are looked at in one solution for each zoom.
+    dyad = [key for key, sine in sines.items() for _ in range(np.count_nonzero(_valleys(sine)))]
+    places = np.concatenate([theta[_valleys(sine)] for sine in sines.values()] or [np.zeros(0)])
+    smallest = np.full_like(places, np.inf)
+    width = (high - low) / (theta.size - 1)
+    for _ in range(ZOOMS if places.size else 0):
+        around = np.clip(places[:, None] + np.linspace(-width, width, FINER), low, high)
+        every = _steady(scene, around.ravel()).conditioning
+        looks = np.stack(
+            [np.abs(every[key]).reshape(around.shape)[row] for row, key in enumerate(dyad)]
+        )
+        best = np.arange(len(around)), np.argmin(looks, axis=1)
+        places, smallest = around[best], looks[best]
+        width *= 2.0 / (FINER - 1)
+    for key, place, sine in zip(dyad, places, smallest, strict=True):
+        if sine < SINGULAR and not _is_passed(motion.crossings, key, np.array([place])).any():
             raise CrankcheckError(
-                f"{scene.name}: at driver {math.degrees(float(lost[0])):.6g} deg the dyad of {key} "
+                f"{scene.name}: at driver {math.degrees(float(place)):.6g} deg the dyad of {key} "
                 "is singular: the motion is not determined there, and no engine can be held to "
                 "it; choose lengths, or a range of the driver, away from it"
             )
