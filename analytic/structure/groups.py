@@ -95,24 +95,21 @@ def decompose(
     A link is taken for redundant only where no further group can be placed.
     """
     known = {GROUND, driver}
-    left = [body for body in bodies if body not in known]
+    outer = {body: pairs.outer(body, known) for body in bodies if body not in known}
     order: list[Group | Bridge] = []
-    while left:
-        outer = {body: pairs.outer(body, known) for body in left}
-        part = next(_dyads(left, outer, known, pairs), None) or next(_bridges(outer), None)
-        if part is None:
-            break
+    while part := next(_dyads(outer, known, pairs), None) or next(_bridges(outer), None):
         order.append(part)
         known.update(part.bodies)
-        left = [body for body in left if body not in known]
-    return tuple(order), left
+        for body in part.bodies:
+            del outer[body]
+        for body in outer.keys() & {b for placed in part.bodies for b in pairs.neighbours(placed)}:
+            outer[body] = pairs.outer(body, known)
+    return tuple(order), list(outer)
 
 
-def _dyads(
-    left: list[str], outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs
-) -> Iterator[Group]:
+def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -> Iterator[Group]:
     """The class II groups that can be placed next, in the order of the bodies."""
-    ready = {body: place for place, body in enumerate(left) if len(outer[body]) == 1}
+    ready = {body: place for place, (body, ends) in enumerate(outer.items()) if len(ends) == 1}
     for a in ready:
         later = [b for b in pairs.neighbours(a) & ready.keys() if ready[b] > ready[a]]
         for b in sorted(later, key=ready.__getitem__):
