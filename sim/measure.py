@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,12 +16,108 @@ from sim.engine import BodyPose, Poses
 
 
 @dataclass(frozen=True)
-class _PointPath:
-    """A point over time in the plane: position, velocity, acceleration, each (T, 2)."""
+class _Body:
+    """A body over time."""
 
-    position: Array
-    velocity: Array
-    acceleration: Array
+    pose: BodyPose
+
+    @cached_property
+    def turn(self) -> tuple[Array, Array]:
+        """Cosine and sine of its angle, (T,) each."""
+        return np.cos(self.pose.theta), np.sin(self.pose.theta)
+
+
+@dataclass(frozen=True)
+class _PointPath:
+    """A point fixed to a body, over time in the plane, (T, 2); worked out where it is asked for."""
+
+    body: _Body
+    local: Point
+
+    @cached_property
+    def _arm(self) -> Array:
+        (c, s), (x, y) = self.body.turn, self.local
+        return _pairs(c * x - s * y, s * x + c * y)
+
+    @cached_property
+    def _across(self) -> Array:
+        return _turned(self._arm)
+
+    @cached_property
+    def position(self) -> Array:
+        return self.body.pose.origin + self._arm
+
+    @cached_property
+    def velocity(self) -> Array:
+        return self.body.pose.velocity + self.body.pose.omega[:, None] * self._across
+
+    @cached_property
+    def acceleration(self) -> Array:
+        omega, alpha = self.body.pose.omega[:, None], self.body.pose.alpha[:, None]
+        return self.body.pose.origin_acceleration + alpha * self._across - omega**2 * self._arm
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """The point of a slider as seen from its guide, (T, 2): x along the line from ``through_m``, y
+    off the line; worked out where it is asked for."""
+
+    slider: Slider
+    guide: BodyPose
+    track: _PointPath
+
+    @cached_property
+    def _place(self) -> Array:
+        return self.track.position - self.guide.origin
+
+    @cached_property
+    def _drift(self) -> Array:
+        """The velocity against the guide, in the plane."""
+        omega = self.guide.omega[:, None]
+        return self.track.velocity - self.guide.velocity - omega * _turned(self._place)
+
+    @cached_property
+    def _axes(self) -> tuple[Array, Array]:
+        """Along the line and to the left of it, (T, 2) each."""
+        angle = self.guide.theta + self.slider.direction_rad
+        c, s = np.cos(angle), np.sin(angle)
+        return _pairs(c, s), _pairs(-s, c)
+
+    @property
+    def position(self) -> Array:
+        cos, sin = np.cos(self.slider.direction_rad), np.sin(self.slider.direction_rad)
+        x, y = self.slider.through_m
+        start = np.array([x * cos + y * sin, y * cos - x * sin])
+        return np.asarray(self._split(self._place) - start)
+
+    @property
+    def velocity(self) -> Array:
+        return self._split(self._drift)
+
+    @property
+    def acceleration(self) -> Array:
+        omega, alpha = self.guide.omega[:, None], self.guide.alpha[:, None]
+        push = self.track.acceleration - self.guide.origin_acceleration
+        turning = alpha * _turned(self._place)
+        return self._split(
+            push - turning + omega**2 * self._place - 2 * omega * _turned(self._drift)
+        )
+
+    def _split(self, vector: Array) -> Array:
+        along, across = self._axes
+        return _pairs((vector * along).sum(axis=1), (vector * across).sum(axis=1))
+
+
+def _turned(vector: Array) -> Array:
+    """The vectors (T, 2) turned by a quarter, counter-clockwise."""
+    return _pairs(-vector[:, 1], vector[:, 0])
+
+
+def _pairs(x: Array, y: Array) -> Array:
+    """Vectors of their components, (T, 2)."""
+    pairs = np.empty((len(x), 2))
+    pairs[:, 0], pairs[:, 1] = x, y
+    return pairs
 
 
 def motion(scene: Scene, poses: Poses) -> Motion:
@@ -46,11 +143,13 @@ def _motion(scene: Scene, poses: Poses, now: Poses, then: Poses) -> Motion:
             points[name] = PointMotion(track.position, velocity, track.acceleration)
     for name, slider in scene.sliders.items():
         rider = _rider(scene, slider)
-        seen = _seen(slider, _guide(slider, now), tracks[slider.point][rider])
-        speed = seen.velocity
+        seen = _Seen(slider, _guide(slider, now), tracks[slider.point][rider])
+        sped = seen
         if later is not None:
-            speed = _seen(slider, _guide(slider, then), later[slider.point][rider]).velocity
-        sliders[name] = SliderMotion(seen.position[:, 0], speed[:, 0], seen.acceleration[:, 0])
+            sped = _Seen(slider, _guide(slider, then), later[slider.point][rider])
+        sliders[name] = SliderMotion(
+            seen.position[:, 0], sped.velocity[:, 0], seen.acceleration[:, 0]
+        )
     links = {n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in poses.links.items()}
     return Motion(poses.time_s, links, points, sliders)
 
@@ -108,7 +207,7 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
             found[point] = np.max(apart, axis=0)
     for name, slider in scene.sliders.items():
         guide = _guide(slider, poses)
-        seen = _seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
+        seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
         off = np.abs(seen.position[:, 1])
         body = _sliding_body(slider, poses)
         if body is not None:
@@ -120,11 +219,11 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, _PointPath]]:
     """Every point as each of the bodies that list it carries it."""
-    still = _still(len(poses.time_s))
-    bodies = {GROUND: still, **poses.links}
-    bodies |= {block_name(scene.sliders[n]): pose for n, pose in poses.blocks.items()}
+    held = {GROUND: _still(len(poses.time_s)), **poses.links}
+    held |= {block_name(scene.sliders[n]): pose for n, pose in poses.blocks.items()}
+    bodies = {name: _Body(pose) for name, pose in held.items()}
     return {
-        point: {body: _carried(bodies[body], local_point(scene, body, point)) for body in names}
+        point: {body: _PointPath(bodies[body], local_point(scene, body, point)) for body in names}
         for point, names in carriers(scene).items()
     }
 
@@ -154,38 +253,3 @@ def _still(samples: int) -> BodyPose:
     """The ground."""
     zero, pair = np.zeros(samples), np.zeros((samples, 2))
     return BodyPose(pair, zero, pair, zero, pair, zero)
-
-
-def _carried(body: BodyPose, local: Point) -> _PointPath:
-    """A point fixed to a body."""
-    c, s = np.cos(body.theta), np.sin(body.theta)
-    arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
-    across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    omega, alpha = body.omega[:, None], body.alpha[:, None]
-    return _PointPath(
-        body.origin + arm,
-        body.velocity + omega * across,
-        body.origin_acceleration + alpha * across - omega**2 * arm,
-    )
-
-
-def _seen(slider: Slider, guide: BodyPose, track: _PointPath) -> _PointPath:
-    """The point as seen from the guide: x along the line from ``through_m``, y off the line."""
-    place = track.position - guide.origin
-    across = np.stack([-place[:, 1], place[:, 0]], axis=-1)
-    omega, alpha = guide.omega[:, None], guide.alpha[:, None]
-    drift = track.velocity - guide.velocity - omega * across
-    turn = np.stack([-drift[:, 1], drift[:, 0]], axis=-1)
-    push = track.acceleration - guide.origin_acceleration
-    push = push - alpha * across + omega**2 * place - 2 * omega * turn
-    angle = guide.theta + slider.direction_rad
-    c, s = np.cos(angle), np.sin(angle)
-    u, n = np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)
-    cos, sin = np.cos(slider.direction_rad), np.sin(slider.direction_rad)
-    x, y = slider.through_m
-    start = np.array([x * cos + y * sin, y * cos - x * sin])
-
-    def split(vector: Array) -> Array:
-        return np.stack([(vector * u).sum(axis=1), (vector * n).sum(axis=1)], axis=-1)
-
-    return _PointPath(split(place) - start, split(drift), split(push))

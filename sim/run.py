@@ -6,11 +6,12 @@ import gc
 import math
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from models.array import Array
 from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
@@ -189,6 +190,7 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
     """The run, chunk by chunk, until its end or until it comes apart."""
     every = blank.every
     logs: list[Poses] = []
+    opened: list[Mapping[str, Array]] = []
     warnings: list[str] = []
     wall, done = 0.0, 0
     status: Status = "ok"
@@ -201,18 +203,23 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
             break
         wall, done = wall + log.wall_s, done + count
         warnings += [w for w in log.warnings if w not in warnings]
-        sound, fault = _sound(scene, log, runaway)
-        logs.append(stretch(log.poses, sound, 1 if logs else 0))
+        apart_m = gaps(scene, log.poses)
+        sound, fault = _sound(scene, log, apart_m, runaway)
+        kept = slice(1 if logs else 0, sound)  # a stretch begins where the one before it ended
+        opened.append({name: gap[kept] for name, gap in apart_m.items()})
+        logs.append(stretch(log.poses, kept))
         if fault:
             status, reason = "diverged", fault
             break
-    poses = joined(logs) if logs else facts.start
+    if not logs:
+        logs, opened = [facts.start], [gaps(scene, facts.start)]
+    poses = joined(logs)
     return replace(
         blank,
         status=status,
         reason=reason,
         motion=motion(scene, poses),
-        gaps=gaps(scene, poses),
+        gaps={name: np.concatenate([each[name] for each in opened]) for name in opened[0]},
         energy=energy(scene, poses) if blank.drive == "free" else None,
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,
         acceleration_time_s=poses.time_s + facts.acceleration_shift * blank.dt_s,
@@ -222,14 +229,14 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
     )
 
 
-def _sound(scene: Scene, log: Log, runaway: float) -> tuple[int, str]:
+def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float) -> tuple[int, str]:
     """How many samples of a log hold together, and what came apart after them.
 
     A joint that is open by more than the longest link, or a link that spins faster than
     ``runaway`` [rad/s], a million times the pace of the run, is not a mechanism any more.
     """
     poses = log.poses
-    open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in gaps(scene, poses).values()], axis=0)
+    open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in apart_m.values()], axis=0)
     spin = np.max([np.abs(pose.omega) for pose in poses.links.values()], axis=0)
     bad = ~(open_by <= scene.longest_m)
     bad |= ~(spin <= runaway)
@@ -240,14 +247,14 @@ def _sound(scene: Scene, log: Log, runaway: float) -> tuple[int, str]:
     return max(count, 1), f"came apart at {when:.6g} s"
 
 
-def stretch(poses: Poses, count: int, skip: int) -> Poses:
-    """The samples ``skip`` to ``count``."""
+def stretch(poses: Poses, kept: slice) -> Poses:
+    """Some of the samples, one after the other."""
 
     def cut(body: BodyPose) -> BodyPose:
-        return BodyPose(**{name: array[skip:count] for name, array in vars(body).items()})
+        return BodyPose(**{name: array[kept] for name, array in vars(body).items()})
 
     return Poses(
-        poses.time_s[skip:count],
+        poses.time_s[kept],
         {name: cut(body) for name, body in poses.links.items()},
         {name: cut(body) for name, body in poses.blocks.items()},
         poses.lag_s,

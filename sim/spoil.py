@@ -176,9 +176,7 @@ class SpoiltSession:
             self._advance(count)
             if logs[-1].diverged:
                 break
-        parts = [
-            stretch(log.poses, len(log.poses.time_s), int(k > 0)) for k, log in enumerate(logs)
-        ]
+        parts = [stretch(log.poses, slice(int(k > 0), None)) for k, log in enumerate(logs)]
         return replace(
             logs[-1],
             poses=joined(parts),
