@@ -30,7 +30,7 @@ from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
-from models.scene import Scene
+from models.scene import Same, Scene
 
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
@@ -92,7 +92,7 @@ def solve(
         )
         return theta, omega, alpha, error
 
-    ready = _prepared(_Same(scene))
+    ready = _prepared(Same(scene))
     return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
 
 
@@ -122,13 +122,13 @@ def solve_driven(
         error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
         return theta[span], omega[span], alpha[span], error
 
-    ready = _prepared(_Same(scene))
+    ready = _prepared(Same(scene))
     return ready.motion(Selection.of(scene, links, points, sliders), labels, driver, bound=bound)
 
 
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
-    return ranges(_prepared(_Same(scene)).stretched)
+    return ranges(_prepared(Same(scene)).stretched)
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
@@ -154,26 +154,12 @@ def _samples(values: Array) -> Array:
 def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one."""
-    passages = _prepared(_Same(scene)).passages.values()
+    passages = _prepared(Same(scene)).passages.values()
     return max((passage.period for passage in passages), default=math.tau)
 
 
-@dataclass(frozen=True, eq=False)
-class _Same:
-    """A scene as itself: scenes that are equal but for the order of their links are not one, and
-    one that is changed is another, as they are frozen."""
-
-    scene: Scene
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.scene is self.scene
-
-    def __hash__(self) -> int:
-        return id(self.scene)
-
-
 @lru_cache(maxsize=KEPT)
-def _prepared(same: _Same) -> _Prepared:
+def _prepared(same: Same) -> _Prepared:
     """The scene made ready to be solved. Raises StructureError."""
     steps = prepare(same.scene, analyse(same.scene))
     start = float(same.scene.driver.law.at(np.zeros(1))[0][0])

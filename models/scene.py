@@ -92,8 +92,8 @@ class Scene:
     tolerance: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
 
-    @property
-    def pins(self) -> dict[str, tuple[str, ...]]:
+    @cached_property
+    def pins(self) -> Mapping[str, tuple[str, ...]]:
         """Every named point with the bodies that list it, ground first, then links in order."""
         bodies: dict[str, list[str]] = {point: [GROUND] for point in self.ground}
         for link in self.links.values():
@@ -110,6 +110,20 @@ class Scene:
     def driver_pivot(self) -> str:
         """The point that pins the driver to the ground."""
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
+
+
+@dataclass(frozen=True, eq=False)
+class Same:
+    """A scene as itself, to keep under it what was worked out for it: scenes that are equal but for
+    the order of their links are not one, and one that is changed is another, as they are frozen."""
+
+    scene: Scene
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.scene is self.scene
+
+    def __hash__(self) -> int:
+        return id(self.scene)
 
 
 def span(points: Mapping[str, Point]) -> float:

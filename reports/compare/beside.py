@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import Motion
-from models.scene import Scene
+from models.scene import Same, Scene
 from reports.compare.series import angle_error
 from reports.compare.tracks import Track, fitting, tracks
 from reports.quantities import named
 from sim.engine import Run
+
+SETS = 2
+"""Sets of instants that are kept: those of places and of velocities are often two."""
+
+
+@lru_cache(maxsize=1)
+def truth_of(same: Same) -> Truth:
+    """The truth of the scene that was asked for last: its cells follow one another, and most are
+    logged at the same instants."""
+    return Truth(same.scene)
 
 
 @dataclass(frozen=True)
@@ -31,7 +41,10 @@ class Truth:
         """The reference at instants (T,). Raises CrankcheckError where there is none."""
         instants = time_s.tobytes()
         if instants not in self._motions:
-            self._motions[instants] = solve(self.scene, time_s, bound=self.bound)
+            motion = solve(self.scene, time_s, bound=self.bound)
+            if len(self._motions) == SETS:
+                del self._motions[next(iter(self._motions))]
+            self._motions[instants] = motion
         return self._motions[instants]
 
 
@@ -46,6 +59,7 @@ class Beside:
     truth: Truth
     run: Run
     motion: Motion
+    _own: dict[str, tuple[Track, ...]] = field(default_factory=dict, repr=False, compare=False)
 
     @staticmethod
     def of(truth: Truth, run: Run) -> Beside | None:
@@ -84,11 +98,16 @@ class Beside:
         """How far the driver is from where it was told to be [rad], (T,)."""
         return angle_error(self.crank, self.driver_rad)
 
-    @cached_property
+    @property
     def places(self) -> tuple[Track, ...]:
         """The tracks of place against the truth at the logged instants."""
         return self.tracks(named("place"), self.reference)
 
-    def tracks(self, quantities: Iterable[str], reference: Motion) -> tuple[Track, ...]:
-        """The tracks of some quantities of the log, against a reference of as many samples."""
-        return tuple(tracks(self.scene, self.run, reference, quantities))
+    def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
+        """The tracks of some quantities of the log, against a reference of as many samples; those
+        against the truth at the logged instants are kept."""
+        known = self._own if reference is self.reference else dict[str, tuple[Track, ...]]()
+        for name in quantities:
+            if name not in known:
+                known[name] = tuple(tracks(self.scene, self.run, reference, (name,)))
+        return tuple(track for name in quantities for track in known[name])

@@ -79,6 +79,6 @@ def _assemblies(beside: Beside) -> Iterator[Motion]:
         branch = {k: s * scene.branch.get(k, 1) for k, s in zip(keys, signs, strict=True)}
         other = replace(scene, branch={**scene.branch, **branch})
         try:
-            yield solve(other, beside.motion.time_s, bound=False)
+            yield solve(other, beside.motion.time_s, points=(), sliders=(), bound=False)
         except CrankcheckError:
             continue

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,17 @@ class _Instants:
 
     def __getitem__(self, part: slice | NDArray[np.bool_]) -> _Instants:
         return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Kind, NDArray[np.bool_], _Instants], ...]:
+        """The first samples, those at change points and the rest, by kind, without empty ones."""
+        first = np.arange(self.time_s.size) < _settled(self)
+        kinds: tuple[tuple[Kind, NDArray[np.bool_]], ...] = (
+            ("start", first),
+            ("total", ~first & ~self.passed),
+            ("passage", ~first & self.passed),
+        )
+        return tuple((kind, part, self[part]) for kind, part in kinds if np.any(part))
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -139,16 +151,9 @@ def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = 
 
 def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
     """A rate as rows of its parts: the first samples, those at change points, and the rest."""
-    first = np.arange(at.time_s.size) < _settled(at)
-    parts: tuple[tuple[Kind, NDArray[np.bool_]], ...] = (
-        ("start", first),
-        ("total", ~first & ~at.passed),
-        ("passage", ~first & at.passed),
-    )
-    for kind, part in parts:
-        if np.any(part):
-            cut = replace(track, error=track.error[part], bound=track.bound[part])
-            yield _row(cut, at[part], source, kind)
+    for kind, part, instants in at.parts:
+        cut = replace(track, error=track.error[part], bound=track.bound[part])
+        yield _row(cut, instants, source, kind)
 
 
 def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:
@@ -202,6 +207,7 @@ def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
         for each in entry.criteria
         if each.tolerance.differenced
     ]
+    inner = at[1:-1]
     for track in beside.places:
         # The logged numbers are rounded too: that is part of what a difference is uncertain by.
         unsure = (track.bound + EPSILON * track.magnitude)[1:-1]
@@ -216,7 +222,7 @@ def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
                 scale=measure.scale(beside.scene, beside.reference),
                 unit=measure.unit,
             )
-            yield from _rate_rows(differenced, at[1:-1], "differenced")
+            yield from _rate_rows(differenced, inner, "differenced")
 
 
 def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:

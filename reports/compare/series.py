@@ -26,12 +26,12 @@ class Size:
 
 def size(series: Array) -> Size:
     """Maximum, root mean square and last value of the magnitude of ``series`` (T,)."""
-    broken = np.flatnonzero(~np.isfinite(series))
-    if broken.size:
-        return Size(math.nan, math.nan, float(series[-1]), int(broken[0]))
     magnitude = np.abs(series)
-    index = int(np.argmax(magnitude))
+    index = int(np.argmax(magnitude))  # the first NaN, where there is one
     largest = float(magnitude[index])
+    if not math.isfinite(largest):
+        broken = int(np.flatnonzero(~np.isfinite(series))[0])
+        return Size(math.nan, math.nan, float(series[-1]), broken)
     # Squares of the pure ratio: no overflow for an engine that has run away.
     rms = largest * float(np.sqrt(np.mean((magnitude / largest) ** 2))) if largest > 0.0 else 0.0
     return Size(largest, rms, float(magnitude[-1]), index)

@@ -15,8 +15,8 @@ from analytic.forces.jolts import mass_ratio
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
-from models.scene import Scene
-from reports.compare.beside import Beside, Truth
+from models.scene import Same, Scene
+from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
 from reports.judge.halving import followed
@@ -103,14 +103,14 @@ def examined(cell: Cell, runner: Runner | None = None) -> tuple[Checked, Run | N
 def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     try:
-        state = solve(cell.scene, np.zeros(1)).state()
+        state = solve(cell.scene, np.zeros(1), bound=False).state()
         done = _run(cell, runner, state, 1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
     try:
-        beside = Beside.of(Truth(cell.scene), done)
+        beside = Beside.of(truth_of(Same(cell.scene)), done)
         errors = compare(beside)
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"
