@@ -106,8 +106,8 @@ class Beside:
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
         """The tracks of some quantities of the log, against a reference of as many samples; those
         against the truth at the logged instants are kept."""
-        known = self._own if reference is self.reference else dict[str, tuple[Track, ...]]()
+        kept = self._own if reference is self.reference else dict[str, tuple[Track, ...]]()
         for name in quantities:
-            if name not in known:
-                known[name] = tuple(tracks(self.scene, self.run, reference, (name,)))
-        return tuple(track for name in quantities for track in known[name])
+            if name not in kept:
+                kept[name] = tuple(tracks(self.scene, self.run, reference, (name,)))
+        return tuple(track for name in quantities for track in kept[name])

@@ -110,8 +110,8 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
     try:
-        beside = Beside.of(truth_of(Same(cell.scene)), done)
-        errors = compare(beside)
+        truth = truth_of(Same(cell.scene))
+        errors = compare(Beside.of(truth, done))
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"
         return unfinished(cell, "crashed", why), done
@@ -120,9 +120,9 @@ def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
         status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
     seen = None
-    if cell.converge and beside and errors:
+    if cell.converge and errors:
         rerun = partial(_run, cell, runner, state)
-        seen = followed(beside.truth, cell.dt_s, errors, cell.tolerance, rerun)
+        seen = followed(truth, cell.dt_s, errors, cell.tolerance, rerun)
     evidence = Evidence(
         status=status,
         reason=reason,
