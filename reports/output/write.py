@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from models.errors import CrankcheckError
@@ -57,10 +57,19 @@ def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
         check_file(path / name, option)
 
 
-def check_different(files: Iterable[tuple[str, Path]]) -> None:
-    """Refuse two outputs, as option and file, that are one file. Raises CrankcheckError."""
+def check_outputs(
+    files: Mapping[str, Path | None], folder: Path | None = None, names: Sequence[str] = ()
+) -> None:
+    """Refuse files, by their options, and ``names`` in the folder of -o, that could not be written,
+    and two of all these that are one file. Raises CrankcheckError."""
+    outputs = [(option, path) for option, path in files.items() if path is not None]
+    for option, path in outputs:
+        check_file(path, option)
+    if folder is not None:
+        check_folder(folder, "-o", names)
+        outputs += [("-o", folder / name) for name in names]
     taken: dict[Path, str] = {}
-    for option, path in files:
+    for option, path in outputs:
         with _looking_at(path, option):
             real = path.resolve()
             device = path.exists() and not path.is_file()  # /dev/stdout takes several

@@ -11,7 +11,7 @@ from reports.diff.markdown import markdown
 from reports.diff.terminal import show
 from reports.output.junit import junit
 from reports.output.notice import tell
-from reports.output.write import check_different, check_file, write
+from reports.output.write import check_outputs, write
 from reports.results.changes.changes import compare
 from reports.results.changes.reading import read_run
 
@@ -34,11 +34,7 @@ def run_diff(request: DiffRequest, console: Console) -> int:
     """
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use {' or '.join(FORMATS)}")
-    files = [("-o", request.output), ("--junit", request.junit)]
-    named = [(option, path) for option, path in files if path is not None]
-    for option, path in named:
-        check_file(path, option)
-    check_different(named)
+    check_outputs({"-o": request.output, "--junit": request.junit})
     old = read_run(request.old, request.old_version, "--old-version")
     new = read_run(request.new, request.new_version, "--new-version")
     for run in (old, new) if request.old != request.new else (old,):

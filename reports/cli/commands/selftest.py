@@ -12,7 +12,7 @@ from rich.progress import Progress
 from reports.cli.checking import SelftestRequest
 from reports.judge.cell import Checked
 from reports.output.provenance import provenance
-from reports.output.write import check_different, check_file, check_folder, write
+from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.registry import chosen_faults
 from reports.selftest.table import place_row, show
@@ -32,7 +32,7 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
     """
     engines = chosen_engines(request.engines)
     faults = chosen_faults(request.faults, engines)
-    _check_outputs(request)
+    check_outputs({"--csv": request.csv, "--json": request.json}, request.folder, IN_FOLDER)
     for name in engines:
         if name not in offering("spoiler"):
             progress.print(f"engine {name}: it has no spoiler, so nothing is planted inside it")
@@ -49,18 +49,6 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
     return int(not all(one.caught for one in verdicts))
 
 
-def _check_outputs(request: SelftestRequest) -> None:
-    """Refuse outputs that can not be written, before the run."""
-    named = {"--csv": request.csv, "--json": request.json}
-    files = [(option, path) for option, path in named.items() if path is not None]
-    for option, path in files:
-        check_file(path, option)
-    if request.folder is not None:
-        check_folder(request.folder, "-o", IN_FOLDER)
-        files += [("-o", request.folder / name) for name in IN_FOLDER]
-    check_different(files)
-
-
 def _write(
     request: SelftestRequest,
     verdicts: Sequence[Verdict],
@@ -73,10 +61,9 @@ def _write(
         pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"),
         _json(verdicts, sound, rows, facts),
     )
+    folder = request.folder
     for name, text, path in zip(IN_FOLDER, texts, (request.csv, request.json), strict=True):
-        targets = [path] if path else []
-        targets += [request.folder / name] if request.folder else []
-        for target in targets:
+        for target in filter(None, (path, folder and folder / name)):
             write(target, text)
 
 

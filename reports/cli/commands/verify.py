@@ -22,7 +22,7 @@ from reports.output.junit import junit
 from reports.output.notice import tell
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
-from reports.output.write import check_different, check_file, check_folder, write
+from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
@@ -59,7 +59,8 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
         Anything about the request that can be told before running.
     """
     cells = plan(request)
-    _check_outputs(request)
+    files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
+    check_outputs(files, request.folder, IN_FOLDER)
     digests = scene_digests(request.scenes)
     for note in passages(cells):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
@@ -134,18 +135,6 @@ def passages(cells: Sequence[Cell]) -> list[str]:
     return [note for note in dict.fromkeys(notes) if note]
 
 
-def _check_outputs(request: VerifyRequest) -> None:
-    """Refuse outputs that can not be written, before the run."""
-    named = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    files = [(option, path) for option, path in named.items() if path is not None]
-    for option, path in files:
-        check_file(path, option)
-    if request.folder is not None:
-        check_folder(request.folder, "-o", IN_FOLDER)
-        files += [("-o", request.folder / name) for name in IN_FOLDER]
-    check_different(files)
-
-
 def _engines(cells: Sequence[Cell]) -> list[str]:
     return list(dict.fromkeys(cell.engine for cell in cells))
 
@@ -174,9 +163,7 @@ def _write(request: VerifyRequest, results: Results) -> None:
     folder = request.folder
     *texts, table = IN_FOLDER
     for name, path in zip(texts, (request.csv, request.json, request.junit), strict=True):
-        targets = [path] if path else []
-        targets += [folder / name] if folder else []
-        for target in targets:
+        for target in filter(None, (path, folder and folder / name)):
             write(target, _content(name, results))
     if folder:
         write(folder / table, parquet(error_frame(results.checked)))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError
-from reports.output.write import check_different, check_file, check_folder, write
+from reports.output.write import check_file, check_folder, check_outputs, write
 
 NOT_ROOT = pytest.mark.skipif(
     not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere"
@@ -114,8 +114,10 @@ def test_one_file_for_two_outputs_is_refused_unless_it_is_a_device(tmp_path: Pat
     link = tmp_path / "link"
     link.symlink_to(tmp_path / "out")
     with pytest.raises(CrankcheckError, match="--csv and --json: both name"):
-        check_different([("--csv", tmp_path / "out"), ("--json", link)])
-    check_different([("--csv", Path("/dev/null")), ("--json", Path("/dev/null"))])
+        check_outputs({"--csv": tmp_path / "out", "--json": link, "--junit": None})
+    with pytest.raises(CrankcheckError, match="--csv and -o: both name"):
+        check_outputs({"--csv": tmp_path / "out"}, tmp_path, ["out"])
+    check_outputs({"--csv": Path("/dev/null"), "--json": Path("/dev/null")})
 
 
 @NOT_ROOT
