@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -91,10 +91,6 @@ class Attempt:
             return -NONE_KNOWN
         return min(math.log10(self.error / target), NONE_KNOWN)
 
-    def plain(self) -> dict[str, object]:
-        """As plain values, to be kept."""
-        return asdict(self)
-
 
 class LostError(Exception):
     """A run that came to nothing: no other step is tried with its settings."""
@@ -173,8 +169,7 @@ class Bench:
         reason, timed_out = "", False
         steps: int | None = None
         try:
-            found = coarsest(error_at, goal.target, start, goal.least, max(most, goal.least))
-            steps = found.steps
+            steps = coarsest(error_at, goal.target, start, goal.least, max(most, goal.least))
         except LostError as lost:
             reason, timed_out = str(lost), lost.timed_out
         over = [n for n, (error, _) in worst.items() if not error <= goal.target]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 RESOLUTION = 1.01
 """How far apart, as a ratio, a step that reaches the target and one that misses it may be."""
@@ -22,18 +22,10 @@ LEAP = 8.0
 """The most that the number of steps grows by from one run to the next."""
 
 
-@dataclass(frozen=True)
-class Found:
-    """``steps`` in a turn, None where no step reaches the target; every run as steps to error."""
-
-    steps: int | None
-    errors: dict[int, float]
-
-
 def coarsest(
     error_at: Callable[[int], float], target: float, start: int, least: int, most: int
-) -> Found:
-    """Look for the coarsest step between ``least`` and ``most`` steps in a turn.
+) -> int | None:
+    """The coarsest step between ``least`` and ``most`` steps in a turn; None where none reaches.
 
     Parameters
     ----------
@@ -43,21 +35,20 @@ def coarsest(
     start : int
         Where to look first.
     """
-    looks = _Looks(error_at, target, {})
-    failed = least - 1
+    looks, failed = _Looks(error_at, target), least - 1
     steps = min(max(start, least), most)
     while True:
         reached = _finer(looks, steps, most)
         if reached is None:
-            return Found(None, looks.errors)
-        failed = max([failed, *(n for n in looks.missed() if n < reached)])
+            return None
+        failed = max([failed, *(n for n in looks.errors if n < reached and not looks.reach(n))])
         steps = _between(looks, failed, reached, least)
         worse = [n for n in (math.ceil(f * steps) for f in FINER) if not looks.reach(n)]
         if not worse:
-            return Found(steps, looks.errors)
+            return steps
         failed = max(worse)  # what was reached at a coarser step was luck
         if failed >= most:
-            return Found(None, looks.errors)
+            return None
         steps = failed + 1
 
 
@@ -67,19 +58,16 @@ class _Looks:
 
     error_at: Callable[[int], float]
     target: float
-    errors: dict[int, float]
+    errors: dict[int, float] = field(default_factory=dict)
 
     def error(self, steps: int) -> float:
         if steps not in self.errors:
-            found = self.error_at(steps)
-            self.errors[steps] = math.inf if math.isnan(found) else found
+            error = self.error_at(steps)
+            self.errors[steps] = math.inf if math.isnan(error) else error
         return self.errors[steps]
 
     def reach(self, steps: int) -> bool:
         return self.error(steps) <= self.target
-
-    def missed(self) -> list[int]:
-        return [steps for steps, error in self.errors.items() if not error <= self.target]
 
 
 def _finer(looks: _Looks, steps: int, most: int) -> int | None:

@@ -8,15 +8,15 @@ place is open when the search is taken up again, to the same settings.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from optuna.distributions import BaseDistribution, CategoricalDistribution, IntDistribution
 from optuna.samplers import TPESampler
 from optuna.study import Study
-from optuna.trial import FrozenTrial, Trial, TrialState
+from optuna.trial import Trial, TrialState
 
 from reports.tune.attempt import Attempt
 from reports.tune.coarsest import RESOLUTION
@@ -30,25 +30,15 @@ PLACE = "place"
 Try = Callable[[Settings, Attempt | None], Attempt]
 
 
-def attempts(study: Study) -> list[Attempt]:
-    """What the trials of a study found, by their places; what the clock ended is not among it."""
-    return [attempt for _, attempt in sorted(_known(study).items())]
-
-
-def _known(study: Study) -> dict[int, Attempt]:
-    """From place to what the trial there found."""
+def attempts(study: Study) -> dict[int, Attempt]:
+    """From place to what the trial there found; what the clock ended is not among it."""
     complete = study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
-    return {trial.user_attrs[PLACE]: _attempt(trial) for trial in complete}
+    return {trial.user_attrs[PLACE]: Attempt(**trial.user_attrs[FOUND]) for trial in complete}
 
 
-def best_of(found: list[Attempt]) -> Attempt | None:
+def best_of(tried: Iterable[Attempt]) -> Attempt | None:
     """The cheapest that reaches the target, the first of equals; None where none does."""
-    return min((a for a in found if a.reached), key=lambda a: a.cost_us, default=None)
-
-
-def nearest_of(found: list[Attempt]) -> Attempt:
-    """The one with the least error; there has to be one."""
-    return min(found, key=lambda a: a.error)
+    return min((a for a in tried if a.reached), key=lambda a: a.cost_us, default=None)
 
 
 @dataclass(frozen=True)
@@ -71,28 +61,28 @@ def search(
     trial counts. Returns the attempts of all trials that there are, also of those that the clock
     ended just now, which the study does not keep.
     """
-    known = _known(study)
-    for place in (each for each in range(plan.budget) if each not in known):
+    by_place = attempts(study)
+    for place in (each for each in range(plan.budget) if each not in by_place):
         trial, values = _asked(study, plan, place)
         settings = plan.space.settings(plan.profile, values)
-        so_far = [known[each] for each in sorted(known)]
+        so_far = [by_place[each] for each in sorted(by_place)]
         before = next((a for a in so_far if dict(a.settings) == settings), None)
-        found = replace(before, runs=0) if before else attempt(settings, best_of(so_far))
-        _tell(study, plan, trial, place, found)
-        known[place] = found
+        outcome = replace(before, runs=0) if before else attempt(settings, best_of(so_far))
+        _tell(study, plan, trial, place, outcome)
+        by_place[place] = outcome
         advance()
-    return [known[place] for place in sorted(known)]
+    return [by_place[place] for place in sorted(by_place)]
 
 
-def _tell(study: Study, plan: Plan, trial: Trial, place: int, found: Attempt) -> None:
+def _tell(study: Study, plan: Plan, trial: Trial, place: int, outcome: Attempt) -> None:
     """Keep what a trial found; where the clock ended it, only that it is to be tried again."""
     trial.set_user_attr(PLACE, place)
-    if found.timed_out:
+    if outcome.timed_out:
         study.tell(trial, state=TrialState.FAIL)
         return
-    trial.set_user_attr(FOUND, found.plain())
-    trial.set_constraint("decades over the target", found.over(plan.target))
-    study.tell(trial, found.cost_us)
+    trial.set_user_attr(FOUND, asdict(outcome))
+    trial.set_constraint("decades over the target", outcome.over(plan.target))
+    study.tell(trial, outcome.cost_us)
 
 
 def plainer(
@@ -107,15 +97,14 @@ def plainer(
     most_us = RESOLUTION * best.cost_us
     if first.reached and first.cost_us <= most_us:
         return first, tried
-    held = best
+    simplest = best
     for knob in space.knobs:
         back = {name: first.settings[name] for name in knob.targets}
-        if any(held.settings[name] != value for name, value in back.items()):
-            found = attempt({**held.settings, **back}, best)
-            tried.append(found)
-            if found.reached and found.cost_us <= most_us:
-                held = found
-    return held, tried
+        if any(simplest.settings[name] != value for name, value in back.items()):
+            tried.append(attempt({**simplest.settings, **back}, best))
+            if tried[-1].reached and tried[-1].cost_us <= most_us:
+                simplest = tried[-1]
+    return simplest, tried
 
 
 def _asked(study: Study, plan: Plan, place: int) -> tuple[Trial, Values]:
@@ -160,7 +149,3 @@ def _place(knob: Knob, value: SettingValue) -> int | str:
 def _value(knob: Knob, place: int | str) -> SettingValue:
     """The value that Optuna means."""
     return knob.values[place] if isinstance(place, int) else place
-
-
-def _attempt(trial: FrozenTrial) -> Attempt:
-    return Attempt(**trial.user_attrs[FOUND])

@@ -19,7 +19,7 @@ from optuna.trial import TrialState
 from sqlalchemy import URL
 from sqlalchemy.exc import SQLAlchemyError
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, cut
 from reports.output.write import check_file
 
 NAME = "crankcheck tune"
@@ -75,13 +75,18 @@ def study_in(path: Path | None, asked: Asked) -> Iterator[Study]:
     """
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     optuna.logging.disable_default_handler()
-    with _locked(path):
-        try:
-            study = _opened(path, asked)
-            yield study
-        except (StorageInternalError, SQLAlchemyError) as error:
-            why = " ".join(str(error.__cause__ or error).split())[:200]
-            raise CrankcheckError(f"-o {path}: {why}; name another file") from None
+    try:
+        # The file of the lock stays: removed, it would let one search lock the old file, one a new.
+        lock = path and FileLock(path.with_name(f".{path.name}.lock"), timeout=0)
+        with lock or contextlib.nullcontext():
+            yield _opened(path, asked)
+    except Timeout:
+        raise CrankcheckError(
+            f"-o {path}: another search writes there now; wait for it, or choose another"
+        ) from None
+    except (StorageInternalError, SQLAlchemyError) as error:
+        why = " ".join(str(error.__cause__ or error).split())[:200]
+        raise CrankcheckError(f"-o {path}: {why}; name another file") from None
 
 
 def _opened(path: Path | None, asked: Asked) -> Study:
@@ -93,11 +98,11 @@ def _opened(path: Path | None, asked: Asked) -> Study:
     study = optuna.create_study(
         storage=storage, study_name=NAME, load_if_exists=True, direction="minimize"
     )
-    held = study.user_attrs.get(ASKED)
-    if held is None:
+    earlier = study.user_attrs.get(ASKED)
+    if earlier is None:
         study.set_user_attr(ASKED, dict(asked))
     elif path is not None:
-        _refuse_other(path, held, json.loads(json.dumps(asked)))
+        _refuse_other(path, earlier, json.loads(json.dumps(asked)))
     for trial in study.get_trials(deepcopy=False, states=(TrialState.RUNNING,)):
         study.tell(trial.number, state=TrialState.FAIL)
     return study
@@ -110,31 +115,11 @@ def _storage(path: Path | None) -> BaseStorage:
     return RDBStorage(url.render_as_string(hide_password=False))
 
 
-@contextmanager
-def _locked(path: Path | None) -> Iterator[None]:
-    """Nobody else writes to the file meanwhile."""
-    if path is None:
-        yield
-        return
-    # The file of the lock stays: removed, it would let one search lock the old file, one a new.
-    lock = FileLock(path.with_name(f".{path.name}.lock"), timeout=0)
-    try:
-        lock.acquire()
-    except Timeout:
-        raise CrankcheckError(
-            f"-o {path}: another search writes there now; wait for it, or choose another"
-        ) from None
-    try:
-        yield
-    finally:
-        lock.release()
-
-
-def _refuse_other(path: Path, held: Asked, asked: Asked) -> None:
+def _refuse_other(path: Path, earlier: Asked, asked: Asked) -> None:
     """Refuse to go on with a search for something else, and say what differs."""
     for name in asked:
-        if held.get(name) != asked[name]:
-            was, now = _short(held.get(name)), _short(asked[name])
+        if earlier.get(name) != asked[name]:
+            was, now = _short(earlier.get(name)), _short(asked[name])
             raise CrankcheckError(
                 f"-o {path}: holds a search with {name} {was}; asked was {name} {now}: name "
                 f"another file, or ask as before"
@@ -143,5 +128,4 @@ def _refuse_other(path: Path, held: Asked, asked: Asked) -> None:
 
 def _short(value: object) -> str:
     """A value of a request in a line."""
-    text = value if isinstance(value, str) else json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return cut(value if isinstance(value, str) else json.dumps(value))

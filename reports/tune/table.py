@@ -11,6 +11,7 @@ from rich.text import Text
 
 from reports.output.columns import plain_table
 from reports.quantities import QUANTITIES, named
+from reports.results.settings_text import value_text
 from reports.tune.attempt import Attempt, Goal, Row
 from reports.tune.timing import Taken
 from sim.tuning import SearchSpace
@@ -60,22 +61,22 @@ def show(console: Console, goal: Goal, space: SearchSpace, sides: Sequence[Side]
 
 def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[str, list[str]]]:
     """Labels and cells."""
-    found = [
-        (knob.name, [_value(side.attempt.settings[knob.targets[0]]) for side in sides])
+    lines = [
+        (knob.name, [value_text(side.attempt.settings[knob.targets[0]]) for side in sides])
         for knob in space.knobs
     ]
-    found.append(("steps per turn", [str(side.attempt.tried) for side in sides]))
-    found.append(("error of place", [_error(side.attempt, goal.target) for side in sides]))
+    lines.append(("steps per turn", [str(side.attempt.tried) for side in sides]))
+    lines.append(("error of place", [_error(side.attempt, goal.target) for side in sides]))
     if len(goal.scenes) > 1:
-        found.append(("worst in", [side.attempt.scene or "-" for side in sides]))
+        lines.append(("worst in", [side.attempt.scene or "-" for side in sides]))
     for column, label in OTHERS.items():
-        found.append((label, [_number(_worst(side.rows, column)) for side in sides]))
-    each = "" if len(goal.scenes) == 1 else f", {len(goal.scenes)} scenes"
+        lines.append((label, [_number(_worst(side.rows, column)) for side in sides]))
+    over = "" if len(goal.scenes) == 1 else f", {len(goal.scenes)} scenes"
     if all(side.taken for side in sides):
         taken = [side.taken for side in sides if side.taken]
-        found.append((f"us per step{each}", [f"{one.us_per_step:.2f}" for one in taken]))
-        found.append((f"ms per turn{each}", [f"{1e3 * one.s_per_turn:.3g}" for one in taken]))
-    return found
+        lines.append((f"us per step{over}", [f"{each.us_per_step:.2f}" for each in taken]))
+        lines.append((f"ms per turn{over}", [f"{1e3 * each.s_per_turn:.3g}" for each in taken]))
+    return lines
 
 
 def _ratio(sides: Sequence[Side]) -> str:
@@ -97,12 +98,8 @@ def _ratio(sides: Sequence[Side]) -> str:
 
 def _worst(rows: Sequence[Row], column: str) -> float | None:
     """The largest of a column over the scenes."""
-    known = [float(value) for row in rows if isinstance(value := row[column], float)]
-    return max(known, key=lambda x: x if math.isfinite(x) else math.inf, default=None)
-
-
-def _value(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    numbers = [float(value) for row in rows if isinstance(value := row[column], float)]
+    return max(numbers, key=lambda x: x if math.isfinite(x) else math.inf, default=None)
 
 
 def _error(attempt: Attempt, target: float) -> str:

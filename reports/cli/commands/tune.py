@@ -22,7 +22,7 @@ from reports.plan.key import MEASURE, digest
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, positive
 from reports.tune.attempt import MOST_STEPS, Attempt, Bench, Goal, LostError, Row
-from reports.tune.search import Plan, attempts, best_of, nearest_of, plainer, search
+from reports.tune.search import Plan, attempts, best_of, plainer, search
 from reports.tune.storage import check_storage, study_in
 from reports.tune.table import Side, footer, show
 from reports.tune.timing import times
@@ -58,45 +58,47 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
     bench = Bench(goal, works, limits)
     try:
         bench.refuse_unsupported(base)
-        found = _searched(request, bench, space, base, progress)
-        best, first = best_of(found), _of(found, base)
+        trials = _searched(request, bench, space, base, progress)
+        best = best_of(trials)
+        first = next(trial for trial in trials if dict(trial.settings) == dict(base))
         tried: list[Attempt] = []
         if best is not None:
             best, tried = plainer(space, first, best, bench.attempt)
-        columns = {
-            f"profile {goal.profile}": first,
-            "found": best or nearest_of(found),
-        }
-        sides = [Side(title, one, _rows(bench, one)) for title, one in columns.items()]
+        last = best or min(trials, key=lambda trial: trial.error)
+        columns = {f"profile {goal.profile}": first, "found": last}
+        sides = [Side(title, each, _rows(bench, each)) for title, each in columns.items()]
     finally:
         bench.close()
     if request.timing and (taken := times(goal, list(columns.values()), limits)):
-        sides = [replace(side, taken=one) for side, one in zip(sides, taken, strict=True)]
+        sides = [replace(side, taken=each) for side, each in zip(sides, taken, strict=True)]
     show(console, goal, space, sides)
     if best is None:
-        console.print(Text(_unreached(goal, columns["found"]), "bold red"))
+        console.print(Text(_unreached(goal, last), "bold red"))
     elif goal.engine in offering("snippet"):
-        _snippet(console, goal, best)
+        period_s = goal.scenes[0].driver.law.period_s  # to copy, at the speed of the first scene
+        text = snippet(goal.engine, best.settings, float(best.tried), period_s)
+        console.print()
+        console.print(text, markup=False, highlight=False, soft_wrap=True)
     around = len(goal.scenes) + sum(len(side.rows) for side in sides)
     facts = provenance({goal.engine: engine(goal.engine).version()})
-    how = _how(request, found, tried, around)
+    how = _how(request, trials, tried, around)
     console.print(Text(footer(goal, how, facts), "dim"), highlight=False)
     return 0 if best else 1
 
 
 def _how(
-    request: TuneRequest, found: Sequence[Attempt], tried: Sequence[Attempt], around: int
+    request: TuneRequest, trials: Sequence[Attempt], tried: Sequence[Attempt], around: int
 ) -> str:
     """How many trials and runs it took; ``around`` are the runs before and after the search."""
-    after = sum(one.runs for one in tried)
-    late = sum(one.timed_out for one in (*found, *tried))
+    after = sum(each.runs for each in tried)
+    late = sum(each.timed_out for each in (*trials, *tried))
     lost = (
         f" The clock ended {late} of what was tried (--limit-s {request.limit_s:g}), which is not "
         "kept: where runs are quicker, a search may find otherwise."
     )
     return (
-        f"Seed {request.seed}: {len(found)} trials, of which {sum(a.reached for a in found)} reach "
-        f"the target; {sum(one.runs for one in found) + after + around} runs in all, {after} of "
+        f"Seed {request.seed}: {len(trials)} trials, of which {sum(a.reached for a in trials)} "
+        f"reach the target; {sum(a.runs for a in trials) + after + around} runs in all, {after} of "
         "them to set back what gains nothing."
     ) + (lost if late else "")
 
@@ -176,25 +178,12 @@ def _asked(
     }
 
 
-def _of(found: Sequence[Attempt], settings: Settings) -> Attempt:
-    """What came of some settings that were tried."""
-    return next(one for one in found if dict(one.settings) == dict(settings))
-
-
-def _rows(bench: Bench, one: Attempt) -> list[Row]:
+def _rows(bench: Bench, of: Attempt) -> list[Row]:
     """The rows of an attempt at its step, one per scene; none where one is lost."""
     try:
-        return [bench.row(scene, one.settings, one.tried) for scene in bench.goal.scenes]
+        return [bench.row(scene, of.settings, of.tried) for scene in bench.goal.scenes]
     except LostError:
         return []
-
-
-def _snippet(console: Console, goal: Goal, best: Attempt) -> None:
-    """The settings to copy, at the speed of the first scene."""
-    period_s = goal.scenes[0].driver.law.period_s
-    text = snippet(goal.engine, best.settings, float(best.tried), period_s)
-    console.print()
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def _unreached(goal: Goal, nearest: Attempt) -> str:

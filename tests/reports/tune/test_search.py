@@ -10,7 +10,7 @@ import pytest
 from optuna.trial import TrialState
 
 from reports.tune.attempt import Attempt
-from reports.tune.search import Plan, Try, attempts, best_of, nearest_of, plainer, search
+from reports.tune.search import Plan, Try, attempts, best_of, plainer, search
 from reports.tune.storage import study_in
 from reports.workers.signals import Stopped
 from sim.engine import Settings
@@ -165,15 +165,13 @@ def test_a_study_is_one_that_optuna_reads_with_its_own_best(tmp_path: Path) -> N
     assert {t.state for t in own.trials} == {TrialState.COMPLETE}
 
 
-def test_the_nearest_is_told_where_nothing_reaches() -> None:
+def test_nothing_is_the_best_where_nothing_reaches() -> None:
     def never(settings: Settings, best: Attempt | None) -> Attempt:
         assert best is None
         far = 2.0 + float(settings["stiffness"])
         return replace(known(settings, best), steps_per_turn=None, error=far)
 
-    found = done(attempt=never)
-    assert best_of(found) is None
-    assert nearest_of(found).error == min(a.error for a in found)
+    assert best_of(done(attempt=never)) is None
 
 
 def test_what_gains_nothing_is_set_back_to_the_profile() -> None:
@@ -237,7 +235,7 @@ def test_what_the_clock_ended_is_not_kept_and_tried_again(
     assert len(once) == 14
     lost = [a for a in once if a.timed_out]
     assert len(lost) >= len(late)
-    assert kept == [a for a in once if not a.timed_out]
+    assert kept == {place: a for place, a in enumerate(once) if not a.timed_out}
     ran: list[Settings] = []
 
     def counted(settings: Settings, best: Attempt | None) -> Attempt:
@@ -246,7 +244,7 @@ def test_what_the_clock_ended_is_not_kept_and_tried_again(
 
     with study_in(path, {}) as study:
         again = search(study, plan(), counted)
-        assert attempts(study) == again
+        assert attempts(study) == dict(enumerate(again))
         assert search(study, plan(), interrupted(0)) == again
     assert ran == [a.settings for a in lost if a.runs]
     assert not any(a.timed_out for a in again)
@@ -263,7 +261,7 @@ def test_settings_that_the_clock_ends_are_not_tried_twice_in_one_search() -> Non
     space = replace(SPACE, knobs=SPACE.knobs[1:])
     with study_in(None, {}) as study:
         assert len(search(study, replace(plan(40), space=space), attempt)) == 40
-        assert attempts(study) == []
+        assert attempts(study) == {}
     assert len(ran) == len(set(ran)) <= 15
 
 
