@@ -34,11 +34,6 @@ class Damage:
     aside: bool = False
 
     @property
-    def hides(self) -> bool:
-        """Whether a cell that one asks for may be among what is lost."""
-        return self.lost > 0
-
-    @property
     def line(self) -> str:
         """In a line: what is wrong with what, and how many cells that costs."""
         said = in_line(f"{self.path}: {self.what}")
@@ -50,9 +45,11 @@ def in_line(text: str) -> str:
     return harmless(text).replace("\n", "\\n").replace("\t", "\\t")
 
 
-def notice(folder: object, damage: Sequence[Damage], safe: int, again: str) -> list[str]:
+def notice(
+    folder: object, damage: Sequence[Damage], safe: int, runs: Sequence[object]
+) -> list[str]:
     """The lines that name every damage of a store once; none where there is none. ``safe`` is how
-    many cells can be read, ``again`` the command that mends it (see `command`)."""
+    many cells can be read, of ``runs`` the commands mend it (see `command`)."""
     if not damage:
         return []
     bad = [each.line for each in damage if each.cure == "sweep"]
@@ -64,7 +61,7 @@ def notice(folder: object, damage: Sequence[Damage], safe: int, again: str) -> l
     if not bad:
         return [f"{head}; there is also", *indented(other)] if other else [head]
     cure = (
-        f"what mends it: {again}",
+        f"what mends it: {command(folder, runs)}",
         f"(moves what is damaged to {folder}/damaged, and runs what is missing)",
     )
     return [head, *indented([*bad, *other]), *indented(cure)]

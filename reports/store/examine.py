@@ -36,12 +36,12 @@ class Examined:
     def table(self, name: str, nested: str = "") -> pa.Table | None:
         """The rows of a table that count, in the order of writing; of a column that holds rows of
         their own it and the keys. None where there is nothing."""
-        found = []
+        tables = []
         for part in self.folders[name].parts.values():
             rows = part.nested(nested) if nested else part.rows
             counting = self._counting(name, part)
-            found.append(rows if all(counting) else rows.filter(pa.array(counting)))
-        return pa.concat_tables(found, promote_options="permissive") if found else None
+            tables.append(rows if all(counting) else rows.filter(pa.array(counting)))
+        return pa.concat_tables(tables, promote_options="permissive") if tables else None
 
     def _counting(self, table: str, part: Part) -> Sequence[bool]:
         """Which rows of a part count: those written last, of cells that were asked for."""
@@ -69,52 +69,47 @@ def examine(folder: Path) -> Examined:
         manifest = read_manifest(folder)
     except UnreadableError as error:
         manifest = Manifest()
-        there = os.path.lexists(folder / MANIFEST)
-        damage.append(Damage(MANIFEST, str(error), aside=there))
+        damage.append(Damage(MANIFEST, str(error), aside=os.path.lexists(folder / MANIFEST)))
     whole = Examined(manifest, folders)
-    for each in (_cells(folder, whole), _timings(folder, folders["timings"])):
-        damage += each
-    for table, here in folders.items():
+    damage += [*_cells(folder, whole), *_timings(folder, folders["timings"])]
+    for table, place in folders.items():
         damage += [
             Damage(f"{table}/{name}", REPEATED, aside=True)
-            for name in here.parts
-            if not all(here.last[name])
+            for name in place.parts
+            if not all(place.last[name])
         ]
     return replace(whole, damage=(*damage, *_harmless(folder, whole)))
 
 
 def _cells(folder: Path, store: Examined) -> Iterator[Damage]:
     """Parts of cells that are lost, and what the manifest knows to be missing besides."""
-    here, lost = store.folders["cells"], 0
-    for name, error in here.faults.items():
+    cells, lost = store.folders["cells"], 0
+    for name, error in cells.faults.items():
         lost += rows_in(name)
         yield Damage(f"cells/{name}", str(error), lost=rows_in(name), aside=True)
     rows = store.table("cells")
-    there = Counter(rows.column("line").to_pylist() if rows else ())
+    readable = Counter(rows.column("line").to_pylist() if rows else ())
     asked = _asked(store.manifest)
-    gone = sum(max(0, number - there[line]) for line, number in asked.items()) - lost
-    if here.fault or gone > 0:
-        aside = bool(here.fault) and os.path.lexists(folder / "cells")
-        yield Damage("cells", here.fault or STOPPED, lost=max(0, gone), aside=aside)
+    gone = sum(max(0, number - readable[line]) for line, number in asked.items()) - lost
+    if cells.fault or gone > 0:
+        aside = bool(cells.fault) and os.path.lexists(folder / "cells")
+        yield Damage("cells", cells.fault or STOPPED, lost=max(0, gone), aside=aside)
 
 
-def _timings(folder: Path, here: Folder) -> Iterator[Damage]:
+def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
     """What of the timings is lost."""
-    for name, error in here.faults.items():
+    for name, error in timings.faults.items():
         yield Damage(f"timings/{name}", f"{error}; its times are lost", aside=True)
-    if here.fault and os.path.lexists(folder / "timings"):
-        yield Damage("timings", f"{here.fault}; all times are lost", aside=True)
+    if timings.fault and os.path.lexists(folder / "timings"):
+        yield Damage("timings", f"{timings.fault}; all times are lost", aside=True)
 
 
 def _asked(manifest: Manifest) -> dict[str, int]:
     """How many cells of each line were asked for, from the numbers of steps of the studies."""
     asked: dict[str, set[float]] = {}
     for run in manifest.runs:
-        study, lines = run.get("study"), run.get("lines")
-        steps = study.get("steps_per_turn") if isinstance(study, dict) else None
-        if isinstance(lines, dict) and isinstance(steps, list):
-            for line in lines:
-                asked.setdefault(line, set()).update(steps)
+        for line in run.get("lines", {}):
+            asked.setdefault(line, set()).update(run.get("study", {}).get("steps_per_turn", ()))
     return {line: len(steps) for line, steps in asked.items()}
 
 

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from models.errors import CrankcheckError
 from reports.output.provenance import crankcheck_version
@@ -24,13 +25,12 @@ class Manifest:
     """Texts of the scenes by name; per run its command, study, versions, processor and time."""
 
     scenes: Mapping[str, str] = field(default_factory=dict)
-    runs: tuple[Mapping[str, object], ...] = ()
+    runs: tuple[Mapping[str, Any], ...] = ()
 
     @cached_property
     def lines(self) -> frozenset[str]:
         """The lines of cells that its runs asked for."""
-        asked = (run.get("lines") for run in self.runs)
-        return frozenset(line for each in asked if isinstance(each, dict) for line in each)
+        return frozenset(line for run in self.runs for line in run.get("lines", {}))
 
     def joined(
         self, later: Manifest, folder: Path, digests: Collection[tuple[str, str]]
@@ -81,7 +81,7 @@ def read_manifest(folder: Path) -> Manifest:
     scenes, runs = raw.get("scenes"), raw.get("runs")
     if raw.get("format", FORMAT) != FORMAT:
         raise CrankcheckError(_of_another_format(folder, raw["format"], runs))
-    if not (isinstance(scenes, dict) and isinstance(runs, list) and _sound(scenes, runs)):
+    if not (isinstance(scenes, dict) and isinstance(runs, list)):
         raise UnreadableError("no manifest: without scenes or runs, or with others than a sweep's")
     if raw.get("seal") != _seal({"scenes": scenes, "runs": runs}):
         raise UnreadableError("not as it was written: its checksum differs")
@@ -95,25 +95,10 @@ def _seal(said: Mapping[str, object]) -> str:
 
 def _of_another_format(folder: Path, found: object, runs: object) -> str:
     """What is said of a store that is laid out in another way, as far as its manifest tells."""
-    known = runs if isinstance(runs, list) else []
-    facts = known[-1].get("provenance") if known and isinstance(known[-1], dict) else None
+    listed = runs if isinstance(runs, list) else []
+    facts = listed[-1].get("provenance") if listed and isinstance(listed[-1], dict) else None
     writer = facts.get("crankcheck", "?") if isinstance(facts, dict) else "?"
     return in_line(
         f"{folder}: format {found!s:.40}, written by crankcheck {writer!s:.40}; this is crankcheck "
         f"{crankcheck_version()}, which reads format {FORMAT}; move it away, and make it anew: "
-    ) + command(folder, known)
-
-
-def _sound(scenes: dict[object, object], runs: list[object]) -> bool:
-    """Whether scenes and runs are what readers take them for."""
-    return all(isinstance(text, str) for text in scenes.values()) and all(
-        isinstance(run, dict) and _named(run.get("lines", {})) for run in runs
-    )
-
-
-def _named(lines: object) -> bool:
-    """Whether lines have a variant, a profile, and whether they are gated."""
-    return isinstance(lines, dict) and all(
-        isinstance(name, list) and [type(part) for part in name] == [str, str, bool]
-        for name in lines.values()
-    )
+    ) + command(folder, listed)

@@ -32,12 +32,12 @@ def mend(folder: Path, store: Examined) -> list[str]:
     moved = [_set_aside(folder, each.path) for each in store.damage if each.aside]
     # What was stopped goes on without a word.
     bad = [each for each in store.damage if each.cure == "sweep" and each.what != STOPPED]
-    told = [each.line for each in bad]
+    lines = [each.line for each in bad]
     if moved:
-        told.append(f"moved to {folder / DAMAGED}: {', '.join(moved)}")
+        lines.append(f"moved to {folder / DAMAGED}: {', '.join(moved)}")
     if any(each.path == MANIFEST for each in bad):
-        told.append(f"{MANIFEST} is made again, and knows of this sweep alone")
-    return [f"{folder}: damaged", *indented(told)] if told else []
+        lines.append(f"{MANIFEST} is made again, and knows of this sweep alone")
+    return [f"{folder}: damaged", *indented(lines)] if lines else []
 
 
 def _set_aside(folder: Path, path: str) -> str:

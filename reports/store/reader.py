@@ -45,8 +45,7 @@ class Stored:
     @property
     def notice(self) -> list[str]:
         """The lines that name every damage; none where there is none."""
-        again = command(self.folder, self.manifest.runs)
-        return notice(self.folder, self.damage, len(self.cells), again)
+        return notice(self.folder, self.damage, len(self.cells), self.manifest.runs)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
@@ -56,11 +55,11 @@ class Stored:
     @cached_property
     def _traces(self) -> Mapping[str, Mapping[str, Array]]:
         frame = _frame(self.examined, "cells", "trace")
-        found: dict[str, dict[str, Array]] = {}
+        traces: dict[str, dict[str, Array]] = {}
         for row in frame[["key", "series", "values"]].itertuples(index=False) if len(frame) else ():
             key, series, values = row
-            found.setdefault(key, {})[series] = np.asarray(values, dtype=np.float64)
-        return found
+            traces.setdefault(key, {})[series] = np.asarray(values, dtype=np.float64)
+        return traces
 
     def trace(self, key: str) -> Mapping[str, Array]:
         """The last turn of a cell (see `reports.compare.last_turn`); empty where there is none."""
@@ -77,43 +76,38 @@ def read_store(folder: Path) -> Stored:
     """
     try:
         _refuse_unknown(folder)
-        found = _examined(folder)
+        store = _examined(folder)
     except OSError as error:
         raise CrankcheckError(
             f"{folder}: can not be read: {error.strerror or error}; name the folder of a sweep"
         ) from None
-    again = command(folder, found.manifest.runs)
-    cells = _frame(found, "cells")
+    cells = _frame(store, "cells")
     if cells.empty:
-        lines = notice(folder, found.damage, 0, again)
+        lines = notice(folder, store.damage, 0, store.manifest.runs)
         usual = f"{folder}: a store without cells; run its sweep again"
         raise CrankcheckError("\n".join(lines) or usual)
-    timings = _frame(found, "timings")
+    timings = _frame(store, "timings")
     if timings.empty:
         timings = pd.DataFrame({"key": pd.Series(dtype="str"), "us_per_step": []})
-    named = _named(cells, found.manifest)
+    named = _named(cells, store.manifest)
     joined = named.merge(timings, on="key", how="left", validate="one_to_one")
-    return Stored(folder, found.manifest, joined, timings, found)
+    return Stored(folder, store.manifest, joined, timings, store)
 
 
 def _examined(folder: Path) -> Examined:
     """A store, looked through, of which a sweep may write more meanwhile; one that came to its end
-    since then is seen by its lock before, and one that began by its lock after."""
-    busy = is_written(folder)
-    found = examine(folder)
-    return _while_written(found) if found.damage and (busy or is_written(folder)) else found
+    since then is seen by its lock before, and one that began by its lock after.
 
-
-def _while_written(found: Examined) -> Examined:
-    """A store that a sweep writes to: cells that it is still to write are no damage of it.
-
-    They stay in the way of whoever must know all cells, as a comparison.
+    Cells that it is still to write are no damage, and stay in the way of whoever must know all
+    cells, as a comparison.
     """
-    later = [each for each in found.damage if each.what == STOPPED]
-    if not later:
-        return found
+    busy = is_written(folder)
+    store = examine(folder)
+    later = [each for each in store.damage if each.what == STOPPED]
+    if not later or not (busy or is_written(folder)):
+        return store
     waiting = Damage("cells", BUSY, "wait", sum(each.lost for each in later))
-    return replace(found, damage=(waiting, *(each for each in found.damage if each not in later)))
+    return replace(store, damage=(waiting, *(each for each in store.damage if each not in later)))
 
 
 def _refuse_unknown(folder: Path) -> None:
@@ -134,16 +128,16 @@ def _refuse_unknown(folder: Path) -> None:
 
 def _named(cells: pd.DataFrame, manifest: Manifest) -> pd.DataFrame:
     """The cells under the names of the last run that asked for them, those of later runs later."""
-    names: dict[str, tuple[int, str, str, bool]] = {}
-    for index, run in enumerate(manifest.runs):
-        lines = run.get("lines")
-        for line, name in lines.items() if isinstance(lines, Mapping) else ():
-            names[line] = (index, *name)
-    known = cells["line"].isin(list(names))
+    names = {
+        line: (index, *name)
+        for index, run in enumerate(manifest.runs)
+        for line, name in run.get("lines", {}).items()
+    }
+    asked_for = cells["line"].isin(list(names))
     for at, column in enumerate(("variant", "profile", "gated"), 1):
-        found = [names[line][at] for line in cells.loc[known, "line"]]
-        cells.loc[known, column] = pd.Series(
-            found, index=cells.index[known], dtype=cells[column].dtype
+        values = [names[line][at] for line in cells.loc[asked_for, "line"]]
+        cells.loc[asked_for, column] = pd.Series(
+            values, index=cells.index[asked_for], dtype=cells[column].dtype
         )
     asked = [names[line][0] if line in names else -1 for line in cells["line"]]
     return cells.iloc[np.argsort(asked, kind="stable")].reset_index(drop=True)

@@ -61,13 +61,14 @@ class Writer:
         cells = store.table("cells") if store else None
         scenes = cells.select(["scene", "scene_digest"]).to_pydict().values() if cells else ()
         digests = set(zip(*scenes, strict=True))
-        known = store.manifest if store else Manifest()
-        joined = known.joined(later, self.folder, digests).text()
+        manifest = store.manifest if store else Manifest()
+        joined = manifest.joined(later, self.folder, digests).text()
         if store:
             self.mended = mend(self.folder, store)
         _create(self.folder, TABLES)
-        self._drop_unfinished()
-        if known.covers(later):
+        for aside in (*self.folder.glob(".*.tmp"), *self.folder.glob("*/.*.tmp")):
+            aside.unlink(missing_ok=True)  # a killed sweep left it
+        if manifest.covers(later):
             self._manifest = joined
         else:
             write(self.folder / MANIFEST, joined)
@@ -88,16 +89,14 @@ class Writer:
 
     def cell(self, row: Row, errors: Sequence[Row], series: Mapping[str, object]) -> None:
         """Add a cell with its errors and its trace; on disk within a second or so."""
-        known = row.keys()  # what names the cell, which its errors say too
-        rows = [{name: each[name] for name in each.keys() - known} for each in errors]
+        # What names the cell its errors say too.
+        rows = [{name: each[name] for name in each.keys() - row.keys()} for each in errors]
         trace = [{"series": name, "values": values} for name, values in series.items()]
-        self._waiting["cells"].append({**row, "errors": rows, "trace": trace})
-        self._flush_in_time()
+        self._add("cells", {**row, "errors": rows, "trace": trace})
 
     def timing(self, row: Row) -> None:
         """Add what the steps of a cell cost."""
-        self._waiting["timings"].append(row)
-        self._flush_in_time()
+        self._add("timings", row)
 
     def trajectory(self, key: str, motion: Motion, gaps: Mapping[str, Array]) -> None:
         """Keep a whole motion, one file per cell."""
@@ -120,24 +119,16 @@ class Writer:
         self._written = time.monotonic()
         for name, rows in self._waiting.items():
             if rows:
-                self._write_manifest()
+                if self._manifest:  # it waited for the first thing to be kept
+                    write(self.folder / MANIFEST, self._manifest)
+                    self._manifest = ""
                 write_part(self.folder / name, name, table(rows), time.time_ns())
                 rows.clear()
 
-    def _write_manifest(self) -> None:
-        """Write the manifest that waited for the first thing to be kept."""
-        if self._manifest:
-            write(self.folder / MANIFEST, self._manifest)
-            self._manifest = ""
-
-    def _flush_in_time(self) -> None:
+    def _add(self, table: str, row: Row) -> None:
+        self._waiting[table].append(row)
         if time.monotonic() - self._written >= EVERY_S:
             self.flush()
-
-    def _drop_unfinished(self) -> None:
-        """Remove the files aside that a killed sweep left."""
-        for aside in (*self.folder.glob(".*.tmp"), *self.folder.glob("*/.*.tmp")):
-            aside.unlink(missing_ok=True)
 
 
 def _is_new(folder: Path) -> bool:
@@ -154,10 +145,10 @@ def _refuse_other(folder: Path) -> None:
         return
     except UnreadableError as error:
         why = f"no {MANIFEST}" if _is_new(folder) else f"a {MANIFEST} that is no store's ({error})"
-    found = sorted(path.name for path in folder.iterdir() if not _begun(path))
-    if found:
+    others = sorted(path.name for path in folder.iterdir() if not _begun(path))
+    if others:
         raise CrankcheckError(
-            f"-o {folder}: holds {found[0]} and {why}, so it is no store of a sweep; "
+            f"-o {folder}: holds {others[0]} and {why}, so it is no store of a sweep; "
             "name a new or an empty folder"
         )
 

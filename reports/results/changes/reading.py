@@ -99,7 +99,7 @@ def _store(folder: Path) -> Contents:
     runs = stored.manifest.runs
     facts = runs[-1].get("provenance") if runs else None
     rows = cast("list[Row]", stored.cells.to_dict("records"))
-    gone = [each for each in stored.damage if each.hides]
+    gone = [each for each in stored.damage if each.lost]
     return rows, StoredRun(
         str(folder),
         {},

@@ -318,5 +318,5 @@ def test_a_name_can_not_speak_to_the_terminal(store: Path) -> None:
 def test_a_notice_is_no_longer_than_one_reads(store: Path) -> None:
     cut("cells")(store)
     many = read_store(store).damage * 100
-    assert len(notice(store, many, 2, "again")) <= 25
-    assert notice(store, (), 4, "again") == []
+    assert len(notice(store, many, 2, ())) <= 25
+    assert notice(store, (), 4, ()) == []
