@@ -100,8 +100,8 @@ def headlines(step: VersionStep) -> list[Headline]:
     if not lines:
         lines = [Headline(_calm(step), None)]
     # What never ran holds what it was given.
-    held = other_settings(pair for pair in step.diff.pairs if pair.changes)
-    if names := sorted({name for settings in held.values() for name in settings}):
+    others = other_settings(pair for pair in step.diff.pairs if pair.changes)
+    if names := sorted({name for settings in others.values() for name in settings}):
         text = f"{after} holds other settings than {before}: {', '.join(names)}"
         lines.append(Headline(text, None))
     return lines

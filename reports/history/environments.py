@@ -60,17 +60,16 @@ def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
     CrankcheckError
         A text that is no version.
     """
-    found: dict[Version, EngineVersion] = {}
+    versions = set()
     for text in texts:
         try:
-            version = Version(text)
+            versions.add(Version(text))
         except InvalidVersion:
             raise CrankcheckError(
                 f"version {text[:80]!r}: not a version number; name released versions of "
                 f"{engine}, such as 3.6.0"
             ) from None
-        found.setdefault(version, EngineVersion(engine, version))
-    return [found[version] for version in sorted(found)]
+    return [EngineVersion(engine, version) for version in sorted(versions)]
 
 
 def uv_here() -> str | None:
@@ -154,15 +153,15 @@ def _check(python: Path, one: EngineVersion, run: Runner) -> None:
     package = declaration(one.engine).install
     question = f"from importlib.metadata import version; print(version({package!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)
-    found = ended.output.strip()
+    answer = ended.output.strip()
     try:
-        same = not ended.code and Version(found) == one.version
+        same = not ended.code and Version(answer) == one.version
     except InvalidVersion:
         same = False
     if not same:
         raise NotMeasuredError(
             shortened(
-                f"installed, but the new environment finds {found or 'no ' + one.engine} in place "
+                f"installed, but the new environment finds {answer or 'no ' + one.engine} in place "
                 f"of {one.version}: look into the settings of pip or uv"
             )
         )

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 
 from packaging.version import InvalidVersion, Version
 
+from models.errors import cut
+
 LONGEST = 200
 URL = re.compile(r"\b[a-z][a-z0-9+.]*://[^\s'\"`)>,]+", re.IGNORECASE)
 HOST_OF_URL = re.compile(r"://(?:[^/@\s]*@)?(\[[^\]]*\]|[^/:\s'\"`)>,]+)")
@@ -33,17 +35,16 @@ def reason(*outputs: str) -> str:
     flat = " ".join(text.split())
     if NETWORK.search(flat):
         return _network(text)
-    if found := OFFERED.search(flat):
-        return _not_offered(found[1], found[2], found[3].split(", "))
-    if found := REFUSED.search(flat) or NO_WHEEL.search(flat):
-        return _not_offered(found[1], found[2], ())
+    if match := OFFERED.search(flat):
+        return _not_offered(match[1], match[2], match[3].split(", "))
+    if match := REFUSED.search(flat) or NO_WHEEL.search(flat):
+        return _not_offered(match[1], match[2], ())
     return shortened(_telling(text) or "the installer gave no reason")
 
 
 def shortened(text: str) -> str:
     """One line of bounded length."""
-    flat = " ".join(text.split())
-    return flat if len(flat) <= LONGEST else flat[: LONGEST - 3] + "..."
+    return cut(" ".join(text.split()), LONGEST)
 
 
 def _named(output: str) -> str:
@@ -77,12 +78,12 @@ def _nearest(version: str, offered: Iterable[str]) -> list[str]:
     """The two offered versions below one, and the one above."""
     try:
         asked = Version(version)
-        known = sorted(Version(text.strip()) for text in offered if text != "none")
+        others = sorted(Version(text.strip()) for text in offered if text != "none")
     except InvalidVersion:
         return []
-    below = [one for one in known if one < asked][-2:]
-    above = [one for one in known if one > asked][:1]
-    return [str(one) for one in (*below, *above)]
+    below = [other for other in others if other < asked][-2:]
+    above = [other for other in others if other > asked][:1]
+    return [str(each) for each in (*below, *above)]
 
 
 def _telling(text: str) -> str:
@@ -92,9 +93,8 @@ def _telling(text: str) -> str:
     for number, line in enumerate(lines):
         if line.startswith("ERROR:"):
             return line.removeprefix("ERROR:").strip()
-        found = re.match(r"(?:[Cc]ause(?:d by)?: *)?(Because .*)", line)
-        if found:
-            return " ".join([found[1], *lines[number + 1 :]])
+        if cause := re.match(r"(?:[Cc]ause(?:d by)?: *)?(Because .*)", line):
+            return " ".join([cause[1], *lines[number + 1 :]])
     causes = [line for line in lines if re.match("cause(d by)?:", line, re.IGNORECASE)]
     last = causes[-1:] or lines[-1:]
     return re.sub(r"(?i)^(error|caused by|cause): *", "", last[0]) if last else ""

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from math import isinf
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from reports.history.changes import (
@@ -19,7 +18,7 @@ from reports.history.changes import (
 )
 from reports.history.overview import overview, profiles_of
 from reports.history.version_result import VersionResult, errors_of
-from reports.output.columns import plain_table
+from reports.output.columns import hanging, plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell
 
@@ -62,11 +61,7 @@ def _headlines(console: Console, results: Sequence[VersionResult]) -> None:
     lines = [line for step in steps(results) for line in headlines(step)]
     lines.sort(key=lambda line: line.good is not False)  # what became worse goes first
     for line in lines[:HEADLINES]:
-        grid = Table.grid(padding=0)
-        grid.add_column(no_wrap=True)
-        grid.add_column(overflow="fold")
-        grid.add_row("* ", Text(line.text, styles[line.good]))
-        console.print(grid)
+        hanging(console, "* ", line.text, styles[line.good])
     if len(lines) > HEADLINES:
         console.print(
             f"  and {len(lines) - HEADLINES} more: -o DIR writes all of them", style="dim"
@@ -83,8 +78,8 @@ def _profile(console: Console, profile: str, measured: Sequence[VersionResult]) 
         for cell in result.cells
         if cell.name.variant == profile
     }
-    changes = {key: found for key, found in by_cell(measured).items() if key in cells}
-    changed = [change for found in changes.values() for change in found]
+    changes = {key: each for key, each in by_cell(measured).items() if key in cells}
+    changed = [change for each in changes.values() for change in each]
     ranked = ranking(list(dict.fromkeys(name for _, name in cells)), changed)
     shown = ranked[: max(1, LINES // max(1, len(measured)))]
     heads = tuple(COLUMNS) if console.width >= WIDE else NARROW
@@ -135,9 +130,9 @@ def _row(
         return [Text("-")] * len(heads) + [Text("")]
     errors, numbers = errors_of(cell), []
     for head in heads:
-        known = [errors[name] for name in COLUMNS[head] if name in errors]
+        values = [errors[name] for name in COLUMNS[head] if name in errors]
         top = largest(change for change in changes if change.quantity in COLUMNS[head])
-        numbers.append(Text(f"{max(known):.1e}" if known else "-", _style(top)))
+        numbers.append(Text(f"{max(values):.1e}" if values else "-", _style(top)))
     if not cell.ok:
         return [*numbers, Text(cell.status, "red")]
     return [*numbers, compared(changes) if later else Text("")]

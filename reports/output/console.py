@@ -6,7 +6,9 @@ import contextlib
 import errno
 import os
 import sys
+from collections.abc import Sequence
 
+import typer
 from rich.console import Console
 
 TABLE_WIDTH = 100
@@ -33,6 +35,14 @@ def readable_everywhere() -> None:
     for stream in (sys.stdout, sys.stderr):
         if stream is not None and hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+
+
+def tell(lines: Sequence[str]) -> None:
+    """Print what is wrong with what was read, where there is anything, on standard error; one that
+    takes nothing is no fault."""
+    if lines:
+        with contextlib.suppress(OSError):
+            typer.echo("\n".join((f"crankcheck: {lines[0]}", *lines[1:])), err=True)
 
 
 def give_up_output() -> None:

@@ -9,8 +9,8 @@ from reports.cli.checking import DiffRequest
 from reports.diff.junit import suite
 from reports.diff.markdown import markdown
 from reports.diff.terminal import show
+from reports.output.console import tell
 from reports.output.junit import junit
-from reports.output.notice import tell
 from reports.output.write import check_outputs, write
 from reports.results.changes.changes import compare
 from reports.results.changes.reading import read_run

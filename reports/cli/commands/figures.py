@@ -16,7 +16,7 @@ from models.schema import NAME
 from reports.figures.registry import FIGURES
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
-from reports.output.notice import tell
+from reports.output.console import tell
 from reports.output.numbers import count
 from reports.output.write import check_folder, write
 from reports.results.overview import Report

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -49,12 +48,13 @@ def run_history(request: HistoryRequest, console: Console, progress: Console) ->
     key, results = key_of([*cells, scene_digests(request.scenes)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("", total=2 * len(versions))
-        for one in versions:
+        for asked in versions:
 
-            def tell(what: str, steps: int = 0, one: EngineVersion = one) -> None:
-                bar.update(task, advance=steps, description=f"{one.engine} {one.version}: {what}")
+            def tell(what: str, steps: int = 0, asked: EngineVersion = asked) -> None:
+                called = f"{asked.engine} {asked.version}"
+                bar.update(task, advance=steps, description=f"{called}: {what}")
 
-            results.append(_measured(request, one, place(cache, one, key), cache, uv, tell))
+            results.append(_measured(request, asked, place(cache, asked, key), cache, uv, tell))
             bar.update(task, completed=2 * len(results))
     footer = _footer(request, cells, results)
     try:
@@ -83,18 +83,18 @@ def _verification(request: HistoryRequest) -> VerifyRequest:
 
 def _arguments(request: HistoryRequest) -> list[str]:
     """The same verification as arguments of the command line; the engine goes before them."""
-    found = [f"--turns={request.turns!r}", f"--jobs={request.jobs}"]
-    found += [f"--profile={name}" for name in request.profiles]
+    options = [f"--turns={request.turns!r}", f"--jobs={request.jobs}"]
+    options += [f"--profile={name}" for name in request.profiles]
     if request.dt_s is not None:
-        found.append(f"--dt={request.dt_s!r}")
+        options.append(f"--dt={request.dt_s!r}")
     if request.steps_per_turn is not None:
-        found.append(f"--steps-per-turn={request.steps_per_turn!r}")
-    return [*found, "--", *request.scenes]
+        options.append(f"--steps-per-turn={request.steps_per_turn!r}")
+    return [*options, "--", *request.scenes]
 
 
 def _measured(
     request: HistoryRequest,
-    one: EngineVersion,
+    asked: EngineVersion,
     folder: Path,
     cache: Path,
     uv: str | None,
@@ -102,27 +102,18 @@ def _measured(
 ) -> VersionResult:
     """The result of one version in ``folder``, kept from before or made now; or the reason why
     there is none."""
-    with (
-        _in_cache(cache),
-        alone(cache / "locks" / f"{one.name}.lock", lambda: tell("waiting for another crankcheck")),
-    ):
-        there = kept(folder) and not request.again
-        try:
-            if not there:
-                tell("installing")
-                python = ready(cache, one, uv, run_child)
-                tell("verifying", 1)
-                measure(folder, one, python, _arguments(request))
-        except NotMeasuredError as error:
-            return VersionResult(one, reason=str(error))
-        return VersionResult(one, read_version(folder), folder=folder, kept=there)
-
-
-@contextmanager
-def _in_cache(cache: Path) -> Iterator[None]:
-    """What the system refuses in the cache is the user's to mend."""
+    lock = cache / "locks" / f"{asked.name}.lock"
     try:
-        yield
+        with alone(lock, lambda: tell("waiting for another crankcheck")):
+            from_before = kept(folder) and not request.again
+            if not from_before:
+                tell("installing")
+                python = ready(cache, asked, uv, run_child)
+                tell("verifying", 1)
+                measure(folder, asked, python, _arguments(request))
+            return VersionResult(asked, read_version(folder), folder=folder, kept=from_before)
+    except NotMeasuredError as error:
+        return VersionResult(asked, reason=str(error))
     except OSError as error:
         raise CrankcheckError(
             f"--cache {cache}: {error.strerror or error}; free some space there, or choose "
@@ -135,8 +126,8 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
     if request.folder is None:
         return
     check_folder(request.folder, "-o", FILES)
-    for one in versions:
-        check_folder(request.folder / one.name, "-o", verify.IN_FOLDER)
+    for version in versions:
+        check_folder(request.folder / version.name, "-o", verify.IN_FOLDER)
 
 
 def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
@@ -155,9 +146,8 @@ def _footer(
 ) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
-    alike = {round(cell.steps_per_turn, 3) for cell in cells}
     step = f"{first.steps_per_turn:.4g} steps a turn"
-    if len(alike) > 1:
+    if len({round(cell.steps_per_turn, 3) for cell in cells}) > 1:
         step = f"dt {first.dt_s:.4g} s"
     measured = [result for result in results if result.folder]
     names = " ".join(result.version for result in measured) or "none"

@@ -8,7 +8,7 @@ from typing import Literal
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.output.notice import tell
+from reports.output.console import tell
 from reports.output.write import check_file, write
 from reports.stability.matrix import FILE as MATRIX
 from reports.stability.matrix import Matrix, read_matrix

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
 from reports.cli.measuring import SweepRequest
-from reports.output.notice import tell
+from reports.output.console import tell
 from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.plan.chosen import chosen_engines

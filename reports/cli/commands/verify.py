@@ -18,8 +18,8 @@ from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame, parquet
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import parse
+from reports.output.console import tell
 from reports.output.junit import junit
-from reports.output.notice import tell
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
