@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from models.scene import Scene
 from reports.judge.cell import Runner
 from reports.selftest.fault import FOURBAR, Fault, in_log, switched
-from reports.selftest.logs import WHEN, last, output, rows, with_link, with_times
+from reports.selftest.logs import WHEN, last, moved, output, rows, with_link, with_times
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
@@ -52,6 +53,14 @@ def _one_sided(scene: Scene, done: Run, steps: float) -> Run:
     return with_link(done, last(scene), alpha=central + 2.0 * steps * (backward - central))
 
 
+def _stretched(_: Scene, done: Run, share: float) -> Run:
+    return with_times(done, lambda time_s: time_s * (1.0 + share))
+
+
+def _in_float32(_: Scene, done: Run, size: float) -> Run:
+    return with_times(done, lambda time_s: rounded(time_s, size))
+
+
 def _summed(_: Scene, done: Run) -> Run:
     """Time as the sum of the steps, each rounded."""
 
@@ -63,60 +72,49 @@ def _summed(_: Scene, done: Run) -> Run:
 
 def _row_twice(_: Scene, done: Run) -> Run:
     """The row before stands in the place of one."""
-    order = np.arange(len(_times(done)))
+    order = np.arange(moved(done).time_s.size)
     order[WHEN] -= 1
     return rows(done, order, slice(None))
 
 
 def _half_the_rows(_: Scene, done: Run) -> Run:
     """Every second row is logged, twice."""
-    order = np.arange(len(_times(done))) // 2 * 2
+    order = np.arange(moved(done).time_s.size) // 2 * 2
     return rows(done, order, slice(None))
 
 
 def _row_lost(_: Scene, done: Run) -> Run:
-    keep = np.delete(np.arange(len(_times(done))), WHEN)
+    keep = np.delete(np.arange(moved(done).time_s.size), WHEN)
     return rows(done, keep, keep)
 
 
 def _row_more(_: Scene, done: Run) -> Run:
-    keep = np.insert(np.arange(len(_times(done))), WHEN, WHEN)
+    keep = np.insert(np.arange(moved(done).time_s.size), WHEN, WHEN)
     return rows(done, keep, keep)
 
 
 def _cut(_: Scene, done: Run, samples: float) -> Run:
-    keep = slice(max(len(_times(done)) - round(samples), 1))
+    keep = slice(max(moved(done).time_s.size - round(samples), 1))
     return rows(done, keep, keep)
 
 
-def _times(done: Run) -> Any:
-    assert done.motion is not None
-    return done.motion.time_s
+def _only_one(_: Scene, done: Run) -> Run:
+    return rows(done, slice(1), slice(1))
 
 
+_fault = partial(Fault, "clock")
 FAULTS = (
-    Fault(
-        "clock-late",
-        "clock",
-        "every sample is a later one",
-        "CC102",
-        _late,
-        1.0,
-        "sample",
-        whole=True,
-    ),
-    Fault(
+    _fault("clock-late", "every sample is a later one", "CC102", _late, 1.0, "sample", whole=True),
+    _fault(
         "velocity-late",
-        "clock",
         "velocities belong elsewhere",
         "CC106",
         in_log(_velocity_late),
         0.5,
         "steps",
     ),
-    Fault(
+    _fault(
         "acceleration-late",
-        "clock",
         "accelerations differenced one-sidedly",
         "CC108",
         in_log(_one_sided),
@@ -125,57 +123,14 @@ FAULTS = (
         scenes=(FOURBAR,),  # half a step in the slider-crank is 0.6 of its limit
         needs=lambda name: engine(name).reports_accelerations,
     ),
-    Fault("step-off", "clock", "the engine's step is too long", "CC102", _other_step, 1e-5, "dt"),
-    Fault(
-        "stamps-off",
-        "clock",
-        "time stamps off the grid",
-        "CC115",
-        in_log(lambda _, done, size: with_times(done, lambda t: t * (1.0 + size))),
-        1e-9,
-        "t",
-    ),
-    Fault(
-        "stamps-float32",
-        "clock",
-        "time stamps in float32",
-        "CC115",
-        in_log(lambda _, done, size: with_times(done, lambda t: rounded(t, size))),
-        2.0**-24,
-        "t",
-    ),
-    Fault(
-        "stamps-summed",
-        "clock",
-        "time stamps of a summed clock",
-        "CC115",
-        in_log(switched(_summed)),
-    ),
-    Fault("row-stale", "clock", "one row is the row before", "CC102", in_log(switched(_row_twice))),
-    Fault(
-        "rows-half",
-        "clock",
-        "every second row is logged, twice",
-        "CC102",
-        in_log(switched(_half_the_rows)),
-    ),
-    Fault("row-lost", "clock", "one row is missing", "CC115", in_log(switched(_row_lost))),
-    Fault("row-doubled", "clock", "one row is there twice", "CC115", in_log(switched(_row_more))),
-    Fault(
-        "log-cut",
-        "clock",
-        "the log ends early",
-        "CC115",
-        in_log(_cut),
-        310.0,
-        "samples",
-        whole=True,
-    ),
-    Fault(
-        "log-of-one",
-        "clock",
-        "one sample is all that is logged",
-        "CC115",
-        in_log(switched(lambda _, done: rows(done, slice(1), slice(1)))),
-    ),
+    _fault("step-off", "the engine's step is too long", "CC102", _other_step, 1e-5, "dt"),
+    _fault("stamps-off", "time stamps off the grid", "CC115", in_log(_stretched), 1e-9, "t"),
+    _fault("stamps-float32", "time stamps in float32", "CC115", in_log(_in_float32), 2.0**-24, "t"),
+    _fault("stamps-summed", "time stamps of a summed clock", "CC115", switched(_summed)),
+    _fault("row-stale", "one row is the row before", "CC102", switched(_row_twice)),
+    _fault("rows-half", "every second row is logged, twice", "CC102", switched(_half_the_rows)),
+    _fault("row-lost", "one row is missing", "CC115", switched(_row_lost)),
+    _fault("row-doubled", "one row is there twice", "CC115", switched(_row_more)),
+    _fault("log-cut", "the log ends early", "CC115", in_log(_cut), 310.0, "samples", whole=True),
+    _fault("log-of-one", "one sample is all that is logged", "CC115", switched(_only_one)),
 )

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,24 +26,21 @@ TIMES = 36
 Act = Callable[[Spoiler, Session, float], None]
 
 
-def _from_start(act: Act) -> Plant:
-    """What the look at the model before the run could see."""
-    return in_engine(lambda _: (0,), lambda tools, session, _o, size, _: act(tools, session, size))
+def _done(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plant:
+    """What is done to a session before the first step, or after others of so many."""
+    return in_engine(at, lambda tools, session, _o, size, _: act(tools, session, size))
 
 
-def _in_mid_run(act: Act) -> Plant:
-    """What happens after a third of the run."""
-    return in_engine(
-        lambda steps: (steps // 3,),
-        lambda tools, session, _o, size, _: act(tools, session, size),
-    )
+def _third(steps: int) -> Iterable[int]:
+    """In mid-run: after a third of it."""
+    return (steps // 3,)
 
 
 def _dropped(turns: float) -> Runner:
     """The loop opens so many turns before the end of one turn."""
-    plant = in_engine(
+    plant = _done(
+        lambda tools, session, _: tools.open_loop(session),
         lambda steps: (steps - round(turns * steps),) if turns else (),
-        lambda tools, session, _o, _size, _: tools.open_loop(session),
     )
     return plant(turns)
 
@@ -78,8 +76,7 @@ def _lose(tools: Spoiler, session: Session, size: float) -> None:
 
 
 def _iterations(size: float) -> str:
-    number = round(1.0 / size)
-    return f"{number} iter."
+    return f"{round(1.0 / size)} iter."
 
 
 def _servo(size: float) -> Runner:
@@ -101,68 +98,57 @@ def _misread(size: float) -> Runner:
     return runner
 
 
+_fault = partial(Fault, "engine")
 FAULTS = (
-    Fault(
-        "joint-dropped",
-        "engine",
-        "a joint is taken away towards the end",
-        "CC105",
-        _dropped,
-        0.1,
-        "turn",
+    _fault(
+        "joint-dropped", "a joint is taken away towards the end", "CC105", _dropped, 0.1, "turn"
     ),
-    Fault(
+    _fault(
         "joint-softens",
-        "engine",
         "joints give way, more with time",
         "CC105",
         in_engine(lambda steps: range(0, steps, max(steps // TIMES, 1)), _soften),
         0.98,
         "of it",
     ),
-    Fault(
+    _fault(
         "joint-slips",
-        "engine",
         "a joint slips on its link in mid-turn",
         "CC105",
-        _in_mid_run(lambda tools, session, size: tools.slip(session, size)),
+        _done(lambda tools, session, size: tools.slip(session, size), _third),
         1e-3,
         "L",
         scenes=(FOURBAR,),
     ),
-    Fault(
+    _fault(
         "gravity-left-on",
-        "engine",
         "gravity, of which the scene has none",
         "CC101",
-        _from_start(lambda tools, session, size: tools.pull(session, size)),
+        _done(lambda tools, session, size: tools.pull(session, size)),
         9.81,
         "m/s^2",
         says=(REFUSED, "gravity"),
     ),
-    Fault(
+    _fault(
         "mass-off",
-        "engine",
         "a body is too heavy",
         "CC101",
-        _from_start(lambda tools, session, size: tools.load(session, size)),
+        _done(lambda tools, session, size: tools.load(session, size)),
         1e-3,
         "of it",
         says=(REFUSED, "mass_kg"),
     ),
-    Fault(
+    _fault(
         "starts-askew",
-        "engine",
         "a body starts turned",
         "CC101",
-        _from_start(lambda tools, session, size: tools.turn(session, size)),
+        _done(lambda tools, session, size: tools.turn(session, size)),
         1e-6,
         "rad",
         says=(REFUSED,),
     ),
-    Fault(
+    _fault(
         "body-collides",
-        "engine",
         "a link hits a post in mid-turn",
         "CC105",
         in_engine(lambda _: (0,), _block),
@@ -170,9 +156,8 @@ FAULTS = (
         "rad",
         scenes=(FOURBAR,),
     ),
-    Fault(
+    _fault(
         "solver-stops-early",
-        "engine",
         "one iteration of an iterative solver",
         "CC105",
         in_settings("few-iterations"),
@@ -180,38 +165,31 @@ FAULTS = (
         shown=_iterations,
         needs=can_set("few-iterations"),
     ),
-    Fault(
+    _fault(
         "first-order",
-        "engine",
         "pymunk's own error_bias: first order",
         "CC103",
         in_settings("first-order"),
         needs=can_set("first-order"),
     ),
-    Fault(
+    _fault(
         "float32-arithmetic",
-        "engine",
         "the state is kept in float32",
         "CC102",
-        in_engine(
-            lambda steps: range(1, steps),
-            lambda tools, session, _o, size, _: tools.round_state(session, size),
-        ),
+        _done(lambda tools, session, size: tools.round_state(session, size), lambda n: range(1, n)),
         2.0**-24,
         "of it",
         scenes=(FOURBAR,),  # each of its runs is cut into 360 stretches
     ),
-    Fault(
+    _fault(
         "state-lost",
-        "engine",
         "a velocity in the engine becomes NaN",
         "CC101",
-        _in_mid_run(_lose),
+        _done(_lose, _third),
         says=("diverged",),
     ),
-    Fault(
+    _fault(
         "drive-too-light",
-        "engine",
         "a flywheel too light for the crank",
         "CC102",
         in_settings("light-drive"),
@@ -219,10 +197,9 @@ FAULTS = (
         "of it",
         needs=can_set("light-drive"),
     ),
-    Fault("servo-lags", "engine", "the crank follows a servo", "CC102", _servo),
-    Fault(
+    _fault("servo-lags", "the crank follows a servo", "CC102", _servo),
+    _fault(
         "integrator-misread",
-        "engine",
         "semi-implicit Euler, taken for RK4",
         "CC106",
         _misread,

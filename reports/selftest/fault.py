@@ -37,8 +37,8 @@ class Fault:
     of an engine whether it can have it.
     """
 
-    name: str
     group: FaultGroup
+    name: str
     what: str
     rule: str
     plant: Plant
@@ -147,6 +147,6 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
     return plant
 
 
-def switched(change: Callable[[Scene, Run], Run]) -> Callable[[Scene, Run, float], Run]:
-    """A change of a log that is there or not."""
-    return lambda scene, done, size: change(scene, done) if size else done
+def switched(change: Callable[[Scene, Run], Run]) -> Plant:
+    """What has been logged is changed, or is not."""
+    return in_log(lambda scene, done, size: change(scene, done) if size else done)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 from models.laws import ConstantSpeed
 from models.scene import Link, Point, Scene
@@ -98,28 +99,19 @@ def other_branch(scene: Scene, swap: float) -> Scene:
     return replace(scene, branch={name: sign * way for name, way in scene.branch.items()})
 
 
+_fault = partial(Fault, "scene")
 FAULTS = (
-    Fault(
-        "link-too-long",
-        "scene",
-        "a link is too long",
-        "CC103",
-        in_scene(_long),
-        1e-3,
-        "of it",
-    ),
-    Fault(
+    _fault("link-too-long", "a link is too long", "CC103", in_scene(_long), 1e-3, "of it"),
+    _fault(
         "pin-moved",
-        "scene",
         "a pin or a slider's line is elsewhere",
         "CC110",
         in_scene(_moved_pin),
         1e-4,
         "L",
     ),
-    Fault(
+    _fault(
         "line-turned",
-        "scene",
         "the slider's line points elsewhere",
         "CC104",
         in_scene(_turned_line),
@@ -127,39 +119,20 @@ FAULTS = (
         "rad",
         scenes=(SLIDER,),
     ),
-    Fault(
-        "other-scale",
-        "scene",
-        "right shape, every length scaled",
-        "CC113",
-        in_scene(_larger),
-        1e-3,
-        "of it",
+    _fault(
+        "other-scale", "right shape, every length scaled", "CC113", in_scene(_larger), 1e-3, "of it"
     ),
-    Fault(
+    _fault(
         "lengths-swapped",
-        "scene",
         "two links have each other's length",
         "CC103",
         in_scene(_swapped),
         scenes=(FOURBAR,),
     ),
-    Fault(
-        "wrong-branch",
-        "scene",
-        "the other of the two assemblies",
-        "CC103",
-        in_scene(other_branch),
+    _fault("wrong-branch", "the other of the two assemblies", "CC103", in_scene(other_branch)),
+    _fault("speed-off", "the crank turns too fast", "CC102", in_scene(_faster), 1e-5, "w"),
+    _fault(
+        "start-off", "the crank starts at another angle", "CC102", in_scene(_ahead), 1e-6, "rad"
     ),
-    Fault("speed-off", "scene", "the crank turns too fast", "CC102", in_scene(_faster), 1e-5, "w"),
-    Fault(
-        "start-off",
-        "scene",
-        "the crank starts at another angle",
-        "CC102",
-        in_scene(_ahead),
-        1e-6,
-        "rad",
-    ),
-    Fault("turns-backwards", "scene", "the crank turns clockwise", "CC102", in_scene(_backwards)),
+    _fault("turns-backwards", "the crank turns clockwise", "CC102", in_scene(_backwards)),
 )

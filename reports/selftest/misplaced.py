@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ from models.array import Array
 from models.motion import PointMotion
 from models.scene import Scene
 from reports.judge.cell import Runner
-from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_log, in_scene, switched
+from reports.selftest.fault import FOURBAR, SLIDER, Fault, Plant, in_log, in_scene, switched
 from reports.selftest.logs import every_series, last, moved, with_points
 from reports.selftest.mechanism import other_branch
 from sim.engine import Run
@@ -26,12 +28,21 @@ def _links_swapped(_scene: Scene, done: Run) -> Run:
     return replace(done, motion=replace(motion, links=links))
 
 
+def _points(change: Callable[[Array], Array]) -> Plant:
+    """The positions, velocities and accelerations of all points are changed, or are not."""
+    return switched(lambda _, done: with_points(done, change))
+
+
 def _exchanged(series: Array) -> Array:
     return np.asarray(series[:, ::-1])
 
 
 def _y_down(series: Array) -> Array:
     return np.asarray(series * np.array([1.0, -1.0]))
+
+
+def _in_mm(series: Array) -> Array:
+    return 1000.0 * series
 
 
 def _centre_logged(scene: Scene, done: Run) -> Run:
@@ -79,46 +90,23 @@ def _reference(scene: Scene, done: Run) -> Run:
     return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
 
+_fault = partial(Fault, "misplaced")
 FAULTS = (
-    Fault(
+    _fault(
         "columns-swapped",
-        "misplaced",
         "two links in each other's place",
         "CC103",
-        in_log(switched(_links_swapped)),
+        switched(_links_swapped),
         scenes=(FOURBAR,),
     ),
-    Fault(
-        "xy-swapped",
-        "misplaced",
-        "x and y in each other's place",
-        "CC113",
-        in_log(switched(lambda _, done: with_points(done, _exchanged))),
+    _fault("xy-swapped", "x and y in each other's place", "CC113", _points(_exchanged)),
+    _fault("y-down", "mirrored plane: y counted downwards", "CC113", _points(_y_down)),
+    _fault("millimetres", "points in mm", "CC113", _points(_in_mm)),
+    _fault(
+        "centre-logged", "a centre of gravity in a pin's place", "CC113", switched(_centre_logged)
     ),
-    Fault(
-        "y-down",
-        "misplaced",
-        "mirrored plane: y counted downwards",
-        "CC113",
-        in_log(switched(lambda _, done: with_points(done, _y_down))),
-    ),
-    Fault(
-        "millimetres",
-        "misplaced",
-        "points in mm",
-        "CC113",
-        in_log(switched(lambda _, done: with_points(done, lambda a: 1000.0 * a))),
-    ),
-    Fault(
-        "centre-logged",
-        "misplaced",
-        "a centre of gravity in a pin's place",
-        "CC113",
-        in_log(switched(_centre_logged)),
-    ),
-    Fault(
+    _fault(
         "origin-off",
-        "misplaced",
         "a displacement from another origin",
         "CC104",
         in_log(_displaced),
@@ -126,15 +114,12 @@ FAULTS = (
         "L",
         scenes=(SLIDER,),
     ),
-    Fault(
+    _fault(
         "branch-midway",
-        "misplaced",
         "the other assembly from mid-turn on",
         "CC101",
         _other_midway,
         says=("left its branch",),
     ),
-    Fault(
-        "too-good", "misplaced", "the reference, handed back", "CC111", in_log(switched(_reference))
-    ),
+    _fault("too-good", "the reference, handed back", "CC111", switched(_reference)),
 )

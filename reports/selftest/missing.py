@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from models.scene import Scene
-from reports.selftest.fault import Fault, in_log, switched
+from reports.selftest.fault import Fault, switched
 from reports.selftest.logs import WHEN, last, moved, output, spoilt, with_link
 from sim.engine import Run
 
@@ -39,7 +39,7 @@ def _silent(scene: Scene, done: Run) -> Run:
 
 
 FAULTS = tuple(
-    Fault(name, "missing", what, "CC109", in_log(switched(change)))
+    Fault("missing", name, what, "CC109", switched(change))
     for name, what, change in (
         ("nan-at-end", "the last angle is NaN", _end_missing),
         ("infinity", "one velocity is infinite", _infinite),
