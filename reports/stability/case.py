@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal
 
 from models.errors import CrankcheckError
@@ -57,34 +57,27 @@ class Trial:
         return max(round(self.turns * self.steps_per_turn / self.every), 1) * self.every
 
 
-@dataclass(frozen=True)
-class Case:
-    """A family of trials; see `CaseFacts` for what is told of it.
+@dataclass(frozen=True, kw_only=True)
+class Case(CaseFacts):
+    """A family of trials, with what is told of it; the catalogue says its ``group``.
 
     ``values`` go from easy to hard. Between the last that holds and the first that does not, a
     bisection looks on its ``scale``: by factors, by differences, or over whole numbers.
     """
 
-    name: str
-    group: str
-    title: str
-    source: str
-    truth: str
-    expected: str
-    parameter: str
-    unit: str
-    values: tuple[float, ...]
+    group: str = ""
+    unit: str = ""
+    good: tuple[Outcome, ...] = ("ok",)
+    within: float = WITHIN
     trial: Callable[[float], Trial]
     scale: Scale = "log"
-    good: tuple[Outcome, ...] = ("ok",)
     judge: Judge = "follow"
-    within: float = WITHIN
 
     def refuse(self, value: float) -> None:
         """Refuse a value that means nothing for the case. Raises CrankcheckError."""
         if value in self.values:
             return
-        easy, hard = (label(end) for end in (self.values[0], self.values[-1]))
+        easy, hard = self.labels[0], self.labels[-1]
         means = f"{self.parameter}, in the catalogue {easy} to {hard} {self.unit}".rstrip()
         if len(self.values) == 1:
             raise CrankcheckError(f"--at {value:g}: {self.name} has the one value {easy}")
@@ -100,22 +93,4 @@ class Case:
 
     def facts(self) -> CaseFacts:
         """What a reader needs."""
-        return CaseFacts(
-            **{key: value for key, value in vars(self).items() if key in FACTS},
-            labels=tuple(label(value) for value in self.values),
-        )
-
-
-FACTS = frozenset(CaseFacts.__dataclass_fields__) - {"labels"}
-
-
-def label(value: float) -> str:
-    """A value of a parameter in few characters: three digits, whole numbers up to five."""
-    if value == round(value) and abs(value) < 1e5:
-        return str(round(value))
-    text = f"{value:.3g}"
-    if "e" not in text and abs(value) >= 1e-3:
-        return text
-    mantissa, _, power = f"{value:.2e}".partition("e")
-    mantissa = mantissa.rstrip("0").rstrip(".")
-    return f"{mantissa}e{int(power)}"
+        return CaseFacts(**{each.name: getattr(self, each.name) for each in fields(CaseFacts)})

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator
 
-from reports.stability.case import Case, label
-from reports.stability.matrix import Critical, Graded
+from reports.stability.case import Case
+from reports.stability.matrix import Critical, Graded, label
 
 LOOKS = 7
 """Runs of a bisection at most: a factor of 10 is then known to 2 %."""

@@ -12,12 +12,12 @@ import numpy as np
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
-from reports.stability.case import Case, Judge, Trial, label
+from reports.stability.case import Case, Judge, Trial
 from reports.stability.error_series import Seen, seen
 from reports.stability.free import falling, freely
 from reports.stability.grades import Ending, outcome
 from reports.stability.limit import at_limit, held
-from reports.stability.matrix import Graded, Outcome, Picture
+from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
 from sim.engine import Run
 from sim.run import run

@@ -30,7 +30,19 @@ FORMAT = 1
 FILE = "stability.json"
 
 
-@dataclass(frozen=True)
+def label(value: float) -> str:
+    """A value of a parameter in few characters: three digits, whole numbers up to five."""
+    if value == round(value) and abs(value) < 1e5:
+        return str(round(value))
+    text = f"{value:.3g}"
+    if "e" not in text and abs(value) >= 1e-3:
+        return text
+    mantissa, _, power = f"{value:.2e}".partition("e")
+    mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}e{int(power)}"
+
+
+@dataclass(frozen=True, kw_only=True)
 class CaseFacts:
     """A case as a reader needs it: what is made hard, and what a good engine does.
 
@@ -48,11 +60,13 @@ class CaseFacts:
     parameter: str
     unit: str
     values: tuple[float, ...]
-    labels: tuple[str, ...]
+    labels: tuple[str, ...] = ()
     good: tuple[Outcome, ...]
     within: float
 
     def __post_init__(self) -> None:
+        if not self.labels:
+            object.__setattr__(self, "labels", tuple(label(value) for value in self.values))
         if not self.values or len(self.labels) != len(self.values):
             raise ValueError(f"{self.name}: {len(self.labels)} labels, {len(self.values)} values")
 

@@ -2,33 +2,38 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from models.hard import fourbar
+from models.scene import Scene
 from reports.stability.case import Case, Trial
 
-GROUP = "change points"
 SOURCE = "Grashof's rule; the parallelogram and the kite are its limiting cases"
-STEPS = (5760.0, 1440.0, 360.0, 90.0)
+through = partial(Case, parameter="steps in a turn", values=(5760.0, 1440.0, 360.0, 90.0))
+"""A case that goes on through its change points: its trials are of `four_turns`."""
 
 
-def _excess(value: float) -> Trial:
+def four_turns(scene: Scene, steps: float) -> Trial:
+    """A trial of so many steps in a turn, long enough to be through every change point again."""
+    return Trial(scene, steps_per_turn=steps, turns=4.0)
+
+
+def _excess(margin_m: float) -> Trial:
     name = "nearly-parallelogram"
-    return Trial(fourbar(name, 0.1, 0.3, 0.1 + value, 0.3, source=SOURCE))
+    return Trial(fourbar(name, 0.1, 0.3, 0.1 + margin_m, 0.3, source=SOURCE))
 
 
-def _parallelogram(value: float) -> Trial:
-    scene = fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=SOURCE)
-    return Trial(scene, steps_per_turn=value, turns=4.0)
+def _parallelogram(steps: float) -> Trial:
+    return four_turns(fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source=SOURCE), steps)
 
 
-def _kite(value: float) -> Trial:
-    scene = fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=SOURCE)
-    return Trial(scene, steps_per_turn=value, turns=4.0)
+def _kite(steps: float) -> Trial:
+    return four_turns(fourbar("kite", 0.1, 0.1, 0.3, 0.3, source=SOURCE), steps)
 
 
 CASES = (
     Case(
         name="grashof-excess",
-        group=GROUP,
         title="Nearly a parallelogram",
         source=SOURCE,
         truth="closed form; the coupler stays on its side at the flat positions",
@@ -38,28 +43,20 @@ CASES = (
         values=(1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
         trial=_excess,
     ),
-    Case(
+    through(
         name="parallelogram",
-        group=GROUP,
         title="Parallelogram through its flat positions",
         source=SOURCE,
         truth="the coupler keeps its direction, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
-        parameter="steps in a turn",
-        unit="",
-        values=STEPS,
         trial=_parallelogram,
     ),
-    Case(
+    through(
         name="kite",
-        group=GROUP,
         title="Kite through its flat positions",
         source=SOURCE,
         truth="A and C stay mirror images in the line BD, by smooth continuation",
         expected="goes on smoothly: inertia carries it through",
-        parameter="steps in a turn",
-        unit="",
-        values=STEPS,
         trial=_kite,
     ),
 )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 from models.files import load_scene
 from models.laws import ConstantSpeed, Law, SpeedChange
 from models.scene import Scene
 from reports.stability.case import Case, Trial
 
-GROUP = "speed and its changes"
 SOURCE = "fourbar-lecture-1"
 SAME_DT_S = 1e-4
 START_RAD = 1.6
@@ -24,13 +24,9 @@ def _driven(law: Law) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
-def _same_dt(value: float) -> Trial:
-    law = ConstantSpeed(START_RAD, value)
+def _same_dt(speed_rad_s: float) -> Trial:
+    law = ConstantSpeed(START_RAD, speed_rad_s)
     return Trial(_driven(law), steps_per_turn=law.period_s / SAME_DT_S, turns=1.0)
-
-
-def _same_steps(value: float) -> Trial:
-    return Trial(_driven(ConstantSpeed(START_RAD, value)))
 
 
 def _changed(before: float, after: float, rise_turns: float) -> Trial:
@@ -42,77 +38,52 @@ def _changed(before: float, after: float, rise_turns: float) -> Trial:
     return Trial(_driven(law), turns=turns)
 
 
-def _reversed(value: float) -> Trial:
-    return _changed(SPEED_RAD_S, -SPEED_RAD_S, value)
-
-
-def _from_rest(value: float) -> Trial:
-    return _changed(0.0, SPEED_RAD_S, value)
-
-
-def _jump(value: float) -> Trial:
-    return _changed(SPEED_RAD_S, value * SPEED_RAD_S, 0.0)
-
-
+_case = partial(Case, source=SOURCE)
+_faster = partial(
+    _case, parameter="crank speed", unit="rad/s", values=(1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0)
+)
+_ramp = partial(
+    _case,
+    expected="follows, also through a ramp of a few steps",
+    parameter="length of the ramp",
+    unit="turn",
+)
 CASES = (
-    Case(
+    _faster(
         name="speed-same-dt",
-        group=GROUP,
         title=f"Faster and faster at the same dt of {SAME_DT_S:g} s",
-        source=SOURCE,
         truth="closed form; errors grow with the turn in a step, squared",
         expected="errors as those of fewer steps in a turn",
-        parameter="crank speed",
-        unit="rad/s",
-        values=(1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0),
         trial=_same_dt,
     ),
-    Case(
+    _faster(
         name="speed-same-steps",
-        group=GROUP,
         title="Faster and faster at 360 steps in a turn",
-        source=SOURCE,
         truth="closed form; as a pure number nothing changes",
         expected="the same error at every speed",
-        parameter="crank speed",
-        unit="rad/s",
-        values=(1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0),
-        trial=_same_steps,
+        trial=lambda speed_rad_s: Trial(_driven(ConstantSpeed(START_RAD, speed_rad_s))),
     ),
-    Case(
+    _ramp(
         name="reversal",
-        group=GROUP,
         title="Direction reversed in mid-run",
-        source=SOURCE,
         truth="closed form with a cycloidal ramp from +10 to -10 rad/s",
-        expected="follows, also through a ramp of a few steps",
-        parameter="length of the ramp",
-        unit="turn",
         values=(0.5, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4),
-        trial=_reversed,
+        trial=lambda rise_turns: _changed(SPEED_RAD_S, -SPEED_RAD_S, rise_turns),
     ),
-    Case(
+    _ramp(
         name="from-rest",
-        group=GROUP,
         title="Start from rest by a smooth law",
-        source=SOURCE,
         truth="closed form with a cycloidal ramp from 0 to 10 rad/s",
-        expected="follows, also through a ramp of a few steps",
-        parameter="length of the ramp",
-        unit="turn",
         values=(1.0, 0.3, 0.1, 0.03, 0.01, 1e-3),
-        trial=_from_rest,
+        trial=lambda rise_turns: _changed(0.0, SPEED_RAD_S, rise_turns),
     ),
-    Case(
+    _case(
         name="speed-jump",
-        group=GROUP,
         title="The speed jumps",
-        source=SOURCE,
         truth="closed form; the angle of the crank has a corner",
         expected="follows: a prescribed crank takes any push",
         parameter="speed after over speed before",
-        unit="",
         values=(1.1, 2.0, 5.0, 10.0, 30.0, 100.0),
-        trial=_jump,
+        trial=lambda ratio: _changed(SPEED_RAD_S, ratio * SPEED_RAD_S, 0.0),
     ),
 )

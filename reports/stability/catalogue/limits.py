@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from functools import partial
 
 from analytic.mechanism.fourbar import FourBar
 from models.hard import fourbar
 from reports.stability.case import Case, Trial
 
-GROUP = "toggle and locking"
 BEFORE_RAD = 0.5
 """How far before the limit the crank starts, and how far beyond it its command ends."""
 DT_S = 1e-4
@@ -34,33 +33,23 @@ def _towards(name: str, lengths: tuple[float, float, float, float], speed: float
     )
 
 
-def _triple(value: float) -> Trial:
-    return _towards("triple-rocker", (0.2, 0.25, 0.3, 0.5), value)
-
-
-def _double(value: float) -> Trial:
-    return _towards("double-rocker", (0.25, 0.1, 0.2, 0.3), value)
-
-
-def _case(name: str, title: str, trial: Callable[[float], Trial]) -> Case:
-    return Case(
-        name=name,
-        group=GROUP,
-        title=title,
+CASES = tuple(
+    Case(
+        name=f"{name}-limit",
+        title=f"{name.capitalize()} against its limit",
         source="limit positions from the triangle of the links in line",
         truth="the driver angle at which coupler and rocker are in line",
         expected="locked: the crank stands at the limit, the pins stay closed, nothing explodes",
         parameter="speed towards the limit",
         unit="rad/s",
         values=(0.1, 1.0, 10.0, 100.0),
-        trial=trial,
+        trial=partial(_towards, name, lengths_m),
         good=("locked",),
         judge="limit",
         within=2e-2,
     )
-
-
-CASES = (
-    _case("triple-rocker-limit", "Triple-rocker against its limit", _triple),
-    _case("double-rocker-limit", "Double-rocker against its limit", _double),
+    for name, lengths_m in (
+        ("triple-rocker", (0.2, 0.25, 0.3, 0.5)),
+        ("double-rocker", (0.25, 0.1, 0.2, 0.3)),
+    )
 )

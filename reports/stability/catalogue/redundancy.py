@@ -8,20 +8,20 @@ from analytic.free.window_chain import ChainMotion
 from models.hard import double_parallelogram
 from models.window_chain import SOURCE, Chain
 from reports.stability.case import Case, Trial
+from reports.stability.catalogue.change_points import four_turns, through
 
-GROUP = "redundancy"
 DURATION_S = 2.5
 """The chain turns over once and falls on, four times through flat positions."""
 DT_S = 1e-3
 
 
-def _three_rockers(value: float) -> Trial:
+def _three_rockers(steps: float) -> Trial:
     scene = double_parallelogram("double-parallelogram", source="mobility 0 by count, really 1")
-    return Trial(scene, steps_per_turn=value, turns=4.0)
+    return four_turns(scene, steps)
 
 
-def _windows(value: float) -> Trial:
-    chain = Chain(round(value))
+def _windows(number: float) -> Trial:
+    chain = Chain(round(number))
     scene = chain.scene()
     period = scene.driver.law.period_s
     return Trial(
@@ -35,27 +35,21 @@ def _windows(value: float) -> Trial:
 
 
 CASES = (
-    Case(
+    through(
         name="double-parallelogram",
-        group=GROUP,
         title="Double parallelogram with three rockers",
         source="mobility by count 0, really 1",
         truth="the coupler keeps its direction, by smooth continuation",
         expected="moves, and passes its flat positions smoothly",
-        parameter="steps in a turn",
-        unit="",
-        values=(5760.0, 1440.0, 360.0, 90.0),
         trial=_three_rockers,
     ),
     Case(
         name="n-fourbar",
-        group=GROUP,
         title="A chain of windows, falling freely through its flat positions",
         source=SOURCE,
         truth="l theta'' [(N+1)/3 + N] = -g cos(theta) [(N+1)/2 + N], in elliptic functions",
         expected="keeps its energy, and all rods parallel",
         parameter="windows N",
-        unit="",
         values=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0),
         trial=_windows,
         scale="whole",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from models.motion import State
 from models.scene import Scene
 from reports.stability.case import Case, Trial
 
-GROUP = "bad starts"
 SOURCE = "fourbar-lecture-1"
 SETTLED_TURNS = 1.0
 """Errors count from there on: an engine that mends its start has done so by then."""
@@ -26,21 +26,21 @@ def _assembled(scene: Scene) -> State:
     return solve(scene, np.zeros(1)).state()
 
 
-def _open_joint(value: float) -> Trial:
+def _open_joint(share: float) -> Trial:
     """The rocker turned until its pin C is off the coupler's by a share of the crank."""
     scene = load_scene(SOURCE)
     (a, b), (d, c) = (list(scene.links[n].points.values()) for n in ("crank", "rocker"))
-    gap = value * abs(b[0] - a[0])
+    gap = share * abs(b[0] - a[0])
     state = _assembled(scene)
     theta = {**state.theta, "rocker": state.theta["rocker"] + gap / abs(c[0] - d[0])}
     return _started(scene, replace(state, theta=theta), open_m=1.01 * gap)
 
 
-def _other_velocity(value: float) -> Trial:
+def _other_velocity(share: float) -> Trial:
     """The rocker turns faster, or slower, than fits by a share of the crank's speed."""
     scene = load_scene(SOURCE)
     state = _assembled(scene)
-    more = value * scene.driver.law.peak_speed_rad_s
+    more = share * scene.driver.law.peak_speed_rad_s
     omega = {**state.omega, "rocker": state.omega["rocker"] + more}
     return _started(scene, replace(state, omega=omega))
 
@@ -51,40 +51,32 @@ def _other_branch(_: float) -> Trial:
     return _started(scene, _assembled(other))
 
 
-CASES: tuple[Case, ...] = (
-    Case(
+_case = partial(Case, source=SOURCE)
+CASES = (
+    _case(
         name="open-joint",
-        group=GROUP,
         title="Started with a joint open",
-        source=SOURCE,
         truth="closed form of the assembled linkage, from the second turn on",
         expected="closes the joint, and goes on as if it had been closed",
         parameter="gap at the start over the crank's length",
-        unit="",
         values=(1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5),
         trial=_open_joint,
     ),
-    Case(
+    _case(
         name="wrong-velocity",
-        group=GROUP,
         title="Started with a velocity that does not fit",
-        source=SOURCE,
         truth="closed form, from the second turn on",
         expected="takes the wrong velocity away in the first steps",
         parameter="velocity of the rocker that is too much, over the crank's",
-        unit="",
         values=(1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0),
         trial=_other_velocity,
     ),
-    Case(
+    _case(
         name="wrong-branch",
-        group=GROUP,
         title="Started in the other assembly",
-        source=SOURCE,
         truth="closed form of the scene's branch; no engine can know which one is meant",
         expected="branch-changed: the comparison says so",
         parameter="assembly",
-        unit="",
         values=(-1.0,),
         trial=_other_branch,
         good=("branch-changed",),

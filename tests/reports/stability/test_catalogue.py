@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from reports.stability.case import label
 from reports.stability.catalogue import CATALOGUE, GROUPS
+from reports.stability.matrix import label
 
 RUNS = [(name, value) for name, case in CATALOGUE.items() for value in case.values]
 DRIVEN = [(name, value) for name, value in RUNS if CATALOGUE[name].judge == "follow"]
@@ -19,7 +19,7 @@ MOST_SAMPLES = 20_000
 
 def test_every_group_of_the_catalogue_has_cases_of_its_own() -> None:
     assert len(GROUPS) == 11
-    assert sum(len(group.CASES) for group in GROUPS) == len(CATALOGUE)
+    assert sum(len(cases) for cases in GROUPS.values()) == len(CATALOGUE)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)

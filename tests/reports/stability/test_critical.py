@@ -9,9 +9,9 @@ from dataclasses import replace
 import pytest
 
 from models.files import load_scene
-from reports.stability.case import Case, Trial, label
+from reports.stability.case import Case, Trial
 from reports.stability.critical import critical, line
-from reports.stability.matrix import Critical, Graded, Outcome
+from reports.stability.matrix import Critical, Graded, Outcome, label
 
 
 def case(

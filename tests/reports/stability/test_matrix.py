@@ -10,11 +10,10 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError
-from reports.stability.case import label
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import critical
 from reports.stability.grading import graded
-from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
+from reports.stability.matrix import FILE, Matrix, label, read_matrix, to_json
 
 
 def edited(text: str, table: str, **changed: object) -> str:
