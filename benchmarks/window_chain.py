@@ -28,7 +28,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 from analytic.free.window_chain import ChainMotion
 from models.window_chain import Chain
-from reports.compare.free_chain import Held, hold
+from reports.compare.free_chain import ChainErrors, hold
 from reports.output.provenance import processor
 from sim.engine import SettingValue
 from sim.registry import engine
@@ -102,7 +102,7 @@ def accuracy() -> None:
             )
 
 
-def held(case: Case) -> Held:
+def held(case: Case) -> ChainErrors:
     """One case of the benchmark."""
     return hold(
         Chain(COUNT),
@@ -115,7 +115,7 @@ def held(case: Case) -> Held:
     )
 
 
-def ended(found: Held) -> str:
+def ended(found: ChainErrors) -> str:
     """How the motion ended, in words."""
     words = [] if found.run.status == "ok" else [f"{found.run.status}: {found.run.reason}"]
     if found.left is None:

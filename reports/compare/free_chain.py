@@ -20,7 +20,7 @@ from sim.run import run
 
 
 @dataclass(frozen=True)
-class Held:
+class ChainErrors:
     """How an engine held a chain, at the logged samples, shape (T,).
 
     ``place_m`` is the distance of B0 from where it should be [m]; ``energy_j`` the energy, at the
@@ -77,7 +77,7 @@ def hold(
     duration_s: float,
     every: int = 1,
     settings: Mapping[str, SettingValue] | None = None,
-) -> Held:
+) -> ChainErrors:
     """Run a chain from upright, free, for ``duration_s`` in steps of ``dt_s``, and compare.
 
     Logged is every ``every``-th step. Raises CrankcheckError, as `sim.run.run` does, and for a run
@@ -85,7 +85,7 @@ def hold(
     """
     start = ChainMotion(chain).motion(np.array([0.0])).state(0)
     steps = max(round(duration_s / dt_s / every), 1) * every
-    found = run(
+    done = run(
         chain.scene(),
         start,
         engine,
@@ -96,26 +96,26 @@ def hold(
         drive="free",
         settings=settings,
     )
-    return compared(chain, found)
+    return compared(chain, done)
 
 
-def compared(chain: Chain, found: Run) -> Held:
+def compared(chain: Chain, done: Run) -> ChainErrors:
     """The comparison of a free run of the chain. Raises CrankcheckError for one without a log."""
-    if found.motion is None or found.energy is None:
-        why = found.reason or f"it was run under the drive {found.drive}"
-        raise CrankcheckError(f"{found.scene} in {found.engine}: no free motion to compare: {why}")
-    motion, turning = found.motion, ChainMotion(chain)
+    if done.motion is None or done.energy is None:
+        why = done.reason or f"it was run under the drive {done.drive}"
+        raise CrankcheckError(f"{done.scene} in {done.engine}: no free motion to compare: {why}")
+    motion, turning = done.motion, ChainMotion(chain)
     theta, _, _ = turning.at(motion.time_s)
     arm = chain.length_m * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
     with np.errstate(all="ignore"):  # what has come apart may overflow
-        return Held(
+        return ChainErrors(
             chain,
-            found,
+            done,
             motion.time_s,
             np.hypot(*(motion.points["B0"].position - arm).T),
-            found.energy.total_j - _start_j(turning),
+            done.energy.total_j - _start_j(turning),
             _lean(chain, motion),
-            np.max(list(found.gaps.values()), axis=0),
+            np.max(list(done.gaps.values()), axis=0),
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 
 from reports.stability.case import Case
 from reports.stability.matrix import Critical, Graded, label
@@ -12,10 +12,10 @@ LOOKS = 7
 """Runs of a bisection at most: a factor of 10 is then known to 2 %."""
 NEAR = 0.05
 """Good and bad this near to each other, relatively, are near enough."""
-Grade = Callable[[float, bool], Graded]
+Grader = Callable[[float, bool], Graded]
 
 
-def line(case: Case, grade: Grade) -> Generator[Graded]:
+def line(case: Case, grade: Grader) -> Generator[Graded]:
     """All runs of one engine with one profile: the case's values, then what a bisection looks at.
 
     Parameters
@@ -23,39 +23,40 @@ def line(case: Case, grade: Grade) -> Generator[Graded]:
     grade : Callable
         The run at a value; True for a value of the grid.
     """
-    held: float | None = None
-    failed: float | None = None
+    runs = []
     for value in case.values:
-        found = grade(value, True)
-        yield found
-        if failed is None and found.outcome in case.good:
-            held = value
-        elif failed is None:
-            failed = value
-    if held is None or failed is None:
-        return
+        runs.append(grade(value, True))
+        yield runs[-1]
     for _ in range(LOOKS):
-        middle = between(case, held, failed)
+        holds, fails = _bracket(case, runs)
+        middle = between(case, holds.value, fails.value) if holds and fails else None
         if middle is None:
             return
-        found = grade(middle, False)
-        yield found
-        if found.outcome in case.good:
-            held = middle
-        else:
-            failed = middle
+        runs.append(grade(middle, False))
+        yield runs[-1]
 
 
-def between(case: Case, held: float, failed: float) -> float | None:
+def _bracket(case: Case, runs: Sequence[Graded]) -> tuple[Graded | None, Graded | None]:
+    """The hardest run that holds, with all that are easier, and the easiest that does not."""
+
+    def hardness(run: Graded) -> float:
+        return harder(case) * run.value
+
+    fails = min((r for r in runs if r.outcome not in case.good), key=hardness, default=None)
+    easier = [run for run in runs if fails is None or hardness(run) < hardness(fails)]
+    return max(easier, key=hardness, default=None), fails
+
+
+def between(case: Case, holds: float, fails: float) -> float | None:
     """The value to look at next; None where the two are near enough, or nothing lies between."""
     if case.scale == "linear":
         width = max(case.values) - min(case.values)
-        return None if abs(failed - held) <= NEAR * width else _short(0.5 * (held + failed))
-    if held <= 0.0 or failed <= 0.0 or abs(failed / held - 1.0) <= NEAR:
+        return None if abs(fails - holds) <= NEAR * width else _short(0.5 * (holds + fails))
+    if holds <= 0.0 or fails <= 0.0 or abs(fails / holds - 1.0) <= NEAR:
         return None
-    middle = math.sqrt(held * failed)
+    middle = math.sqrt(holds * fails)
     middle = float(round(middle)) if case.scale == "whole" else _short(middle)
-    return None if middle in (held, failed) else middle
+    return None if middle in (holds, fails) else middle
 
 
 def _short(value: float) -> float:
@@ -65,17 +66,13 @@ def _short(value: float) -> float:
 
 def critical(case: Case, runs: list[Graded]) -> Critical:
     """How far the runs of one line hold; they are in the order in which `line` gave them."""
-    first, sign = runs[0], harder(case)
-    bad = [run for run in runs if run.outcome not in case.good]
+    holds, fails = _bracket(case, runs)
+    shown = fails or holds or runs[0]
     good = [run for run in runs if run.outcome in case.good]
-    fails = min(bad, key=lambda run: sign * run.value, default=None)
-    held = [run for run in good if fails is None or sign * (fails.value - run.value) > 0.0]
-    holds = max(held, key=lambda run: sign * run.value, default=None)
-    shown = fails or holds or first
     return Critical(
         case=case.name,
-        engine=first.engine,
-        profile=first.profile,
+        engine=shown.engine,
+        profile=shown.profile,
         holds=math.nan if holds is None else holds.value,
         fails=math.nan if fails is None else fails.value,
         outcome=shown.outcome,
@@ -102,8 +99,8 @@ def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Gr
         return f"holds all, error up to {worst:.0e}" if len(good) > 1 else "holds"
     if holds is None:
         if good:
-            held = sum(run.grid for run in good)
-            return f"{fails.outcome} at {label(fails.value)}, holds {held} of {len(case.values)}"
+            number = sum(run.grid for run in good)
+            return f"{fails.outcome} at {label(fails.value)}, holds {number} of {len(case.values)}"
         return f"{fails.outcome} at once" if len(case.values) > 1 else fails.outcome
     way = "down to" if harder(case) < 0.0 else "up to"
     value = f"{label(holds.value)} {case.unit}".strip()

@@ -21,7 +21,7 @@ from sim.engine import Run
 
 
 @dataclass(frozen=True)
-class Seen:
+class ErrorSeries:
     """A run beside the truth, sample by sample (T,).
 
     ``place`` is the worst error of any link, slider and point, ``gap`` the widest open joint,
@@ -40,9 +40,9 @@ class Seen:
     drive: Array
     crank: Array
     period_s: float
-    settled: int
-    departure: Departure | None
     sine: float
+    settled: int = 0
+    departure: Departure | None = None
     incomplete: str = ""
     limited: bool = False
 
@@ -58,11 +58,11 @@ class Seen:
 
     def first(self, series: Array, over: float) -> int:
         """The first sample that counts at which a series is over a number; the last if none."""
-        found = np.flatnonzero(series[self.settled :] > over)
-        return self.settled + int(found[0]) if found.size else len(series) - 1
+        samples = np.flatnonzero(series[self.settled :] > over)
+        return self.settled + int(samples[0]) if samples.size else len(series) - 1
 
 
-def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
+def error_series(scene: Scene, run: Run, settled_turns: float = 0.0) -> ErrorSeries:
     """A run that logged something beside the reference.
 
     Raises CrankcheckError where the scene has no reference at the times of the run.
@@ -80,7 +80,7 @@ def seen(scene: Scene, run: Run, settled_turns: float = 0.0) -> Seen:
     left = departure(beside)
     if place[settled:].max() < HERE_RAD:
         left = None  # it came back before it counted
-    return Seen(
+    return ErrorSeries(
         status=run.status,
         reason=run.reason,
         time_s=time_s,
@@ -106,8 +106,8 @@ def lacking(scene: Scene, run: Run) -> str:
 
 def nearest(scene: Scene, reference: Motion) -> float:
     """How near a motion comes to a singular position (`nearness`); 1 where it has no dyad."""
-    found = nearness(scene, reference).values()
-    return min((float(np.min(each)) for each in found), default=1.0)
+    sines = nearness(scene, reference).values()
+    return min((float(np.min(each)) for each in sines), default=1.0)
 
 
 def worst_of(series: Array) -> Array:

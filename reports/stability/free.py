@@ -7,42 +7,41 @@ import numpy as np
 from analytic.free.window_chain import ChainMotion
 from models.array import Array
 from models.motion import Motion
-from reports.compare.free_chain import Held, compared
+from reports.compare.free_chain import ChainErrors, compared
 from reports.stability.case import Trial
-from reports.stability.error_series import Seen, lacking, worst_of
+from reports.stability.error_series import ErrorSeries, lacking, worst_of
 from sim.engine import Run
 
 
-def freely(trial: Trial, run: Run) -> Seen:
+def freely(trial: Trial, run: Run) -> ErrorSeries:
     """A free run beside the closed form of the chain.
 
     The error of place is the larger of the distance of B0 from its place, over a rod, and of the
     change of the energy, over what is exchanged in a turn. No crank is told where to be.
     """
     assert trial.chain is not None
-    held = compared(trial.chain, run)
-    theta, _, _ = ChainMotion(trial.chain).at(held.time_s)
-    return Seen(
+    errors = compared(trial.chain, run)
+    theta, _, _ = ChainMotion(trial.chain).at(errors.time_s)
+    return ErrorSeries(
         status=run.status,
         reason=run.reason,
-        time_s=held.time_s,
+        time_s=errors.time_s,
         driver_rad=theta,
-        place=worst_of(_error(held)),
-        gap=worst_of(held.gap_m / trial.chain.length_m),
+        place=worst_of(_error(errors)),
+        gap=worst_of(errors.gap_m / trial.chain.length_m),
         drive=np.zeros_like(theta),
         crank=theta,
         period_s=ChainMotion(trial.chain).period_s,
-        settled=0,
-        departure=held.left,
+        departure=errors.left,
         sine=float(np.min(np.abs(np.sin(theta)))),
         incomplete=lacking(trial.scene, run),
     )
 
 
-def _error(held: Held) -> Array:
-    chain = held.chain
-    energy = np.abs(held.energy_j) / ChainMotion(chain).exchanged_j
-    return np.asarray(np.maximum(held.place_m / chain.length_m, energy))
+def _error(errors: ChainErrors) -> Array:
+    chain = errors.chain
+    energy = np.abs(errors.energy_j) / ChainMotion(chain).exchanged_j
+    return np.asarray(np.maximum(errors.place_m / chain.length_m, energy))
 
 
 def falling(trial: Trial, time_s: Array) -> Motion:

@@ -10,7 +10,7 @@ import numpy as np
 
 from models.array import Array
 from reports.compare.branch import CLOSED
-from reports.stability.error_series import Seen
+from reports.stability.error_series import ErrorSeries
 from reports.stability.matrix import Outcome
 
 LEAST_TURNS = 4
@@ -25,7 +25,7 @@ LAST = 10
 
 
 @dataclass(frozen=True)
-class Ending:
+class Grade:
     """An outcome, why, and where: sample of the run, None where it has no place."""
 
     outcome: Outcome
@@ -37,15 +37,15 @@ class Ending:
 class GradeRule:
     """One way to end: what it is called, what is meant, and how it is told.
 
-    ``tell`` gives an ending for a run and its class, or None where the rule does not apply.
+    ``tell`` gives the grade of a run and its class, or None where the rule does not apply.
     """
 
     outcome: Outcome
     meaning: str
-    tell: Callable[[Seen, float], Ending | None]
+    tell: Callable[[ErrorSeries, float], Grade | None]
 
 
-def outcome(seen: Seen, within: float) -> Ending:
+def outcome(errors: ErrorSeries, within: float) -> Grade:
     """The grade of a run by the first rule that applies; where errors keep to bounds, with what
     they grow by in a turn.
 
@@ -54,18 +54,18 @@ def outcome(seen: Seen, within: float) -> Ending:
     within : float
         The class: the largest pure error that counts as held.
     """
-    found = next(ending for rule in RULES if (ending := rule.tell(seen, within)) is not None)
-    slope, doubt = drift(seen)
-    if found.outcome not in STEADY or math.isnan(slope):
-        return found
+    grade = next(grade for rule in RULES if (grade := rule.tell(errors, within)) is not None)
+    slope, doubt = drift(errors)
+    if grade.outcome not in STEADY or math.isnan(slope):
+        return grade
     growth = f"drift {slope:.1e} +- {doubt:.0e} a turn"
-    return replace(found, reason=f"{found.reason}; {growth}" if found.reason else growth)
+    return replace(grade, reason=f"{grade.reason}; {growth}" if grade.reason else growth)
 
 
-def drift(seen: Seen) -> tuple[float, float]:
+def drift(errors: ErrorSeries) -> tuple[float, float]:
     """Growth of the worst error of place per turn, by a straight line through the turns' maxima,
     and its standard error; NaN where there are under four turns."""
-    peaks = _peaks(seen)
+    peaks = _peaks(errors)
     if len(peaks) < LEAST_TURNS or not np.isfinite(peaks).all():
         return math.nan, math.nan
     turns = np.arange(len(peaks), dtype=np.float64)
@@ -75,82 +75,86 @@ def drift(seen: Seen) -> tuple[float, float]:
     return slope, math.sqrt(float(left @ left) / (len(peaks) - 2) / float(away @ away))
 
 
-def _peaks(seen: Seen) -> Array:
+def _peaks(errors: ErrorSeries) -> Array:
     """The worst error of place of each whole turn that counts."""
-    turn = np.floor(seen.turn + 1e-9).astype(np.intp)
-    whole = (np.arange(len(turn)) >= seen.settled) & (turn < int(seen.turn[-1] + 1e-9))
+    turn = np.floor(errors.turn + 1e-9).astype(np.intp)
+    whole = (np.arange(len(turn)) >= errors.settled) & (turn < int(errors.turn[-1] + 1e-9))
     if not whole.any():
         return np.zeros(0)
     first = turn[whole][0]
     peaks = np.zeros(turn[whole][-1] - first + 1)
-    np.maximum.at(peaks, turn[whole] - first, seen.place[whole])
+    np.maximum.at(peaks, turn[whole] - first, errors.place[whole])
     return peaks
 
 
-def _diverged(seen: Seen, _: float) -> Ending | None:
-    if seen.status == "diverged":
-        return Ending("diverged", seen.reason, len(seen.time_s) - 1)
-    broken = np.flatnonzero(~np.isfinite(seen.place + seen.gap))
+def _diverged(errors: ErrorSeries, _: float) -> Grade | None:
+    if errors.status == "diverged":
+        return Grade("diverged", errors.reason, len(errors.time_s) - 1)
+    broken = np.flatnonzero(~np.isfinite(errors.place + errors.gap))
     if broken.size:
-        return Ending("diverged", "numbers that are not finite", int(broken[0]))
+        return Grade("diverged", "numbers that are not finite", int(broken[0]))
     return None
 
 
-def _crashed(seen: Seen, _: float) -> Ending | None:
-    fault = seen.incomplete if seen.status == "ok" else seen.reason or seen.status
-    return Ending("crashed", fault, len(seen.time_s) - 1) if fault else None
+def _crashed(errors: ErrorSeries, _: float) -> Grade | None:
+    fault = errors.incomplete if errors.status == "ok" else errors.reason or errors.status
+    return Grade("crashed", fault, len(errors.time_s) - 1) if fault else None
 
 
-def _branch_changed(seen: Seen, _: float) -> Ending | None:
-    if seen.departure is None or seen.worst(seen.gap)[0] > CLOSED:
+def _branch_changed(errors: ErrorSeries, _: float) -> Grade | None:
+    if errors.departure is None or errors.worst(errors.gap)[0] > CLOSED:
         return None
-    at = int(np.searchsorted(seen.time_s, seen.departure.time_s))
-    reason = f"{seen.departure.link} went over to the other assembly"
-    return Ending("branch-changed", reason, min(at, len(seen.time_s) - 1))
+    at = int(np.searchsorted(errors.time_s, errors.departure.time_s))
+    reason = f"{errors.departure.link} went over to the other assembly"
+    return Grade("branch-changed", reason, min(at, len(errors.time_s) - 1))
 
 
-def _locked(seen: Seen, within: float) -> Ending | None:
-    end = max(len(seen.time_s) // LAST, 1)
-    turned = float(np.ptp(seen.crank[-end:]))
-    told = float(np.ptp(seen.driver_rad[-end:]))
-    if turned > STANDS * told or seen.drive[-1] <= within or seen.worst(seen.gap)[0] > within:
+def _locked(errors: ErrorSeries, within: float) -> Grade | None:
+    end = max(len(errors.time_s) // LAST, 1)
+    turned = float(np.ptp(errors.crank[-end:]))
+    commanded = float(np.ptp(errors.driver_rad[-end:]))
+    if (
+        turned > STANDS * commanded
+        or errors.drive[-1] <= within
+        or errors.worst(errors.gap)[0] > within
+    ):
         return None
-    if seen.limited and seen.worst(seen.place)[0] > within:
+    if errors.limited and errors.worst(errors.place)[0] > within:
         return None  # it stands, and somewhere else than at its limit
-    behind = math.degrees(float(seen.drive[-1]))
-    return Ending(
-        "locked", f"the crank stands, {behind:.3g} deg behind", seen.first(seen.drive, within)
+    behind = math.degrees(float(errors.drive[-1]))
+    return Grade(
+        "locked", f"the crank stands, {behind:.3g} deg behind", errors.first(errors.drive, within)
     )
 
 
-def _silently_open(seen: Seen, within: float) -> Ending | None:
-    gap, _ = seen.worst(seen.gap)
-    if gap <= within or seen.worst(seen.drive)[0] > within:
+def _silently_open(errors: ErrorSeries, within: float) -> Grade | None:
+    gap, _ = errors.worst(errors.gap)
+    if gap <= within or errors.worst(errors.drive)[0] > within:
         return None
     reason = f"a joint is open by {gap:.2g} of the longest link, and the crank does not show it"
-    return Ending("silently-open", reason, seen.first(seen.gap, within))
+    return Grade("silently-open", reason, errors.first(errors.gap, within))
 
 
-def _drifts(seen: Seen, within: float) -> Ending | None:
-    peaks = _peaks(seen)
-    slope, doubt = drift(seen)
-    if seen.worst(seen.place)[0] <= within or not slope > 2.0 * doubt:
+def _drifts(errors: ErrorSeries, within: float) -> Grade | None:
+    peaks = _peaks(errors)
+    slope, doubt = drift(errors)
+    if errors.worst(errors.place)[0] <= within or not slope > 2.0 * doubt:
         return None
     if peaks[-1] < GROWN * peaks[0]:
         return None
-    return Ending("drifts", f"grows by {slope:.2g} a turn", seen.first(seen.place, within))
+    return Grade("drifts", f"grows by {slope:.2g} a turn", errors.first(errors.place, within))
 
 
-def _degraded(seen: Seen, within: float) -> Ending | None:
-    for what, series in (("a place", seen.place), ("the crank", seen.drive), ("a joint", seen.gap)):
-        worst, at = seen.worst(series)
+def _degraded(errors: ErrorSeries, within: float) -> Grade | None:
+    for what, series in (
+        ("a place", errors.place),
+        ("the crank", errors.drive),
+        ("a joint", errors.gap),
+    ):
+        worst, at = errors.worst(series)
         if worst > within:
-            return Ending("degraded", f"{what} is off by {worst:.2g}", at)
+            return Grade("degraded", f"{what} is off by {worst:.2g}", at)
     return None
-
-
-def _ok(seen: Seen, _: float) -> Ending:
-    return Ending("ok", "")
 
 
 RULES: tuple[GradeRule, ...] = (
@@ -169,7 +173,7 @@ RULES: tuple[GradeRule, ...] = (
     ),
     GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
     GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),
-    GradeRule("ok", "within the class throughout", _ok),
+    GradeRule("ok", "within the class throughout", lambda *_: Grade("ok", "")),
 )
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
     "unsupported": "the engine cannot hold the scene",

@@ -13,9 +13,9 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
 from reports.stability.case import Case, Judge, Trial
-from reports.stability.error_series import Seen, seen
+from reports.stability.error_series import ErrorSeries, error_series
 from reports.stability.free import falling, freely
-from reports.stability.grades import Ending, outcome
+from reports.stability.grades import outcome
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
@@ -27,20 +27,20 @@ GradedPicture = tuple[Graded, Picture | None]
 
 
 @dataclass(frozen=True)
-class Truth:
+class Yardstick:
     """What runs are held to: how one is seen beside it, and how it moves, to be drawn."""
 
-    look: Callable[[Trial, Run], Seen]
+    look: Callable[[Trial, Run], ErrorSeries]
     motion: Callable[[Trial, Array], Motion]
 
 
-JUDGES: Mapping[Judge, Truth] = {
-    "follow": Truth(
-        lambda trial, run: seen(trial.scene, run, trial.settled_turns),
+JUDGES: Mapping[Judge, Yardstick] = {
+    "follow": Yardstick(
+        lambda trial, run: error_series(trial.scene, run, trial.settled_turns),
         lambda trial, time_s: solve(trial.scene, time_s, bound=False),
     ),
-    "limit": Truth(at_limit, held),
-    "free": Truth(freely, falling),
+    "limit": Yardstick(at_limit, held),
+    "free": Yardstick(freely, falling),
 }
 
 
@@ -61,11 +61,11 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     began = time.perf_counter()
     trial = case.trial(value)
     blank = Graded(case.name, engine, profile, value, label(value), "ok", "")
-    found, done = _graded(case, trial, blank)
-    found = replace(found, wall_s=time.perf_counter() - began)
-    if not draw or done is None or found.outcome in case.good:
-        return found, None
-    return found, picture(case, trial, found, done, JUDGES[case.judge].motion)
+    result, done = _graded(case, trial, blank)
+    result = replace(result, wall_s=time.perf_counter() - began)
+    if not draw or done is None or result.outcome in case.good:
+        return result, None
+    return result, picture(case, trial, result, done, JUDGES[case.judge].motion)
 
 
 def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:
@@ -90,22 +90,19 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
     if done.motion is None or done.status == "unsupported":
         lost: Outcome = "unsupported" if done.status == "unsupported" else "crashed"
         return replace(blank, outcome=lost, reason=done.reason), None
-    found = JUDGES[case.judge].look(trial, done)
-    return _told(blank, found, outcome(found, case.within)), done
-
-
-def _told(blank: Graded, found: Seen, ending: Ending) -> Graded:
-    """The grade of what was seen."""
-    at = ending.sample
-    apart = ending.outcome == "diverged"  # what was logged ends before it came apart
-    return replace(
+    errors = JUDGES[case.judge].look(trial, done)
+    grade = outcome(errors, case.within)
+    at = grade.sample
+    apart = grade.outcome == "diverged"  # what was logged ends before it came apart
+    result = replace(
         blank,
-        outcome=ending.outcome,
-        reason=ending.reason,
-        error=math.nan if apart else found.worst(found.place)[0],
-        gap=math.nan if apart else found.worst(found.gap)[0],
-        drive=found.worst(found.drive)[0],
-        sine=found.sine,
-        at_s=math.nan if at is None else float(found.time_s[at]),
-        at_driver_rad=math.nan if at is None else float(found.driver_rad[at]),
+        outcome=grade.outcome,
+        reason=grade.reason,
+        error=math.nan if apart else errors.worst(errors.place)[0],
+        gap=math.nan if apart else errors.worst(errors.gap)[0],
+        drive=errors.worst(errors.drive)[0],
+        sine=errors.sine,
+        at_s=math.nan if at is None else float(errors.time_s[at]),
+        at_driver_rad=math.nan if at is None else float(errors.driver_rad[at]),
     )
+    return result, done

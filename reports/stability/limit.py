@@ -8,7 +8,7 @@ from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Motion
 from reports.stability.case import Trial
-from reports.stability.error_series import Seen, lacking, worst_of
+from reports.stability.error_series import ErrorSeries, lacking, worst_of
 from sim.engine import Run
 
 WILD = 1e3
@@ -28,7 +28,7 @@ def held(trial: Trial, time_s: Array) -> Motion:
     return solve_driven(trial.scene, inside, still, still, time_s, bound=False)
 
 
-def at_limit(trial: Trial, run: Run) -> Seen:
+def at_limit(trial: Trial, run: Run) -> ErrorSeries:
     """A run beside the limit that its crank cannot pass.
 
     The error of place is how far the crank is from its command, which ends at the limit [rad]. What
@@ -48,7 +48,7 @@ def at_limit(trial: Trial, run: Run) -> Seen:
     fastest = float(worst_of(spin).max()) / law.peak_speed_rad_s
     if status == "ok" and fastest > WILD:
         status, reason = "diverged", f"a link turns {fastest:.1g} times as fast as the command"
-    return Seen(
+    return ErrorSeries(
         status=status,
         reason=reason,
         time_s=motion.time_s,
@@ -58,8 +58,6 @@ def at_limit(trial: Trial, run: Run) -> Seen:
         drive=worst_of(np.abs(crank - driver)),
         crank=crank,
         period_s=law.period_s,
-        settled=0,
-        departure=None,
         sine=0.0,
         incomplete=lacking(scene, run),
         limited=True,

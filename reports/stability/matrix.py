@@ -172,10 +172,9 @@ def read_matrix(folder: Path) -> Matrix:
     path = folder / FILE
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        found = content["format"]
-        if found != FORMAT:
+        if content["format"] != FORMAT:
             raise CrankcheckError(
-                f"{path}: format {found}; this crankcheck reads format {FORMAT}: run "
+                f"{path}: format {content['format']}; this crankcheck reads format {FORMAT}: run "
                 f"`crankcheck stability -o {folder}` again"
             )
         rows = {key: [_numbers(row) for row in content[key]] for key in ("runs", "critical")}

@@ -22,12 +22,12 @@ BEFORE = 0.3
 
 
 def picture(
-    case: Case, trial: Trial, found: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
+    case: Case, trial: Trial, graded: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
 ) -> Picture | None:
     """The picture of a graded run; None where there is no truth to be drawn there."""
     scene = trial.scene
     assert run.motion is not None
-    kept = _around(run.motion.time_s, found.at_s, scene.driver.law.period_s)
+    kept = _around(run.motion.time_s, graded.at_s, scene.driver.law.period_s)
     if kept.size < 2:
         return None
     time_s = run.motion.time_s[kept]
@@ -47,12 +47,12 @@ def picture(
     if rows is None:
         return None
     return Picture(
-        case=found.case,
-        engine=found.engine,
-        profile=found.profile,
-        value=found.value,
-        label=found.label,
-        title=f"{case.title}: {case.parameter} {found.label} {case.unit}".strip(),
+        case=graded.case,
+        engine=graded.engine,
+        profile=graded.profile,
+        value=graded.value,
+        label=graded.label,
+        title=f"{case.title}: {case.parameter} {graded.label} {case.unit}".strip(),
         drawing=cast(Mapping[str, object], finite(shape, DIGITS)),
         rows=finite(rows, DIGITS),
     )

@@ -53,19 +53,19 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
     """One case: what is made harder, and how far each engine holds it."""
     unit = f" [{case.unit}]" if case.unit else ""
     console.print(Text.assemble((case.name, "bold"), f"  {case.title}; {case.parameter}{unit}"))
-    table = plain_table()
-    table.pad_edge = False
-    table.add_column("", no_wrap=True)
-    for text in case.labels:
-        table.add_column(text, justify="right", no_wrap=True, header_style="dim")
-    table.add_column("", overflow="fold")
-    lines = [one for one in matrix.critical if one.case == case.name]
+    lines = [critical for critical in matrix.critical if critical.case == case.name]
     if console.width < NARROW:
         for critical in lines:
             style = _style(case, critical.outcome)
             console.print(f"  {critical.engine} {critical.profile}:", Text(critical.words, style))
         console.print()
         return
+    table = plain_table()
+    table.pad_edge = False
+    table.add_column("", no_wrap=True)
+    for text in case.labels:
+        table.add_column(text, justify="right", no_wrap=True, header_style="dim")
+    table.add_column("", overflow="fold")
     for critical in lines:
         runs = {
             run.value: run
@@ -98,11 +98,11 @@ def _style(case: CaseFacts, outcome: Outcome) -> str:
 
 def _legend(matrix: Matrix) -> str:
     """What letters and numbers mean, and how each is had alone."""
-    seen = {run.outcome for run in matrix.runs}
+    outcomes = {run.outcome for run in matrix.runs}
     letters = "; ".join(
         f"{LETTERS[outcome]} {outcome}: {meaning}"
         for outcome, meaning in MEANINGS.items()
-        if outcome in seen and LETTERS[outcome]
+        if outcome in outcomes and LETTERS[outcome]
     )
     within = {case.within: case.group for case in matrix.cases}
     usual = f"{WITHIN:g}"

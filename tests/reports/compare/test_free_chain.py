@@ -15,7 +15,7 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.window_chain import Chain
-from reports.compare.free_chain import Held, compared, hold
+from reports.compare.free_chain import ChainErrors, compared, hold
 from sim.engine import Poses
 from sim.run import run
 
@@ -24,7 +24,7 @@ CHAIN = Chain(2)
 
 def held(
     fake_engine: ModuleType, disturb: Callable[[Poses], Poses] = lambda poses: poses, **given: Any
-) -> Held:
+) -> ChainErrors:
     """The chain for 2 s in an engine that follows the closed form but for what is told."""
     exact = ChainMotion(CHAIN)
     fake = fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=disturb, **given)

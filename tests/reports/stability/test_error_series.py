@@ -12,7 +12,7 @@ from analytic.kinematics import solve
 from models.motion import Motion
 from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
-from reports.stability.error_series import seen
+from reports.stability.error_series import error_series
 from reports.stability.grades import outcome
 from reports.stability.limit import at_limit
 from sim.engine import Run
@@ -111,7 +111,7 @@ def cut(found: Run) -> Run:
 )
 def test_a_log_with_holes_is_not_held(spoil: Callable[[Run], Run], word: str) -> None:
     trial = CATALOGUE["coarse-step"].trial(90.0)
-    found = outcome(seen(trial.scene, spoil(done(trial))), 1e-2)
+    found = outcome(error_series(trial.scene, spoil(done(trial))), 1e-2)
     assert found.outcome == "crashed"
     assert word in found.reason
 
@@ -132,5 +132,5 @@ def test_a_branch_left_before_the_run_has_settled_does_not_count() -> None:
 
     links = {name: replace(link, theta=mixed(name)) for name, link in motion.links.items()}
     strayed = replace(healthy, motion=replace(motion, links=links))
-    assert outcome(seen(scene, strayed), 1e-2).outcome == "branch-changed"
-    assert outcome(seen(scene, strayed, settled_turns=1.0), 1e-2).outcome == "ok"
+    assert outcome(error_series(scene, strayed), 1e-2).outcome == "branch-changed"
+    assert outcome(error_series(scene, strayed, settled_turns=1.0), 1e-2).outcome == "ok"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from reports.compare.errors import Departure
-from reports.stability.error_series import Seen
+from reports.stability.error_series import ErrorSeries
 from reports.stability.grades import MEANINGS, drift, outcome
 from reports.stability.matrix import OUTCOMES
 
@@ -19,11 +19,11 @@ TURN = np.arange(TURNS * SAMPLES + 1) / SAMPLES
 """Periods gone by at each sample."""
 
 
-def run(**changed: object) -> Seen:
+def run(**changed: object) -> ErrorSeries:
     """A run without a fault, with some of it changed."""
     small = 1e-3 * (1.0 + np.sin(math.tau * TURN)) / 2.0
     driver = math.tau * TURN
-    healthy = Seen(
+    healthy = ErrorSeries(
         status="ok",
         reason="",
         time_s=0.5 * TURN,
@@ -40,7 +40,7 @@ def run(**changed: object) -> Seen:
     return replace(healthy, **changed)  # type: ignore[arg-type]
 
 
-def stands() -> Seen:
+def stands() -> ErrorSeries:
     """The crank stands after three turns, its joints closed."""
     crank = np.minimum(math.tau * TURN, 3.0 * math.tau)
     return run(crank=crank, drive=math.tau * TURN - crank)
@@ -53,7 +53,7 @@ def test_a_run_within_its_class_is_ok_and_tells_its_drift() -> None:
 
 
 @pytest.mark.parametrize(
-    ("seen", "name", "word", "sample"),
+    ("errors", "name", "word", "sample"),
     [
         (run(status="diverged", reason="came apart at 1 s"), "diverged", "came apart", 480),
         (run(status="crashed", reason="ValueError: no"), "crashed", "ValueError", 480),
@@ -67,8 +67,10 @@ def test_a_run_within_its_class_is_ok_and_tells_its_drift() -> None:
         (run(drive=0.02 + 0 * TURN, gap=0.03 + 0 * TURN), "degraded", "the crank", 0),
     ],
 )
-def test_every_end_is_told_by_its_own_rule(seen: Seen, name: str, word: str, sample: int) -> None:
-    found = outcome(seen, WITHIN)
+def test_every_end_is_told_by_its_own_rule(
+    errors: ErrorSeries, name: str, word: str, sample: int
+) -> None:
+    found = outcome(errors, WITHIN)
     assert found.outcome == name
     assert word in found.reason
     assert found.sample == sample
