@@ -39,13 +39,10 @@ from dataclasses import dataclass
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
+from reports.judge.three_steps import AT_ROUNDING
 from reports.quantities import QUANTITIES
 from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance, tolerance_name
-
-ROUNDING = 1e-11
-"""A pure error that rounding over a run of thousands of steps explains by itself."""
-
 
 DEFAULTS: dict[str, Tolerance] = {
     tolerance_name(name, each.source): each.tolerance
@@ -65,7 +62,7 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
     budget += tolerance.share * curvature * step**tolerance.share_order
     budget = min(float(budget), tolerance.cap)
-    return float(budget + tolerance.floor + ROUNDING / step**tolerance.differenced)
+    return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
 
 
 def passing(tolerance: Tolerance, errors: Errors) -> float:

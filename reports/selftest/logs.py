@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
-from models.motion import LinkMotion, Motion, PointMotion
+from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from sim.engine import Run
 
@@ -46,11 +46,7 @@ def with_link(done: Run, name: str, **changed: Array) -> Run:
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     """The run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)
-    points = {
-        name: PointMotion(*(change(series) for series in vars(point).values()))
-        for name, point in motion.points.items()
-    }
-    return replace(done, motion=replace(motion, points=points))
+    return replace(done, motion=replace(motion, points=parts(motion.points, change)))
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:

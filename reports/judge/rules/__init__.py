@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from reports.judge.rules.base import Evidence, Finding, Rule
-from reports.judge.rules.certainty import ReferenceCertain
-from reports.judge.rules.complete import LogComplete
-from reports.judge.rules.finite import ValuesFinite
-from reports.judge.rules.independence import TwoComputations
 from reports.judge.rules.limits import LIMITS
+from reports.judge.rules.log import LogComplete, StatusOk, ValuesFinite
+from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.shrinking import ErrorShrinks
 from reports.judge.rules.start import StartWithin
-from reports.judge.rules.status import StatusOk
 
 _ALL: tuple[Rule, ...] = (
     StatusOk(),
@@ -25,8 +22,6 @@ _ALL: tuple[Rule, ...] = (
     StartWithin(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
-
-
 TUNABLE = ("CC101", "CC103", "CC104", "CC105", "CC110", "CC113")
 """Failures that come from what an engine is set to."""
 UNEQUAL = 100.0

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import CrankcheckError
-from reports.judge.tolerance import DEFAULTS, ROUNDING
+from reports.judge.three_steps import AT_ROUNDING
+from reports.judge.tolerance import DEFAULTS
 from reports.results.changes.gone import refuse_gone
 from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
 
@@ -177,7 +178,7 @@ def floor(quantity: str, steps_per_turn: float) -> float:
     """
     tolerance = DEFAULTS[quantity]
     step_rad = math.tau / steps_per_turn
-    return tolerance.floor + ROUNDING / step_rad**tolerance.differenced
+    return tolerance.floor + AT_ROUNDING / step_rad**tolerance.differenced
 
 
 def other_settings(pairs: Iterable[CellPair]) -> Mapping[tuple[str, str], Mapping[str, str]]:

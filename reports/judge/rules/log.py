@@ -1,0 +1,69 @@
+"""CC101, CC109, CC115: the run came to its end, and its log is whole and made of numbers."""
+
+from __future__ import annotations
+
+from reports.judge.rules.base import Evidence, Finding
+
+
+class StatusOk:
+    id = "CC101"
+    title = "status"
+    explanation = "A run that stopped early, or never started, says nothing about the rest."
+    cure = (
+        "What is unsupported says itself what to change; a run that came apart needs a shorter "
+        "step (--steps-per-turn); one that left its branch needs lengths, or a range of the "
+        "driver, away from the singular position that it passes."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.status == "ok":
+            return Finding(self.id, "pass", "the run came to its end")
+        reason = f": {evidence.reason}" if evidence.reason else ""
+        early = evidence.stopped_at_s > 0.0 and evidence.status != "branch-changed"
+        at = f" at t = {evidence.stopped_at_s:.4g} s" if early else ""
+        return Finding(self.id, "fail", f"{evidence.status}{at}{reason}")
+
+
+class ValuesFinite:
+    id = "CC109"
+    title = "finite values"
+    explanation = (
+        "A NaN or an infinity in a log is a failure, even at one sample, even at the end; so is a "
+        "link, point, slider or pin of the scene that the log says nothing about."
+    )
+    cure = (
+        "Shorten the step; look at the engine's warnings for the first bad step; where something "
+        "is missing, look at what the adapter reads."
+    )
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.errors is None:
+            return None
+        broken = [row for row in evidence.errors.rows if not row.finite]
+        if evidence.errors.missing:
+            text = f"missing from the log: {', '.join(evidence.errors.missing)}"
+            return Finding(self.id, "fail", text, float(len(broken)), 0.0)
+        if not broken:
+            return Finding(self.id, "pass", "every logged number is finite")
+        first = min(broken, key=lambda row: row.time_of_maximum_s)
+        bodies = ", ".join(dict.fromkeys(f"{row.quantity} of {row.body}" for row in broken[:4]))
+        text = f"not finite from t = {first.time_of_maximum_s:.4g} s on: {bodies}"
+        return Finding(self.id, "fail", text, float(len(broken)), 0.0)
+
+
+class LogComplete:
+    id = "CC115"
+    title = "complete log"
+    explanation = (
+        "A run that claims to have ended well has logged every commanded sample, stamped with "
+        "the whole number of steps that it was taken after; what was not logged was not judged."
+    )
+    cure = "Look at how the adapter logs; the time stamps are start + k dt, not a summed clock."
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.status != "ok":
+            return None  # short by its nature: the status fails already
+        fault = "nothing was logged" if evidence.errors is None else evidence.errors.incomplete
+        if fault:
+            return Finding(self.id, "fail", fault)
+        return Finding(self.id, "pass", "every commanded sample was logged at its time")
