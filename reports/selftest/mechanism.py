@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from models.laws import ConstantSpeed
-from models.scene import Link, Point, Scene
+from analytic.check.moved_scene import scaled
+from models.laws import Law
+from models.scene import Link, Scene
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_scene
 
 
@@ -18,11 +18,8 @@ def _long(scene: Scene, share: float) -> Scene:
 
 
 def _scaled(link: Link, factor: float) -> Link:
-    return replace(link, points=_times(link.points, factor))
-
-
-def _times(points: Mapping[str, Point], factor: float) -> dict[str, Point]:
-    return {name: (factor * x, factor * y) for name, (x, y) in points.items()}
+    points = {name: (factor * x, factor * y) for name, (x, y) in link.points.items()}
+    return replace(link, points=points)
 
 
 def _with_link(scene: Scene, link: Link) -> Scene:
@@ -48,21 +45,15 @@ def _turned_line(scene: Scene, angle_rad: float) -> Scene:
 
 def _larger(scene: Scene, share: float) -> Scene:
     """Every length: the angles stay what they are."""
-    factor = 1.0 + share
-    sliders = {
-        name: replace(slider, through_m=_times({"": slider.through_m}, factor)[""])
-        for name, slider in scene.sliders.items()
-    }
-    links = {name: _scaled(link, factor) for name, link in scene.links.items()}
-    return replace(scene, ground=_times(scene.ground, factor), links=links, sliders=sliders)
+    return scaled(scene, 1.0 + share)
 
 
 def _swapped(scene: Scene, swap: float) -> Scene:
     """The last two links have each other's length."""
-    one, two = list(scene.links.values())[-2:]
-    factor = _length(two) / _length(one) if swap else 1.0
-    scene = _with_link(scene, _scaled(one, factor))
-    return _with_link(scene, _scaled(two, 1.0 / factor))
+    inner, outer = list(scene.links.values())[-2:]
+    factor = _length(outer) / _length(inner) if swap else 1.0
+    scene = _with_link(scene, _scaled(inner, factor))
+    return _with_link(scene, _scaled(outer, 1.0 / factor))
 
 
 def _length(link: Link) -> float:
@@ -70,28 +61,20 @@ def _length(link: Link) -> float:
     return float((x * x + y * y) ** 0.5)
 
 
-def _driven(scene: Scene, law: ConstantSpeed) -> Scene:
+def _driven(scene: Scene, law: Law) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
-def _law(scene: Scene) -> ConstantSpeed:
-    law = scene.driver.law
-    assert isinstance(law, ConstantSpeed)
-    return law
-
-
 def _faster(scene: Scene, share: float) -> Scene:
-    law = _law(scene)
-    return _driven(scene, replace(law, speed_rad_s=law.speed_rad_s * (1.0 + share)))
+    return _driven(scene, scene.driver.law.sped_up(1.0 + share))
 
 
 def _ahead(scene: Scene, angle_rad: float) -> Scene:
-    return _driven(scene, _law(scene).turned(angle_rad))
+    return _driven(scene, scene.driver.law.turned(angle_rad))
 
 
 def _backwards(scene: Scene, swap: float) -> Scene:
-    law = _law(scene)
-    return _driven(scene, replace(law, speed_rad_s=-law.speed_rad_s)) if swap else scene
+    return _driven(scene, scene.driver.law.sped_up(-1.0 if swap else 1.0))
 
 
 def other_branch(scene: Scene, swap: float) -> Scene:
