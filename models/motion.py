@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from models.array import Array
 from models.scene import Point
@@ -79,6 +80,11 @@ class Motion:
     bound: Bound | None = None
     crossings: tuple[Crossing, ...] = ()
 
+    def each_series(self, change: Callable[[Array], Array]) -> Motion:
+        """The motion with every series of its bodies changed; its instants stay."""
+        links, points = _each(self.links, change), _each(self.points, change)
+        return replace(self, links=links, points=points, sliders=_each(self.sliders, change))
+
     def state(self, index: int = 0) -> State:
         """The sample ``index`` as a state."""
         return State(
@@ -92,6 +98,16 @@ class Motion:
             displacement={n: float(m.displacement[index]) for n, m in self.sliders.items()},
             speed={n: float(m.speed[index]) for n, m in self.sliders.items()},
         )
+
+
+Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
+
+
+def _each(bodies: Mapping[str, Body], change: Callable[[Array], Array]) -> dict[str, Body]:
+    return {
+        name: type(body)(**{key: change(series) for key, series in vars(body).items()})
+        for name, body in bodies.items()
+    }
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track
@@ -28,7 +26,6 @@ from sim.engine import Run
 
 SAMPLES_PER_TURN = 90
 """Divides the usual numbers of steps in a turn, so that cells of a line share their instants."""
-Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
 
 
 def trace(scene: Scene, run: Run) -> dict[str, Array]:
@@ -37,24 +34,25 @@ def trace(scene: Scene, run: Run) -> dict[str, Array]:
         return {}
     kept = _instants(scene, run)
     gaps = {name: gap[kept] for name, gap in run.gaps.items()}
-    turn = replace(run, motion=_picked(run.motion, kept), gaps=gaps)
+    motion = run.motion.each_series(lambda series: series[kept])
+    turn = replace(run, motion=replace(motion, time_s=motion.time_s[kept]), gaps=gaps)
     beside = Beside.of(Truth(scene, bound=False), turn)
     assert beside is not None
-    found = {
+    series = {
         "time_s": beside.motion.time_s,
         "driver_rad": beside.driver_rad,
         "drive": beside.drive,
         "gap": np.max([np.abs(gap) for gap in gaps.values()], axis=0, initial=0.0),
     }
-    found |= _errors(beside.places, "")
+    series |= _errors(beside.places, "")
     # Where the logged crank left its range, or is not finite, the total error says it.
     with suppress(CrankcheckError, ValueError):
-        found |= _errors(beside.tracks(named("place"), beside.at_crank), "geometric.")
+        series |= _errors(beside.tracks(named("place"), beside.at_crank), "geometric.")
     for name, link in beside.motion.links.items():
-        found[f"theta.{name}"] = link.theta
+        series[f"theta.{name}"] = link.theta
     for name, point in beside.motion.points.items():
-        found[f"x.{name}"], found[f"y.{name}"] = point.position.T
-    return {name: np.ascontiguousarray(series) for name, series in found.items()}
+        series[f"x.{name}"], series[f"y.{name}"] = point.position.T
+    return {name: np.ascontiguousarray(each) for name, each in series.items()}
 
 
 def _instants(scene: Scene, run: Run) -> np.ndarray:
@@ -66,20 +64,6 @@ def _instants(scene: Scene, run: Run) -> np.ndarray:
     span = min(round(per_turn), times.size - 1)
     parts = min(max(round(SAMPLES_PER_TURN * span / per_turn), 1), span)
     return np.round(times.size - 1 - span + np.linspace(0, span, parts + 1)).astype(np.intp)
-
-
-def _picked(motion: Motion, kept: np.ndarray) -> Motion:
-    """The motion at some of its samples."""
-
-    def pick(body: Body) -> Body:
-        return type(body)(**{name: series[kept] for name, series in vars(body).items()})
-
-    return Motion(
-        time_s=motion.time_s[kept],
-        links={name: pick(body) for name, body in motion.links.items()},
-        points={name: pick(body) for name, body in motion.points.items()},
-        sliders={name: pick(body) for name, body in motion.sliders.items()},
-    )
 
 
 def _errors(placed: Iterable[Track], prefix: str) -> Mapping[str, Array]:

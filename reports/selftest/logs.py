@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,6 @@ from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from sim.engine import Run
 
-LogPart = TypeVar("LogPart")
 Rows = slice | Array | NDArray[np.intp]
 WHEN = 100
 """The sample that is spoilt where one is: well within the run, behind the start."""
@@ -46,7 +44,7 @@ def with_link(done: Run, name: str, **changed: Array) -> Run:
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     """The run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)
-    return replace(done, motion=replace(motion, points=parts(motion.points, change)))
+    return replace(done, motion=replace(motion, points=motion.each_series(change).points))
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:
@@ -56,27 +54,10 @@ def spoilt(series: Array, at: int | slice, value: float) -> Array:
     return wrong
 
 
-def parts(bodies: Mapping[str, Any], change: Callable[[Array], Array]) -> dict[str, Any]:
-    """Every series of every body changed."""
-    return {
-        name: replace(body, **{key: change(series) for key, series in vars(body).items()})
-        for name, body in bodies.items()
-    }
-
-
 def every_series(done: Run, change: Callable[[Array], Array]) -> Run:
     """The run with every logged series changed, but for the instants that they belong to."""
-    motion = moved(done)
-    return replace(
-        done,
-        motion=replace(
-            motion,
-            links=parts(motion.links, change),
-            points=parts(motion.points, change),
-            sliders=parts(motion.sliders, change),
-        ),
-        gaps={name: change(gap) for name, gap in done.gaps.items()},
-    )
+    gaps = {name: change(gap) for name, gap in done.gaps.items()}
+    return replace(done, motion=moved(done).each_series(change), gaps=gaps)
 
 
 def with_times(done: Run, change: Callable[[Array], Array]) -> Run:

@@ -33,16 +33,20 @@ class Grade:
     sample: int | None = None
 
 
+Reason = tuple[str, int | None]
+"""Why a rule applies to a run, and at which sample."""
+
+
 @dataclass(frozen=True)
 class GradeRule:
     """One way to end: what it is called, what is meant, and how it is told.
 
-    ``tell`` gives the grade of a run and its class, or None where the rule does not apply.
+    ``tell`` gives the reason for a run and its class, or None where the rule does not apply.
     """
 
     outcome: Outcome
     meaning: str
-    tell: Callable[[ErrorSeries, float], Grade | None]
+    tell: Callable[[ErrorSeries, float], Reason | None]
 
 
 def outcome(errors: ErrorSeries, within: float) -> Grade:
@@ -54,7 +58,11 @@ def outcome(errors: ErrorSeries, within: float) -> Grade:
     within : float
         The class: the largest pure error that counts as held.
     """
-    grade = next(grade for rule in RULES if (grade := rule.tell(errors, within)) is not None)
+    grade = next(
+        Grade(rule.outcome, *reason)
+        for rule in RULES
+        if (reason := rule.tell(errors, within)) is not None
+    )
     slope, doubt = drift(errors)
     if grade.outcome not in STEADY or math.isnan(slope):
         return grade
@@ -87,29 +95,29 @@ def _peaks(errors: ErrorSeries) -> Array:
     return peaks
 
 
-def _diverged(errors: ErrorSeries, _: float) -> Grade | None:
+def _diverged(errors: ErrorSeries, _: float) -> Reason | None:
     if errors.status == "diverged":
-        return Grade("diverged", errors.reason, len(errors.time_s) - 1)
+        return errors.reason, len(errors.time_s) - 1
     broken = np.flatnonzero(~np.isfinite(errors.place + errors.gap))
     if broken.size:
-        return Grade("diverged", "numbers that are not finite", int(broken[0]))
+        return "numbers that are not finite", int(broken[0])
     return None
 
 
-def _crashed(errors: ErrorSeries, _: float) -> Grade | None:
+def _crashed(errors: ErrorSeries, _: float) -> Reason | None:
     fault = errors.incomplete if errors.status == "ok" else errors.reason or errors.status
-    return Grade("crashed", fault, len(errors.time_s) - 1) if fault else None
+    return (fault, len(errors.time_s) - 1) if fault else None
 
 
-def _branch_changed(errors: ErrorSeries, _: float) -> Grade | None:
+def _branch_changed(errors: ErrorSeries, _: float) -> Reason | None:
     if errors.departure is None or errors.worst(errors.gap)[0] > CLOSED:
         return None
     at = int(np.searchsorted(errors.time_s, errors.departure.time_s))
     reason = f"{errors.departure.link} went over to the other assembly"
-    return Grade("branch-changed", reason, min(at, len(errors.time_s) - 1))
+    return reason, min(at, len(errors.time_s) - 1)
 
 
-def _locked(errors: ErrorSeries, within: float) -> Grade | None:
+def _locked(errors: ErrorSeries, within: float) -> Reason | None:
     end = max(len(errors.time_s) // LAST, 1)
     turned = float(np.ptp(errors.crank[-end:]))
     commanded = float(np.ptp(errors.driver_rad[-end:]))
@@ -122,30 +130,28 @@ def _locked(errors: ErrorSeries, within: float) -> Grade | None:
     if errors.limited and errors.worst(errors.place)[0] > within:
         return None  # it stands, and somewhere else than at its limit
     behind = math.degrees(float(errors.drive[-1]))
-    return Grade(
-        "locked", f"the crank stands, {behind:.3g} deg behind", errors.first(errors.drive, within)
-    )
+    return f"the crank stands, {behind:.3g} deg behind", errors.first(errors.drive, within)
 
 
-def _silently_open(errors: ErrorSeries, within: float) -> Grade | None:
+def _silently_open(errors: ErrorSeries, within: float) -> Reason | None:
     gap, _ = errors.worst(errors.gap)
     if gap <= within or errors.worst(errors.drive)[0] > within:
         return None
     reason = f"a joint is open by {gap:.2g} of the longest link, and the crank does not show it"
-    return Grade("silently-open", reason, errors.first(errors.gap, within))
+    return reason, errors.first(errors.gap, within)
 
 
-def _drifts(errors: ErrorSeries, within: float) -> Grade | None:
+def _drifts(errors: ErrorSeries, within: float) -> Reason | None:
     peaks = _peaks(errors)
     slope, doubt = drift(errors)
     if errors.worst(errors.place)[0] <= within or not slope > 2.0 * doubt:
         return None
     if peaks[-1] < GROWN * peaks[0]:
         return None
-    return Grade("drifts", f"grows by {slope:.2g} a turn", errors.first(errors.place, within))
+    return f"grows by {slope:.2g} a turn", errors.first(errors.place, within)
 
 
-def _degraded(errors: ErrorSeries, within: float) -> Grade | None:
+def _degraded(errors: ErrorSeries, within: float) -> Reason | None:
     for what, series in (
         ("a place", errors.place),
         ("the crank", errors.drive),
@@ -153,7 +159,7 @@ def _degraded(errors: ErrorSeries, within: float) -> Grade | None:
     ):
         worst, at = errors.worst(series)
         if worst > within:
-            return Grade("degraded", f"{what} is off by {worst:.2g}", at)
+            return f"{what} is off by {worst:.2g}", at
     return None
 
 
@@ -173,7 +179,7 @@ RULES: tuple[GradeRule, ...] = (
     ),
     GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
     GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),
-    GradeRule("ok", "within the class throughout", lambda *_: Grade("ok", "")),
+    GradeRule("ok", "within the class throughout", lambda *_: ("", None)),
 )
 MEANINGS: dict[Outcome, str] = {rule.outcome: rule.meaning for rule in RULES} | {
     "unsupported": "the engine cannot hold the scene",

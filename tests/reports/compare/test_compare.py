@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
@@ -285,26 +284,12 @@ def test_a_series_of_another_length_counts_as_none(
 def cut(run: Run, keep: slice) -> Run:
     """The run with a part of its samples."""
     assert run.motion is not None
-    moved = run.motion
-
-    def parts(bodies: Mapping[str, Any]) -> dict[str, Any]:
-        return {
-            name: replace(body, **{key: series[keep] for key, series in vars(body).items()})
-            for name, body in bodies.items()
-        }
-
-    motion = replace(
-        moved,
-        time_s=moved.time_s[keep],
-        links=parts(moved.links),
-        points=parts(moved.points),
-        sliders=parts(moved.sliders),
-    )
+    motion = run.motion.each_series(lambda series: series[keep])
     assert run.velocity_time_s is not None
     assert run.acceleration_time_s is not None
     return replace(
         run,
-        motion=motion,
+        motion=replace(motion, time_s=motion.time_s[keep]),
         gaps={name: gap[keep] for name, gap in run.gaps.items()},
         velocity_time_s=run.velocity_time_s[keep],
         acceleration_time_s=run.acceleration_time_s[keep],

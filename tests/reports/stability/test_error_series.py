@@ -84,21 +84,9 @@ def test_a_crank_is_locked_only_at_its_limit_with_its_joints_closed_throughout(
 
 def cut(found: Run) -> Run:
     """Only the first fifth is logged, and the engine says that all is well."""
-    motion, keep = moved(found), slice(0, len(moved(found).time_s) // 5)
-
-    def parts(bodies: dict[str, object]) -> dict[str, object]:
-        return {
-            name: replace(body, **{key: series[keep] for key, series in vars(body).items()})  # type: ignore[type-var]
-            for name, body in bodies.items()
-        }
-
-    short = replace(
-        motion,
-        time_s=motion.time_s[keep],
-        links=parts(dict(motion.links)),
-        points=parts(dict(motion.points)),
-        sliders=parts(dict(motion.sliders)),
-    )
+    keep = slice(0, len(moved(found).time_s) // 5)
+    motion = moved(found).each_series(lambda series: series[keep])
+    short = replace(motion, time_s=motion.time_s[keep])
     return replace(found, motion=short, gaps={n: gap[keep] for n, gap in found.gaps.items()})
 
 
