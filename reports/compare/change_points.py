@@ -33,11 +33,11 @@ WINDOW_RAD = 0.5
 
 def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) -> NDArray[np.bool_]:
     """Whether driver angles (T,) are nearer than this to one of some change points."""
-    found = np.zeros(driver_rad.shape, dtype=bool)
+    nearby = np.zeros(driver_rad.shape, dtype=bool)
     for crossing in crossings:
         away = np.remainder(driver_rad - crossing.driver_rad + math.pi, math.tau) - math.pi
-        found |= np.abs(away) < within_rad
-    return found
+        nearby |= np.abs(away) < within_rad
+    return nearby
 
 
 def conditioning(motion: Motion, driver_rad: Array) -> float:

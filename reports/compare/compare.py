@@ -166,10 +166,10 @@ def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, .
     if not np.all(np.isfinite(beside.crank)):
         return [], ("no geometric error: the logged crank angle is not finite",)
     try:
-        found = beside.tracks(named("place"), beside.at_crank)
+        tracks = beside.tracks(named("place"), beside.at_crank)
     except ReachError as error:
         return [], (f"no geometric error: the logged crank left its range ({error})",)
-    return [_row(track, at, kind="geometric") for track in found], ()
+    return [_row(track, at, kind="geometric") for track in tracks], ()
 
 
 def _without_gap(beside: Beside) -> list[str]:
@@ -184,14 +184,14 @@ def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
         entry = QUANTITIES[name]
         instants = entry.instants(beside.run)
         time_s = beside.motion.time_s if instants is None else instants
-        known = beside.truth.at(time_s)
-        at = _instants(beside.scene, time_s, known)
-        found = beside.tracks((name,), known)
+        reference = beside.truth.at(time_s)
+        at = _instants(beside.scene, time_s, reference)
+        tracks = beside.tracks((name,), reference)
         # Silence is no fault of an engine that does not report it, if it is silent of all.
-        if entry.silent(beside.run) and all(np.all(np.isnan(track.error)) for track in found):
-            missing += [f"{name} of {track.body_kind} {track.body}" for track in found]
+        if entry.silent(beside.run) and all(np.all(np.isnan(track.error)) for track in tracks):
+            missing += [f"{name} of {track.body_kind} {track.body}" for track in tracks]
             continue
-        for track in found:
+        for track in tracks:
             rows += _rate_rows(track, at, "reported")
     return rows, tuple(missing)
 

@@ -18,20 +18,20 @@ def incomplete(run: Run) -> str:
     """
     if run.motion is None:
         return "nothing was logged"
-    found = run.motion.time_s
-    wanted = run.start_s + run.dt_s * (run.every * np.arange(run.steps // run.every + 1.0))
-    if found.shape != wanted.shape:
+    stamps = run.motion.time_s
+    commanded = run.start_s + run.dt_s * (run.every * np.arange(run.steps // run.every + 1.0))
+    if stamps.shape != commanded.shape:
         return (
-            f"{found.size} samples, not the {wanted.size} of {run.steps} steps logged every "
+            f"{stamps.size} samples, not the {commanded.size} of {run.steps} steps logged every "
             f"{run.every}"
         )
-    off = np.abs(found - wanted)
-    room = ROUNDINGS * EPSILON * float(np.max(np.abs(wanted)))
+    off = np.abs(stamps - commanded)
+    room = ROUNDINGS * EPSILON * float(np.max(np.abs(commanded)))
     bad = np.flatnonzero(~(off <= room))
     if bad.size:
         first = int(bad[0])
         return (
-            f"sample {first} is stamped {found[first]:.9g} s, not {wanted[first]:.9g} s "
-            f"({bad.size} of {found.size} are off the commanded times)"
+            f"sample {first} is stamped {stamps[first]:.9g} s, not {commanded[first]:.9g} s "
+            f"({bad.size} of {stamps.size} are off the commanded times)"
         )
     return ""

@@ -113,8 +113,8 @@ def _over(
 def _rounding(drive: Error | None, exact: float) -> float:
     """The error of place that rounding explains: a prescribed crank is off by nothing else, and by
     no more than ``exact``."""
-    seen = drive.pure if drive is not None and drive.pure <= exact else 0.0
-    return max(AT_ROUNDING, BEHIND_DRIVE * seen)
+    of_crank = drive.pure if drive is not None and drive.pure <= exact else 0.0
+    return max(AT_ROUNDING, BEHIND_DRIVE * of_crank)
 
 
 def worst_place(errors: Errors) -> Error | None:

@@ -33,36 +33,36 @@ AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maxim
 """The first columns of the frame of errors: what an error has of that name."""
 
 
-def error_rows(one: Checked) -> list[dict[str, object]]:
+def error_rows(checked: Checked) -> list[dict[str, object]]:
     """One row per quantity, body, source and kind of a cell."""
-    if one.errors is None:
+    if checked.errors is None:
         return []
     return [
-        identity(one)
+        identity(checked)
         | {name: getattr(error, name) for name in AS_THEY_ARE}
         | {
             "maximum_pure": error.pure,
-            "limit_pure": one.limits[error.tolerance].number if error.kind == "total" else None,
+            "limit_pure": checked.limits[error.tolerance].number if error.kind == "total" else None,
             "time_of_maximum_s": error.time_of_maximum_s,
             "driver_at_maximum_rad": error.driver_at_maximum_rad,
             "reference_bound": error.bound,
             "samples": error.samples,
         }
-        for error in one.errors.rows
+        for error in checked.errors.rows
     ]
 
 
-def cell_row(one: Checked) -> dict[str, object]:
+def cell_row(checked: Checked) -> dict[str, object]:
     """One cell as a flat row; what there is no number for is None."""
-    row = identity(one) | {
-        "gated": one.cell.gated,
-        "verdict": one.verdict,
-        "status": one.status,
-        "reason": one.reason,
-        "stopped_at_s": one.stopped_at_s,
-        "failed_rules": " ".join(finding.rule for finding in one.failures),
+    row = identity(checked) | {
+        "gated": checked.cell.gated,
+        "verdict": checked.verdict,
+        "status": checked.status,
+        "reason": checked.reason,
+        "stopped_at_s": checked.stopped_at_s,
+        "failed_rules": " ".join(finding.rule for finding in checked.failures),
     }
-    errors = one.errors.rows if one.errors else ()
+    errors = checked.errors.rows if checked.errors else ()
     for name, *key in ERROR_COLUMNS:
         worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
         row[name] = worst.maximum if worst else None
@@ -70,33 +70,35 @@ def cell_row(one: Checked) -> dict[str, object]:
         worst = largest(e for e in errors if e.kind == "total" and e.tolerance == name)
         column = name.replace("-", "_")
         row[f"{column}_pure"] = worst.pure if worst else None
-        row[f"{column}_limit_pure"] = one.limits[name].number if name in one.limits else None
+        row[f"{column}_limit_pure"] = (
+            checked.limits[name].number if name in checked.limits else None
+        )
     row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in named("place")))
-    seen = one.convergence
+    convergence = checked.convergence
     row |= {
-        "trend": seen.trend if seen else None,
-        "order": seen.order if seen else None,
-        "floor": seen.floor if seen else None,
-        "convergence_of": seen.unit if seen else None,
-        "settings": json.dumps(dict(one.settings)),
-        "warnings": " | ".join(one.warnings),
+        "trend": convergence.trend if convergence else None,
+        "order": convergence.order if convergence else None,
+        "floor": convergence.floor if convergence else None,
+        "convergence_of": convergence.unit if convergence else None,
+        "settings": json.dumps(dict(checked.settings)),
+        "warnings": " | ".join(checked.warnings),
     }
     return row
 
 
 def _worst(*pure: object) -> float | None:
     """The largest of some pure errors; one that is not finite is larger than any."""
-    known = [each for each in pure if isinstance(each, float)]
-    return max(known, key=lambda each: each if math.isfinite(each) else math.inf, default=None)
+    numbers = [each for each in pure if isinstance(each, float)]
+    return max(numbers, key=lambda each: each if math.isfinite(each) else math.inf, default=None)
 
 
-def identity(one: Checked) -> dict[str, object]:
+def identity(checked: Checked) -> dict[str, object]:
     """What names a cell."""
-    cell = one.cell
+    cell = checked.cell
     return {
         "scene": cell.scene.name,
         "engine": cell.engine,
-        "version": one.version,
+        "version": checked.version,
         "profile": cell.profile,
         "drive": cell.drive,
         "dt_s": cell.dt_s,

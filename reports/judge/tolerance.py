@@ -107,22 +107,22 @@ def parse(texts: Iterable[str]) -> dict[str, float]:
     CrankcheckError
         A text that is not NAME=NUMBER, a name that is no quantity, a number that is not positive.
     """
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     for text in (part.strip() for whole in texts for part in whole.split(",")):
         name, equals, number = text.partition("=")
         if not equals:
             raise CrankcheckError(f"--tol {text!r}: no `=` in it; write it like --tol angle=1e-4")
-        found[_known(name.strip(), f"--tol {text!r}")] = _positive(number, text)
-    return found
+        numbers[_quantity(name.strip(), f"--tol {text!r}")] = _positive(number, text)
+    return numbers
 
 
 def check_names(scene: Scene) -> None:
     """Refuse a scene whose [tolerance] names something that is no quantity."""
     for name in scene.tolerance:
-        _known(name, f"scene {scene.name}, [tolerance] {name}")
+        _quantity(name, f"scene {scene.name}, [tolerance] {name}")
 
 
-def _known(name: str, place: str) -> str:
+def _quantity(name: str, place: str) -> str:
     """The name, or a CrankcheckError that suggests the near ones."""
     if name in DEFAULTS:
         return name

@@ -26,8 +26,8 @@ def moving(kind: Moving, order: Order, column: str) -> Measure:
         """Without points of the ground, and without the driver's angle, which is the drive."""
         driver = (scene.driver.link,) if order == 0 else ()
         still: Mapping[Moving, Collection[str]] = {"link": driver, "point": scene.ground}
-        found = _read(reference, kind, order).items()
-        return {name: series for name, series in found if name not in still.get(kind, ())}
+        bodies = _read(reference, kind, order).items()
+        return {name: series for name, series in bodies if name not in still.get(kind, ())}
 
     return Measure(
         body_kind=kind,

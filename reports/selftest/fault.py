@@ -102,8 +102,8 @@ def in_settings(what: WrongSetting) -> Plant:
             scene: Scene, state: Any, name: str, *args: Any, settings: Any = None, **options: Any
         ) -> Run:
             wrong = spoiler(name).wrong_settings[what](size) if size else {}
-            held = {**(settings or {}), **wrong}
-            return run(scene, state, name, *args, settings=held, **options)
+            changed = {**(settings or {}), **wrong}
+            return run(scene, state, name, *args, settings=changed, **options)
 
         return runner
 

@@ -32,16 +32,16 @@ def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
     CrankcheckError
         An unknown name (the message suggests near ones), or one that these engines can not have.
     """
-    held = set(engines)
+    chosen = set(engines)
     for name in names:
         if name not in FAULTS:
             hint = suggestion(name, FAULTS, "use")
             raise CrankcheckError(f"--fault {name!r}: there is none of that name; {hint}")
-        if not any(map(FAULTS[name].possible, held)):
+        if not any(map(FAULTS[name].possible, chosen)):
             able = " and ".join(FAULTS[name].engines) or "engines that are not installed"
             raise CrankcheckError(
                 f"--fault {name}: it can be planted in {able} only; "
-                f"found --engine {', '.join(sorted(held))}"
+                f"found --engine {', '.join(sorted(chosen))}"
             )
-    wanted = dict.fromkeys(names or FAULTS)
-    return [FAULTS[name] for name in wanted if any(map(FAULTS[name].possible, held))]
+    order = dict.fromkeys(names or FAULTS)
+    return [FAULTS[name] for name in order if any(map(FAULTS[name].possible, chosen))]

@@ -69,14 +69,16 @@ class Verdict:
     @property
     def caught(self) -> bool:
         """Whether the named rule fails, everywhere, and no rule does without the fault."""
-        found = all(place.finding is not None and not place.false for place in self.places)
-        return self.sound and found and bool(self.places)
+        seen_everywhere = all(
+            place.finding is not None and not place.false for place in self.places
+        )
+        return self.sound and seen_everywhere and bool(self.places)
 
     def least(self, engine: str) -> float | None:
         """The size that is caught in every scene of an engine; None where there is none."""
         sizes = [place.least for place in self.places if place.engine == engine]
-        known = [size for size in sizes if size is not None]
-        return max(known) if known and len(known) == len(sizes) else None
+        caught = [size for size in sizes if size is not None]
+        return max(caught) if caught and len(caught) == len(sizes) else None
 
 
 @cache

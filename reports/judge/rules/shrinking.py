@@ -22,17 +22,17 @@ class ErrorShrinks:
     )
 
     def check(self, evidence: Evidence) -> Finding | None:
-        seen = evidence.convergence
-        if seen is None:
+        convergence = evidence.convergence
+        if convergence is None:
             return None
         steps = ", ".join(
-            f"{error:.2g} {seen.unit} at dt {dt:.3g} s"
-            for dt, error in zip(seen.dt_s, seen.error, strict=True)
+            f"{error:.2g} {convergence.unit} at dt {dt:.3g} s"
+            for dt, error in zip(convergence.dt_s, convergence.error, strict=True)
         )
-        words = seen.words + (f" {seen.unit}" if "floor" in seen.words else "")
-        faults = [*seen.faults, *seen.over]
-        level: Level = "pass" if seen.trend in FINE and not faults else "advice"
-        if evidence.gated and (faults or seen.trend in BAD):
+        words = convergence.words + (f" {convergence.unit}" if "floor" in convergence.words else "")
+        faults = [*convergence.faults, *convergence.over]
+        level: Level = "pass" if convergence.trend in FINE and not faults else "advice"
+        if evidence.gated and (faults or convergence.trend in BAD):
             level = "fail"
         text = "; ".join([f"{words} ({steps})", *faults])
-        return Finding(self.id, level, text, seen.error[-1])
+        return Finding(self.id, level, text, convergence.error[-1])
