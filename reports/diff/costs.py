@@ -24,9 +24,6 @@ class CostChange:
     ratio: float
     cells: int
 
-    def equal(self, noise: float) -> bool:
-        return equal(self.ratio, 1.0, noise)
-
 
 def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
     """The change of every engine and variant whose cells were timed on the same processor, and
@@ -39,22 +36,22 @@ def cost_changes(diff: Diff) -> tuple[list[CostChange], float]:
             key = (pair.name.engine, pair.name.variant)
             ratios.setdefault(key, []).append(now.us_per_step / was.us_per_step)
             noises += [was.noise, now.noise]
-    found = [CostChange(*key, statistics.median(each), len(each)) for key, each in ratios.items()]
-    return found, max([LEAST_NOISE, *([noise_of(noises)] if noises else [])])
+    costs = [CostChange(*key, statistics.median(each), len(each)) for key, each in ratios.items()]
+    return costs, max([LEAST_NOISE, *([noise_of(noises)] if noises else [])])
 
 
 def cost_text(diff: Diff) -> str:
     """The costs that changed in a sentence, empty where none can be compared."""
-    found, noise = cost_changes(diff)
-    if not found:
+    costs, noise = cost_changes(diff)
+    if not costs:
         return ""
-    told = [
-        f"{one.engine} {one.variant} {one.ratio:.2f} x (median of {count(one.cells, 'cell')})"
-        for one in sorted(found, key=lambda one: -one.ratio)
-        if not one.equal(noise)
+    unequal = [
+        f"{cost.engine} {cost.variant} {cost.ratio:.2f} x (median of {count(cost.cells, 'cell')})"
+        for cost in sorted(costs, key=lambda cost: -cost.ratio)
+        if not equal(cost.ratio, 1.0, noise)
     ]
     rest = f"inside the noise of {noise:.0%}"
-    if not told:
+    if not unequal:
         return f"time of a step, as advice: equal {rest}"
-    others = f"; the others equal {rest}" if len(told) < len(found) else ""
-    return f"time of a step, new over old, as advice: {each_once(told, 6)}{others}"
+    others = f"; the others equal {rest}" if len(unequal) < len(costs) else ""
+    return f"time of a step, new over old, as advice: {each_once(unequal, 6)}{others}"

@@ -24,13 +24,16 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
     Raises
     ------
     CrankcheckError
-        An unknown name, a faulty file, two different scenes of one name.
+        An unknown name, a faulty file, two different scenes of one name; a StructureError or
+        ReachError of the reference, which names group or range.
     """
     scenes: dict[str, Scene] = {}
     for name in names or shipped():
         scene = load_scene(name)
         check_names(scene)
-        _check_motion(scene)
+        # Whether it has a closed form, and can follow its driver through a period.
+        turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+        solve(scene, turn, points=(), sliders=(), bound=False)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
                 f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
@@ -38,24 +41,12 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
     return list(scenes.values())
 
 
-def _check_motion(scene: Scene) -> None:
-    """Refuse a scene that has no closed form, or can not follow its driver through a period.
-
-    Raises
-    ------
-    CrankcheckError
-        A StructureError or ReachError of the reference, which names group or range.
-    """
-    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
-    solve(scene, turn, points=(), sliders=(), bound=False)
-
-
 def chosen_engines(names: Sequence[str]) -> list[str]:
     """The named engines, installed all of them; all there are where none is named."""
-    found = list(dict.fromkeys(names or ENGINES))
-    for name in found:
+    engines = list(dict.fromkeys(names or ENGINES))
+    for name in engines:
         engine(name).version()
-    return found
+    return engines
 
 
 def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
@@ -68,9 +59,9 @@ def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[
     """
     for name in names:
         for each in engines:
-            known = list(engine(each).profiles)
-            if name not in known:
-                near = nearest(name, known, 2) or known
+            profiles = list(engine(each).profiles)
+            if name not in profiles:
+                near = nearest(name, profiles, 2) or profiles
                 raise CrankcheckError(
                     f"profile {name!r}: {each} has none of that name; "
                     f"did you mean {' or '.join(near)}?"

@@ -110,9 +110,9 @@ def _complete(variant: Variant) -> dict[str, SettingValue]:
 
 def _refuse_twins(complete: Iterable[tuple[Variant, Mapping[str, SettingValue]]]) -> None:
     """Refuse two variants of an engine that share a name and differ in settings."""
-    seen: dict[tuple[str, str], Mapping[str, SettingValue]] = {}
+    by_name: dict[tuple[str, str], Mapping[str, SettingValue]] = {}
     for variant, settings in complete:
-        if seen.setdefault((variant.engine, variant.name), settings) != settings:
+        if by_name.setdefault((variant.engine, variant.name), settings) != settings:
             raise CrankcheckError(
                 f"variant {variant.name!r}: two of {variant.engine} have that name, and other "
                 "settings; give each a name of its own"

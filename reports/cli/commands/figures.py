@@ -74,23 +74,23 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
             f"scene {strange!r} of the store: not the name of a scene, and so not of a file "
             "either; the store was changed by hand: run `crankcheck sweep` again"
         )
-    found: dict[str, Drawn] = {}
+    figures: dict[str, Drawn] = {}
     for name in names:
         of, over_all = FIGURES[name].of, FIGURES[name].over_all
         if over_all is not None and not scenes and (of is None or len(chosen) > 1):
-            found[name] = partial(over_all, report)
+            figures[name] = partial(over_all, report)
         if of is not None:
-            found |= {f"{name}-{scene}": partial(of, report, scene) for scene in chosen}
-    if not found:
+            figures |= {f"{name}-{scene}": partial(of, report, scene) for scene in chosen}
+    if not figures:
         raise CrankcheckError(
             f"--only {', '.join(names)}: drawn over all scenes, not of one; leave out --scene"
         )
-    return found
+    return figures
 
 
-def _chosen(asked: Sequence[str], known: Iterable[str], option: str, noun: str) -> list[str]:
+def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:
     """The names that were asked for, each once; all where none was."""
-    every = list(known)
+    every = list(names)
     for name in asked:
         if name not in every:
             hint = suggestion(name, every, "there are", 2)

@@ -24,9 +24,9 @@ ENDINGS: dict[Format, tuple[str, ...]] = {
 
 def format_of(text: str) -> Format:
     """A format by its name. Raises CrankcheckError for one that there is not."""
-    for known in ENDINGS:
-        if text.lower() == known:
-            return known
+    for name in ENDINGS:
+        if text.lower() == name:
+            return name
     raise CrankcheckError(f"--format {text!r}: unknown; use {' or '.join(ENDINGS)}")
 
 
@@ -46,7 +46,8 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
         output = Path("report.html")
     if output is not None:
         check_file(output, "-o", ENDINGS[format])
-    if (folder / MATRIX).is_file() and not _swept(folder):
+    swept = any((folder / table).exists() for table in TABLES)
+    if (folder / MATRIX).is_file() and not swept:
         if format == "md":
             raise CrankcheckError(
                 f"{folder}: hard cases alone, which have a page and no Markdown; leave out --format"
@@ -54,11 +55,11 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
         from reports.page.build import stability_page
 
         matrix = read_matrix(folder)
-        text, held = stability_page(matrix), f"{len(matrix.runs)} runs of hard cases"
+        text, content = stability_page(matrix), f"{len(matrix.runs)} runs of hard cases"
     else:
         stored = read_store(folder)
         tell(stored.notice)
-        held = f"{len(stored.cells)} cells"
+        content = f"{len(stored.cells)} cells"
         if format == "md":
             from reports.page.comment import summary
 
@@ -72,13 +73,8 @@ def run_report(folder: Path, output: Path | None, format: Format, console: Conso
         return 0
     write(output, text)
     size = len(text.encode()) / 1e6
-    console.print(f"{output}: {held}, {size:.1f} MB", markup=False, highlight=False)
+    console.print(f"{output}: {content}, {size:.1f} MB", markup=False, highlight=False)
     return 0
-
-
-def _swept(folder: Path) -> bool:
-    """Whether there is anything of a sweep in the folder."""
-    return any((folder / table).exists() for table in TABLES)
 
 
 def _beside(folder: Path) -> Matrix | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -147,24 +146,19 @@ def _write(path: Path, scene: Scene, motion: Motion) -> None:
     ending = path.suffix.lower()
     if ending == ".csv":
         write(path, frame.to_csv(index=False, lineterminator="\n"))
-        return
-    if ending == ".parquet":
+    elif ending == ".parquet":
         # It brings the comparison, which nothing else here needs.
         from reports.judge.frames import parquet
 
         write(path, parquet(frame))
-        return
-    buffer = io.BytesIO()
-    _workbook(
-        buffer,
-        frame,
-        {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()},
-    )
-    write(path, buffer.getvalue())
+    else:
+        write(path, _workbook(frame, scene))
 
 
-def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str]) -> None:
+def _workbook(frame: pd.DataFrame, scene: Scene) -> bytes:
     """A workbook: the motion, and where it comes from."""
+    facts = {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
+    buffer = io.BytesIO()
     with pd.ExcelWriter(buffer, engine="openpyxl") as book:
         shown = frame.rename(columns=clean)
         shown.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
@@ -173,3 +167,4 @@ def _workbook(buffer: io.BytesIO, frame: pd.DataFrame, facts: Mapping[str, str])
         for row in book.sheets["source"].iter_rows():
             for cell in row:
                 cell.data_type = "s"  # a text that begins with "=" is no formula
+    return buffer.getvalue()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -51,13 +51,13 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
         for case, engine_, profile in itertools.product(cases, engines, profiles)
     ]
     with progress_bar(progress, "lines", len(lines)) as advance:
-        held = run_lines(lines, request.jobs, limits, lambda _: advance())
+        graded = run_lines(lines, request.jobs, limits, lambda _: advance())
     matrix = Matrix(
-        facts=_facts(engines),
+        facts=provenance({name: engine(name).version() for name in engines}),
         cases=tuple(case.facts() for case in cases),
-        runs=tuple(run for one in held for run in one.runs),
-        critical=tuple(one.critical for one in held),
-        pictures=tuple(picture for one in held for picture in one.pictures),
+        runs=tuple(run for line in graded for run in line.runs),
+        critical=tuple(line.critical for line in graded),
+        pictures=tuple(picture for line in graded for picture in line.pictures),
     )
     try:
         if request.folder is not None:
@@ -109,14 +109,10 @@ def _single(
     case, code = cases[0], 0
     case.refuse(value)
     for name, profile in itertools.product(engines, profiles):
-        found = run_one(Line(case.name, name, profile), value, limits)
-        show_run(console, case.facts(), found)
-        code = max(code, int(found.outcome not in case.good))
+        run = run_one(Line(case.name, name, profile), value, limits)
+        show_run(console, case.facts(), run)
+        code = max(code, int(run.outcome not in case.good))
     return code
-
-
-def _facts(engines: Sequence[str]) -> Mapping[str, str]:
-    return provenance({name: engine(name).version() for name in engines})
 
 
 def _write(folder: Path, matrix: Matrix) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import replace
 from importlib.metadata import version
 
@@ -55,8 +56,7 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
         check_storage(request.output)
     limits = Limits(request.limit_s)
     works = [space.work(scene, solve(scene, np.zeros(1)).state()) for scene in goal.scenes]
-    bench = Bench(goal, works, limits)
-    try:
+    with closing(Bench(goal, works, limits)) as bench:
         bench.refuse_unsupported(base)
         trials = _searched(request, bench, space, base, progress)
         best = best_of(trials)
@@ -67,8 +67,6 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
         last = best or min(trials, key=lambda trial: trial.error)
         columns = {f"profile {goal.profile}": first, "found": last}
         sides = [Side(title, each, _rows(bench, each)) for title, each in columns.items()]
-    finally:
-        bench.close()
     if request.timing and (taken := times(goal, list(columns.values()), limits)):
         sides = [replace(side, taken=each) for side, each in zip(sides, taken, strict=True)]
     show(console, goal, space, sides)
@@ -136,9 +134,9 @@ def _searched(
 ) -> list[Attempt]:
     """All trials; where they are cut short, what is kept is said."""
     with study_in(request.output, _asked(request, bench, space, base)) as study:
-        there = min(len(attempts(study)), request.budget)
+        done = min(len(attempts(study)), request.budget)
         try:
-            with progress_bar(progress, "trials", request.budget - there) as advance:
+            with progress_bar(progress, "trials", request.budget - done) as advance:
                 plan = Plan(space, base, bench.goal.target, request.budget, request.seed)
                 return search(study, plan, bench.attempt, advance)
         except Stopped:

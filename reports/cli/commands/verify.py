@@ -68,7 +68,8 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("verifying", total=len(cells))
         checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
-    facts = provenance({name: engine(name).version() for name in _engines(cells)})
+    engines = dict.fromkeys(cell.engine for cell in cells)
+    facts = provenance({name: engine(name).version() for name in engines})
     diff = compare(base, run_of(checked, facts, digests), request.factor) if base else None
     try:
         _write(request, Results(checked, facts, digests, diff))
@@ -133,10 +134,6 @@ def passages(cells: Sequence[Cell]) -> list[str]:
     runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in cells}
     notes = (passage_note(scene, duration_s) for (_, duration_s), scene in runs.items())
     return [note for note in dict.fromkeys(notes) if note]
-
-
-def _engines(cells: Sequence[Cell]) -> list[str]:
-    return list(dict.fromkeys(cell.engine for cell in cells))
 
 
 def _baseline(
