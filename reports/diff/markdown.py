@@ -42,11 +42,11 @@ def markdown(diff: Diff, strict: bool = False) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _table(found: Sequence[PrintedRow], room: int) -> str:
+def _table(rows: Sequence[PrintedRow], room: int) -> str:
     """Rows as a table; what is compared are numbers."""
     heads = [head.replace("\n", " ") for head in HEADS]
     heads[-NUMBERS:] = [f"{head}:" for head in heads[-NUMBERS:]]
-    return table(heads, map(_cells, found), room, "rows")
+    return table(heads, map(_cells, rows), room, "rows")
 
 
 def _cells(line: PrintedRow) -> tuple[str, ...]:

@@ -44,12 +44,12 @@ def show(console: Console, diff: Diff, strict: bool = False) -> None:
     console.print(Text("\n".join(footer(diff)), "dim"), highlight=False)
 
 
-def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
+def _table(console: Console, word: str, rows: Sequence[PrintedRow]) -> None:
     """The rows of what is worse, or better, and the reasons of engines that gave up."""
-    if not found:
+    if not rows:
         return
     wide = console.width >= NARROW
-    shown = found[: MOST[word]]
+    shown = rows[: MOST[word]]
     table = plain_table(word, STYLES[word])
     for head in HEADS:
         number = head in ("old", "new", "ratio")
@@ -62,8 +62,8 @@ def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
             *map(Text, (line.scene, line.engine, line.steps, line.quantity, *middle, line.ratio))
         )
     console.print(table)
-    if len(found) > len(shown):
-        more = f"and {len(found) - len(shown)} more rows; --junit FILE names every cell"
+    if len(rows) > len(shown):
+        more = f"and {len(rows) - len(shown)} more rows; --junit FILE names every cell"
         console.print(more, style="dim", highlight=False)
     for text in dict.fromkeys(f"{line.engine}: {line.reason}" for line in shown if line.reason):
         hanging(console, "  ", text)
@@ -72,12 +72,12 @@ def _table(console: Console, word: str, found: Sequence[PrintedRow]) -> None:
 
 def _left_out(console: Console, word: str, cells: Sequence[StoredCell]) -> None:
     """The cells of one run only."""
-    found = left_out(cells)
-    if not found:
+    texts = left_out(cells)
+    if not texts:
         return
     console.print(Text(word, "bold"))
-    for text in found[:LEFT_OUT]:
+    for text in texts[:LEFT_OUT]:
         hanging(console, "  ", text)
-    if len(found) > LEFT_OUT:
-        console.print(f"  and {len(found) - LEFT_OUT} more lines like these", style="dim")
+    if len(texts) > LEFT_OUT:
+        console.print(f"  and {len(texts) - LEFT_OUT} more lines like these", style="dim")
     console.print()

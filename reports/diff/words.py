@@ -13,7 +13,6 @@ from reports.results.changes.runs import CellName, StoredCell, StoredRun, each_o
 
 REASON = 120
 """Characters of the reason that an engine gave for how it ended."""
-Names = Sequence[CellName]
 
 
 @dataclass(frozen=True)
@@ -78,18 +77,18 @@ def left_out(cells: Iterable[StoredCell]) -> list[str]:
 
 def remarks(diff: Diff) -> list[str]:
     """What one must know to read the numbers."""
-    found = [versions(diff), *diff.old.notes]
-    found += [note for note in diff.new.notes if note not in diff.old.notes]
+    texts = [versions(diff), *diff.old.notes]
+    texts += [note for note in diff.new.notes if note not in diff.old.notes]
     scenes = list(dict.fromkeys(cell.name.scene for cell in diff.other_scene))
     if scenes:
         number = count(len(diff.other_scene), "cell")
-        found.append(f"the text of {each_once(scenes, 10)} changed: {number} not compared")
+        texts.append(f"the text of {each_once(scenes, 10)} changed: {number} not compared")
     failed = [pair.new.status for pair in diff.pairs if pair.failed]
     if failed:
-        found.append(f"{len(failed)} of the equal ones failed in both ({each_once(failed)})")
+        texts.append(f"{len(failed)} of the equal ones failed in both ({each_once(failed)})")
     for (engine, variant), changed in other_settings(diff.pairs).items():
-        found.append(f"settings of {engine} {variant} differ: {each_once(changed.values(), 6)}")
-    return [text for text in (*found, cost_text(diff)) if text]
+        texts.append(f"settings of {engine} {variant} differ: {each_once(changed.values(), 6)}")
+    return [text for text in (*texts, cost_text(diff)) if text]
 
 
 def footer(diff: Diff) -> list[str]:
@@ -106,17 +105,17 @@ def footer(diff: Diff) -> list[str]:
 
 def origin(run: StoredRun) -> str:
     """Where a run comes from."""
-    told = ("crankcheck", "processor", "made")
-    facts = [f"{name} {run.facts[name]}" for name in told if run.facts.get(name)]
+    names = ("crankcheck", "processor", "made")
+    facts = [f"{name} {run.facts[name]}" for name in names if run.facts.get(name)]
     return ", ".join([run.label, *facts])
 
 
 def versions(diff: Diff) -> str:
     """The versions of every engine, old and new, where that can be said of all its cells."""
-    found: dict[str, dict[str, None]] = {}
+    by_engine: dict[str, list[str]] = {}
     for pair in diff.pairs:
-        found.setdefault(pair.name.engine, {})[_versions(pair)] = None
-    return "; ".join(f"{engine} {each_once(each)}" for engine, each in found.items())
+        by_engine.setdefault(pair.name.engine, []).append(_versions(pair))
+    return "; ".join(f"{engine} {each_once(each)}" for engine, each in by_engine.items())
 
 
 def told(pair: CellPair) -> str:
@@ -140,10 +139,9 @@ def size(error: float) -> str:
 
 def ratio(change: ErrorChange) -> str:
     """New over old in three digits; a dash where one of them is no number, or the old one 0."""
-    found = change.ratio
-    if not math.isfinite(found) or not math.isfinite(change.old):
+    if not math.isfinite(change.ratio) or not math.isfinite(change.old):
         return "-"
-    return f"{found:#.3g}".removesuffix(".")
+    return f"{change.ratio:#.3g}".removesuffix(".")
 
 
 def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -> PrintedRow:
@@ -189,7 +187,7 @@ def _several(diff: Diff) -> frozenset[str]:
     """The engines with several pairs of versions, and ``turns`` where cells differ in those."""
     pairs = {(pair.name.engine, _versions(pair)) for pair in diff.pairs}
     engines = [engine for engine, _ in pairs]
-    found = {engine for engine in engines if engines.count(engine) > 1}
+    several = {engine for engine in engines if engines.count(engine) > 1}
     if len({pair.name.turns for pair in diff.pairs}) > 1:
-        found.add("turns")
-    return frozenset(found)
+        several.add("turns")
+    return frozenset(several)

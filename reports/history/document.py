@@ -37,9 +37,9 @@ def table_text(results: Sequence[VersionResult]) -> str:
     writer = csv.DictWriter(buffer, COLUMNS, lineterminator="\n")
     writer.writeheader()
     for result in results:
-        here = {"engine": result.asked.engine, "version": result.version}
+        version = {"engine": result.asked.engine, "version": result.version}
         if not result.cells:
-            writer.writerow(here | {"status": "not measured", "reason": result.reason})
+            writer.writerow(version | {"status": "not measured", "reason": result.reason})
         for cell in result.cells:
             lines = list(_lines(cell, changes.get((result.version, cell.name), [])))
             about = {
@@ -49,7 +49,7 @@ def table_text(results: Sequence[VersionResult]) -> str:
                 "status": cell.status,
                 "reason": cell.reason,
             }
-            writer.writerows(here | about | line for line in lines or [{}])
+            writer.writerows(version | about | line for line in lines or [{}])
     return buffer.getvalue()
 
 

@@ -103,9 +103,9 @@ def ranking(names: Sequence[CellName], changes: Sequence[FollowedChange]) -> lis
     largest errors first where nothing changed."""
 
     def rank(name: CellName) -> tuple[float, float, float]:
-        here = [change for change in changes if change.cell == name]
-        places = [change for change in here if not change.about.rate]
-        worse = max((c.factor for c in here if c.stands_out and c.word() == "worse"), default=0.0)
+        own = [change for change in changes if change.cell == name]
+        places = [change for change in own if not change.about.rate]
+        worse = max((c.factor for c in own if c.stands_out and c.word() == "worse"), default=0.0)
         most = max((c.factor for c in places if c.changed), default=0.0)
         return -worse, -most, -max((c.new for c in places), default=0.0)
 

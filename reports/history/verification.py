@@ -122,5 +122,5 @@ def _not_run(ended: Ended) -> str:
     lines = [line.strip() for line in ended.complaint.splitlines() if line.strip()]
     if ended.code < 0:
         return f"not run: the process was ended by signal {-ended.code}"
-    told = lines[-1].removeprefix("crankcheck: ") if lines else f"exit code {ended.code}"
-    return shortened(f"not run: {told}")
+    why = lines[-1].removeprefix("crankcheck: ") if lines else f"exit code {ended.code}"
+    return shortened(f"not run: {why}")

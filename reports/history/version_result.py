@@ -86,11 +86,11 @@ class VersionResult:
     def misnamed(self) -> bool:
         """Whether the engine gives itself another number than its package has."""
         try:
-            told = Version(self.calls_itself)
+            told_version = Version(self.calls_itself)
         except InvalidVersion:
             return bool(self.calls_itself)
         # Post and local parts belong to the package; the engine does not know them.
-        return Version(told.base_version) != Version(self.asked.version.base_version)
+        return Version(told_version.base_version) != Version(self.asked.version.base_version)
 
 
 def read_version(folder: Path) -> StoredRun:

@@ -69,10 +69,10 @@ def refuse_singular(scene: Scene, duration_s: float) -> None:
 def passage_note(scene: Scene, duration_s: float) -> str:
     """The change points that a run goes through, for its reader; "" where there is none."""
     time_s = np.linspace(0.0, duration_s, GRID)
-    found = solve(scene, time_s, links=(), points=(), sliders=(), bound=False).crossings
-    if not found:
+    crossings = solve(scene, time_s, links=(), points=(), sliders=(), bound=False).crossings
+    if not crossings:
         return ""
-    return f"{scene.name}: passes {_places(found)}; the reference continues the smooth branch"
+    return f"{scene.name}: passes {_places(crossings)}; the reference continues the smooth branch"
 
 
 def continued_note(motion: Motion) -> str:
@@ -119,11 +119,11 @@ def _places(crossings: Iterable[Crossing]) -> str:
     for crossing in crossings:
         degrees = f"{math.degrees(crossing.driver_rad):.6g}"
         angles.setdefault(crossing.dyad, []).append(degrees)
-    found = [
+    words = [
         f"the change point{'s' * (len(each) > 1)} of {key} at driver {', '.join(each)} deg"
         for key, each in angles.items()
     ]
-    return " and ".join(found)
+    return " and ".join(words)
 
 
 def _valleys(sine: Array) -> Mask:

@@ -52,15 +52,15 @@ class Variant(BaseModel):
         """One variant per combination of the listed values, named after them."""
         lists = {k: v if isinstance(v, list) else [v] for k, v in self.settings.items()}
         several = [name for name, values in lists.items() if len(values) > 1]
-        found = []
+        variants = []
         for values in itertools.product(*lists.values()):
             chosen = dict(zip(lists, values, strict=True))
             named = several if self.name else list(chosen)
             parts = [self.name or self.profile, *(f"{k}={_short(chosen[k])}" for k in named)]
-            found.append(
+            variants.append(
                 self.model_copy(update={"name": ", ".join(parts), "settings": dict(chosen)})
             )
-        return found
+        return variants
 
     @property
     def chosen(self) -> dict[str, SettingValue]:
@@ -113,8 +113,8 @@ def _fault(fault: ErrorDetails) -> str:
     parts = [str(part) for part in fault["loc"] if not str(part).startswith(("list[", "constr"))]
     key, message = ".".join(parts) or "study", fault["msg"]
     if fault["type"] == "extra_forbidden":
-        known = Variant.model_fields if parts[0] == "variants" else Study.model_fields
-        return f"{key}: unknown key; {suggestion(parts[-1], known, 'known:', 1, 0.6)}"
+        keys = Variant.model_fields if parts[0] == "variants" else Study.model_fields
+        return f"{key}: unknown key; {suggestion(parts[-1], keys, 'known:', 1, 0.6)}"
     if fault["type"] == "missing":
         return f"{key}: missing; add it"
     if not parts:

@@ -21,6 +21,7 @@ from reports.store.lock import is_written
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.part import UnreadableError
 from reports.store.schema import unnested
+from reports.workers.isolated import Limits
 
 
 @dataclass(frozen=True)
@@ -148,18 +149,10 @@ def stored_keys(folder: Path, name: str) -> set[str]:
     return {str(key) for (key,) in _rows(folder, name, "key")}
 
 
-@dataclass(frozen=True)
-class Ending:
-    """A cell that was ended: the limits of time [s] and memory [GB] that it had."""
-
-    limit_s: float
-    memory_gb: float
-
-
-def stored_endings(folder: Path) -> dict[str, Ending]:
-    """The cells that timed out or crashed, by key."""
+def stored_endings(folder: Path) -> dict[str, Limits]:
+    """The limits that the cells had that timed out or crashed, by key."""
     rows = _rows(folder, "cells", "key", "status", "limit_s", "memory_gb")
-    return {k: Ending(t, m) for k, status, t, m in rows if status in ("timeout", "crashed")}
+    return {k: Limits(t, m) for k, status, t, m in rows if status in ("timeout", "crashed")}
 
 
 def stored_costs(folder: Path) -> dict[str, float]:

@@ -15,7 +15,7 @@ from models.errors import CrankcheckError
 from reports.judge.cell import Cell, unfinished
 from reports.judge.rows import cell_row
 from reports.plan.grid import Task
-from reports.store.reader import Ending, stored_costs, stored_endings, stored_keys
+from reports.store.reader import stored_costs, stored_endings, stored_keys
 from reports.store.writer import Writer
 from reports.sweep.cluster import on_cluster
 from reports.sweep.measured import (
@@ -68,7 +68,7 @@ class Running:
         """
         ended = stored_endings(self.writer.folder)
         asked = {task.key for task in self.tasks}  # others would not come back
-        over = {key for key in asked & set(ended) if again or self._was_tighter(ended[key])}
+        over = {key for key in asked & set(ended) if again or self._wider_than(ended[key])}
         self.writer.forget(over)
         there = stored_keys(self.writer.folder, "cells")
         missing = [task for task in self.tasks if task.key not in there]
@@ -132,9 +132,9 @@ class Running:
         row = {**names, **outcome.row, "version": task.version}
         self.writer.cell(row, outcome.errors, outcome.trace)
 
-    def _was_tighter(self, end: Ending) -> bool:
+    def _wider_than(self, ended: Limits) -> bool:
         """Whether a cell that was ended would have more time or memory now."""
-        return end.limit_s < self.limits.time_s or end.memory_gb < self.limits.memory_gb
+        return ended.time_s < self.limits.time_s or ended.memory_gb < self.limits.memory_gb
 
     def _refuse_other_versions(self, task: Task, outcome: Outcome) -> None:
         """A worker elsewhere may have other packages than the key of the cell says.

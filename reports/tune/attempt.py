@@ -125,20 +125,20 @@ class Bench:
             The process crashed or took too long, or the engine can not hold the scene.
         """
         cell = self.goal.cell(scene, settings, steps_per_turn)
-        found = self._isolated.call(measured, cell, False)
-        if isinstance(found, Lost):
-            raise LostError(scene.name, found.status, found.reason)
-        if found.row["status"] == "unsupported":
-            raise LostError(scene.name, "unsupported", str(found.row["reason"]))
-        return found.row
+        outcome = self._isolated.call(measured, cell, False)
+        if isinstance(outcome, Lost):
+            raise LostError(scene.name, outcome.status, outcome.reason)
+        if outcome.row["status"] == "unsupported":
+            raise LostError(scene.name, "unsupported", str(outcome.row["reason"]))
+        return outcome.row
 
     def refuse_unsupported(self, settings: Settings) -> None:
         """Raise CrankcheckError for a scene that the engine can not hold."""
         for scene in self.goal.scenes:
             cell = self.goal.cell(scene, settings, self.goal.least)
-            found = self._isolated.call(measured, cell, False)
-            if isinstance(found, Outcome) and found.row["status"] == "unsupported":
-                raise CrankcheckError(f"{cell.label}: {found.row['reason']}")
+            outcome = self._isolated.call(measured, cell, False)
+            if isinstance(outcome, Outcome) and outcome.row["status"] == "unsupported":
+                raise CrankcheckError(f"{cell.label}: {outcome.row['reason']}")
 
     def attempt(self, settings: Settings, best: Attempt | None) -> Attempt:
         """Find the coarsest step that reaches the target.

@@ -105,7 +105,7 @@ def _overrides(
     texts: Sequence[str], engines: Sequence[str]
 ) -> dict[str, dict[str, StudyValue | list[StudyValue]]]:
     """`mujoco.iterations=2,10` and the like, by engine."""
-    found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
+    overrides: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
     for text in texts:
         name, equals, values = text.partition("=")
         owner, dot, setting = name.strip().partition(".")
@@ -118,8 +118,8 @@ def _overrides(
                 f"--set {text!r}: {owner!r} is no engine of this sweep; it has {', '.join(engines)}"
             )
         several: list[StudyValue] = [value.strip() for value in values.split(",")]
-        found.setdefault(owner, {})[setting.strip()] = several
-    return found
+        overrides.setdefault(owner, {})[setting.strip()] = several
+    return overrides
 
 
 def _steps(text: str | None) -> list[float]:
@@ -143,8 +143,8 @@ def _summary(console: Console, folder: Path, laid: Grid, done: Done) -> None:
         console.print(f"  {sum(reasons.values())} {status}, such as", highlight=False)
         for reason, _ in reasons.most_common(2):
             console.print(f"    {reason}", markup=False, highlight=False)
-    told = harmless(f"stored in {folder}; next: crankcheck report {folder} -o report.html")
-    console.print(told, markup=False)
+    stored = f"stored in {folder}; next: crankcheck report {folder} -o report.html"
+    console.print(harmless(stored), markup=False)
 
 
 def _recommend(console: Console, stored: Stored) -> None:
@@ -152,7 +152,6 @@ def _recommend(console: Console, stored: Stored) -> None:
     console.print()
     older = len(stored.cells) - sum(len(line.cells) for line in lines(stored))
     if older:
-        told = "cells of earlier runs, whose names stand for others now"
-        console.print(f"left out: {older} {told}")
+        console.print(f"left out: {older} cells of earlier runs, whose names stand for others now")
     console.print(recommendation_table(recommendations(stored), console.width))
     console.print(noise_line(stored), highlight=False)
