@@ -53,13 +53,8 @@ class EngineVersion:
 
 
 def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
-    """The versions that a user named, each once, the oldest first.
-
-    Raises
-    ------
-    CrankcheckError
-        A text that is no version.
-    """
+    """The versions that a user named, each once, the oldest first. Raises CrankcheckError for a
+    text that is no version."""
     versions = set()
     for text in texts:
         try:

@@ -48,13 +48,8 @@ class Grid:
 
 
 def grid(study: Study) -> Grid:
-    """Lay out a study.
-
-    Raises
-    ------
-    CrankcheckError
-        A scene, engine, profile, setting or step that can not be run.
-    """
+    """Lay out a study. Raises CrankcheckError for a scene, engine, profile, setting or step that
+    can not be run."""
     scenes = chosen_scenes(study.scenes)
     texts = scene_texts(study.scenes)
     variants = [one for variant in study.variants for one in variant.each()]

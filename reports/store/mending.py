@@ -18,12 +18,8 @@ def mend(folder: Path, store: Examined) -> list[str]:
     """Move what is damaged into the folder ``damaged``, and keep of a cell that is there several
     times the row that counts; gives the lines that say so.
 
-    Such a row is there twice in between, which readers know, and at no moment not at all.
-
-    Raises
-    ------
-    CrankcheckError
-        A file that can not be moved.
+    Such a row is there twice in between, which readers know, and at no moment not at all. Raises
+    CrankcheckError for a file that can not be moved.
     """
     for here in store.folders.values():
         for name, part in here.parts.items():

@@ -70,7 +70,7 @@ def _lines(goal: Goal, space: SearchSpace, sides: Sequence[Side]) -> list[tuple[
     if len(goal.scenes) > 1:
         lines.append(("worst in", [side.attempt.scene or "-" for side in sides]))
     for column, label in OTHERS.items():
-        lines.append((label, [_number(_worst(side.rows, column)) for side in sides]))
+        lines.append((label, [_worst(side.rows, column) for side in sides]))
     over = "" if len(goal.scenes) == 1 else f", {len(goal.scenes)} scenes"
     if all(side.taken for side in sides):
         taken = [side.taken for side in sides if side.taken]
@@ -96,10 +96,12 @@ def _ratio(sides: Sequence[Side]) -> str:
     return f"{what}: {ratio:.2f} measured ({words}; A/A noise {noise:.1%}), {model}"
 
 
-def _worst(rows: Sequence[Row], column: str) -> float | None:
-    """The largest of a column over the scenes."""
+def _worst(rows: Sequence[Row], column: str) -> str:
+    """The largest of a column over the scenes; a dash where there is none."""
     numbers = [float(value) for row in rows if isinstance(value := row[column], float)]
-    return max(numbers, key=lambda x: x if math.isfinite(x) else math.inf, default=None)
+    if not numbers:
+        return "-"
+    return f"{max(numbers, key=lambda x: x if math.isfinite(x) else math.inf):.1e}"
 
 
 def _error(attempt: Attempt, target: float) -> str:
@@ -107,10 +109,6 @@ def _error(attempt: Attempt, target: float) -> str:
     if math.isinf(attempt.error):
         return "none"
     return f"{attempt.error:.2e}" + ("" if attempt.reached else " OVER")
-
-
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1e}"
 
 
 def footer(goal: Goal, how: str, facts: Mapping[str, str]) -> str:

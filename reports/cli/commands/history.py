@@ -29,12 +29,7 @@ FILES = ("history.csv", "history.md")
 
 def run_history(request: HistoryRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
-
-    Raises
-    ------
-    CrankcheckError
-        Anything about the request that can be told before installing.
-    """
+    Raises CrankcheckError for what can be told of the request before installing."""
     if request.engine not in ENGINES:
         engine(request.engine)  # raises, with the near names
     versions = wanted(request.engine, request.versions)

@@ -24,12 +24,7 @@ IN_FOLDER = ("selftest.csv", "selftest.json")
 
 def selftest(request: SelftestRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes.
-
-    Raises
-    ------
-    CrankcheckError
-        An unknown engine or fault, or an output that can not be written.
-    """
+    Raises CrankcheckError for an unknown engine or fault, and an output that can not be written."""
     engines = chosen_engines(request.engines)
     faults = chosen_faults(request.faults, engines)
     check_outputs({"--csv": request.csv, "--json": request.json}, request.folder, IN_FOLDER)

@@ -33,12 +33,8 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
     """Do what of the study is not done yet; returns the exit code, 0.
 
     A cell that failed is a row with its status and reason, and no failure of the sweep. What is
-    damaged in the store is mended, and told.
-
-    Raises
-    ------
-    CrankcheckError
-        Anything about the request that can be told before running.
+    damaged in the store is mended, and told. Raises CrankcheckError for what can be told of the
+    request before running.
     """
     limits = checked_limits(request.limit_s, request.memory_gb)
     study = asked(request)

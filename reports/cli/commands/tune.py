@@ -42,13 +42,8 @@ MOST_BUDGET, MOST_SEED, COARSEST = 100_000, 2**32 - 1, 1.0
 
 
 def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
-    """Do it; returns the exit code: 0 when settings reach the target, 1 when none do.
-
-    Raises
-    ------
-    CrankcheckError
-        Anything about the request that can be told before the search.
-    """
+    """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises
+    CrankcheckError for what can be told of the request before the search."""
     goal = _goal(request)
     base = resolved(profile_of(engine(goal.engine), goal.profile), None)
     space = search_space(goal.engine).around(base)

@@ -51,13 +51,7 @@ class Results:
 
 def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 within, 1 out of tolerance or worse than the baseline, 2 not
-    to be run.
-
-    Raises
-    ------
-    CrankcheckError
-        Anything about the request that can be told before running.
-    """
+    to be run. Raises CrankcheckError for what can be told of the request before running."""
     cells = plan(request)
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
     check_outputs(files, request.folder, IN_FOLDER)
@@ -140,12 +134,7 @@ def _baseline(
     request: VerifyRequest, cells: Sequence[Cell], digests: Mapping[str, str]
 ) -> StoredRun | None:
     """The cells of the baseline that are to be run now, read before anything is written over it.
-
-    Raises
-    ------
-    CrankcheckError
-        No stored run, or nothing to compare with.
-    """
+    Raises CrankcheckError for no stored run, and for nothing to compare with."""
     if request.baseline is None:
         return None
     base = read_run(request.baseline)
