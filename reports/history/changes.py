@@ -133,9 +133,8 @@ def _ended(step: VersionStep) -> list[Headline]:
             key = (pair.name.variant, pair.old.status, pair.new.status)
             groups.setdefault(key, []).append(pair)
     lines = []
-    for (profile, was, now), members in groups.items():
-        first = members[0]
-        more = f" and {count(len(members) - 1, 'more scene')}" if len(members) > 1 else ""
+    for (profile, was, now), (first, *others) in groups.items():
+        more = f" and {count(len(others), 'more scene')}" if others else ""
         why = f": {first.new.reason[:120]}" if first.new.reason else ""
         text = (
             f"{step.after.version} ends as {now}, {step.before.version} as {was}, in "

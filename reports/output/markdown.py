@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
+from html import escape
 
 SPECIAL = re.compile(r"([\\`*_\[\]<>|~#&$])")
 """What would start a cell, tag, link, reference, entity, formula or emphasis."""
@@ -74,6 +75,4 @@ def _row(cells: Iterable[str]) -> str:
 
 def _inside_html(text: str) -> str:
     """A text on one line of HTML."""
-    words = " ".join(text.split())
-    words = words.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
-    return words.replace("@", f"@{JOINER}")
+    return escape(" ".join(text.split()), quote=False).replace("@", f"@{JOINER}")

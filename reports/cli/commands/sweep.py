@@ -53,8 +53,7 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
         tell(writer.mended)
         running = Running(writer, laid.tasks, limits, facts, progress)
         try:
-            keep, jobs = request.keep_trajectories, request.jobs
-            done = running.errors(keep, jobs, client, request.again)
+            done = running.errors(request.keep_trajectories, request.jobs, client, request.again)
             if request.timing:
                 done = running.timings(done)
         except Stopped:
