@@ -11,7 +11,7 @@ from reports.output.markdown import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.lines import named
+from reports.results.lines import called, named
 from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
@@ -121,26 +121,26 @@ def _recommended(report: Report) -> str:
 
 def _recommendation(one: Recommendation) -> tuple[str, ...]:
     """A row."""
-    target = short_target(one.target)
-    if one.variant is None:
-        return (target, one.engine, "none", *[""] * 5)
-    times = (f"{one.us_per_step:.2f}", f"{1e3 * one.s_per_turn:.3g}")
-    steps, error = f"{one.steps_per_turn:g}", short(one.worst_error)
-    name = label((one.engine, one.variant, one.drive)).removeprefix(f"{one.engine} ")
-    return (target, one.engine, name, steps, *times, error, str(one.worst_scene))
+    target, best = short_target(one.target), one.best
+    if one.reason:
+        return (target, best.engine, "none", *[""] * 5)
+    times = (f"{best.us_per_step:.2f}", f"{1e3 * best.s_per_turn:.3g}")
+    steps, error = f"{best.steps_per_turn:g}", short(best.worst_error)
+    name = called(best.variant, best.drive)
+    return (target, best.engine, name, steps, *times, error, str(best.worst_scene))
 
 
 def _remark(one: Recommendation) -> str:
     """What is to be said of a recommendation; empty where there is nothing."""
-    which = f"{one.engine}, {short_target(one.target)}"
+    which = f"{one.best.engine}, {short_target(one.target)}"
     if one.reason:
         return f"{which}: none; {one.reason}"
     if not one.caution:
         return ""
-    other = one.steadier
-    instead = (
-        f"; {other.nearest} at {other.steps_per_turn:g} holds at finer ones too" if other else ""
-    )
+    instead = ""
+    if one.steadier is not None:
+        other = one.steadier.best
+        instead = f"; {other.variant} at {other.steps_per_turn:g} holds at finer ones too"
     return f"{which}: holds at this step, {one.caution}{instead}"
 
 
@@ -148,8 +148,9 @@ def _snippets(report: Report) -> Iterator[str]:
     """Text to be copied, each behind a click; once where it is for several targets."""
     groups: dict[tuple[str, str, str, float], list[Recommendation]] = {}
     for one in report.recommendations:
-        if one.variant is not None:
-            same = (one.engine, one.variant, one.drive, one.steps_per_turn)
+        if not one.reason:
+            best = one.best
+            same = (best.engine, best.variant, best.drive, best.steps_per_turn)
             groups.setdefault(same, []).append(one)
     told = []
     for (engine, variant, _, steps), group in groups.items():

@@ -21,22 +21,19 @@ class Candidate:
     """Settings that may be recommended, with what was measured of them.
 
     ``errors`` are place errors by scene [pure] of the runs that ended well, ``faults`` say why a
-    scene has none. ``us_per_step`` (of the least and of the median repeat) and ``s_per_turn`` are
-    geometric means over the scenes, in which each counts the same however slow it is; NaN where a
-    scene was not timed.
+    scene has none. ``us_per_step`` and ``s_per_turn`` are geometric means over the scenes, in
+    which each counts the same however slow it is; NaN where a scene was not timed.
     """
 
     engine: str
     variant: str
     versions: tuple[str, ...]
-    profile: str
     drive: Drive
     settings: Mapping[str, SettingValue] = field(repr=False)
     steps_per_turn: float
     errors: Mapping[str, float] = field(repr=False)
     faults: Mapping[str, str] = field(repr=False)
     us_per_step: float
-    us_per_step_median: float
     s_per_turn: float
 
     @property
@@ -119,14 +116,12 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
                 engine=first.engine,
                 variant=first.variant,
                 versions=versions,
-                profile=first.profile,
                 drive=first.drive,
                 settings=first.settings,
                 steps_per_turn=steps,
                 errors={scene: float(row["place_pure"]) for scene, row in good.items()},
                 faults={scene: fault for scene, fault in faults.items() if fault},
                 us_per_step=mean(float(row["us_per_step"]) for row in complete),
-                us_per_step_median=mean(float(row["us_per_step_median"]) for row in complete),
                 s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
             )
         )

@@ -35,7 +35,6 @@ class Line:
     engine: str
     variant: str
     version: str
-    profile: str
     drive: Drive
     line: str
     settings: Mapping[str, SettingValue]
@@ -139,7 +138,6 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
         engine=str(first["engine"]),
         variant=str(first["variant"]),
         version=str(first["version"]),
-        profile=str(first["profile"]),
         drive=cast(Drive, str(first["drive"])),
         line=str(first["line"]),
         settings=json.loads(str(first["asked"])),

@@ -47,26 +47,24 @@ def recommendation_table(
 def _row(
     one: Recommendation, mark: str, wide: bool, *, steadier: bool = False
 ) -> Sequence[str | Text]:
-    """One row; of what comes nearest where nothing reaches the target."""
-    none = one.variant is None
-    name = (
-        Text("none", "red")
-        if none
-        else Text(("or " if steadier else "") + called(str(one.variant), one.drive))
-    )
-    if mark:
-        name.append(f" [{mark}]", "yellow")
-    first = ["", ""] if steadier else [short_target(one.target), one.engine]
+    """One row, with dashes where nothing reaches the target."""
+    best = one.best
+    name = Text(("or " if steadier else "") + called(best.variant, best.drive))
     numbers = [
-        f"{one.steps_per_turn:g}",
-        _number(one.us_per_step, 2),
-        _number(1e3 * one.s_per_turn, 3),
-        short(one.worst_error),
+        f"{best.steps_per_turn:g}",
+        f"{best.us_per_step:.2f}",
+        f"{1e3 * best.s_per_turn:.3f}",
+        short(best.worst_error),
     ]
     if wide:
         least = "-" if one.least_steps is None else f"{math.ceil(one.least_steps - 1e-6)}"
-        numbers += [escape(str(one.worst_scene)), least]
-    return [*first, name, *(["-"] * len(numbers) if none else numbers)]
+        numbers += [escape(str(best.worst_scene)), least]
+    if one.reason:
+        name, numbers = Text("none", "red"), ["-"] * len(numbers)
+    if mark:
+        name.append(f" [{mark}]", "yellow")
+    first = ["", ""] if steadier else [short_target(one.target), best.engine]
+    return [*first, name, *numbers]
 
 
 def short_target(target: float) -> str:
@@ -90,18 +88,14 @@ def _mark(note: str, notes: list[str]) -> str:
     return str(notes.index(note) + 1) if note else ""
 
 
-def _number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
-
-
 def noise_line(stored: Stored) -> str:
     """How well costs are known, in a line; and whose times are left out."""
-    found = pairs(stored)
-    if found.empty:
+    apart = pairs(stored)
+    if apart.empty:
         return "No cell was timed: no costs, and no recommendation rests on one."
     text = (
-        f"Noise of costs on {machine(stored.cells)}: {SHARE:.0%} of {len(found)} A/A pairs differ "
-        f"by less than {noise(stored):.1%}, half of them by less than {found.median():.1%}; "
+        f"Noise of costs on {machine(stored.cells)}: {SHARE:.0%} of {len(apart)} A/A pairs differ "
+        f"by less than {noise(stored):.1%}, half of them by less than {apart.median():.1%}; "
         "costs that differ by less than the former are called equal."
     )
     others = left_out(stored.cells)

@@ -46,29 +46,6 @@ def broken(one: Candidate, known: Sequence[Candidate], target: float) -> str:
     return f"not at {first.steps_per_turn:g} steps a turn: {few(_missed(first, target), SHOWN)}"
 
 
-def about(known: Sequence[Candidate], best: Candidate, target: float) -> tuple[str, ...]:
-    """A sentence on each other variant: its cheapest step, or why it has none."""
-    groups: dict[tuple[str, str], list[Candidate]] = {}
-    for one in known:
-        if not one.same_settings(best):
-            groups.setdefault((one.variant, one.drive), []).append(one)
-    return tuple(_about(group, best, target) for group in groups.values())
-
-
-def _about(group: Sequence[Candidate], best: Candidate, target: float) -> str:
-    good = [one for one in group if one.reaches(target)]
-    if not good:
-        one = nearest(group, target)
-        where = f"at {one.steps_per_turn:g} steps a turn"
-        return f"{called(one.variant, one.drive)} does not: {where} {_shortfall(one, target)}"
-    cheapest = min(good, key=_cost)
-    ratio = cheapest.s_per_turn / best.s_per_turn
-    if not math.isfinite(ratio):
-        return f"{cheapest.name}, not timed on every scene"
-    caution = broken(cheapest, group, target)
-    return f"{cheapest.name}, x {ratio:.2f} in time" + (f" (but {caution})" if caution else "")
-
-
 def _shortfall(one: Candidate, target: float) -> str:
     """On how many scenes, and what hinders the others; the nearest where it is on none."""
     if not one.reaching(target) and one.errors:

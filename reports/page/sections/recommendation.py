@@ -49,11 +49,11 @@ def _rows(report: Report, one: Recommendation, period_s: float) -> Iterator[Reco
 
 def _row(report: Report, one: Recommendation, period_s: float) -> RecommendationRow:
     """A recommendation with its look and its text to be copied."""
-    name = (one.engine, one.variant or one.nearest, one.drive)
+    best = one.best
     return {
         "one": one,
-        "look": report.looks.get(name),
-        "called": called(one.variant or one.nearest, one.drive),
+        "look": report.looks.get((best.engine, best.variant, best.drive)),
+        "called": called(best.variant, best.drive),
         "steadier": False,
         "cheapest": False,
         "equal": _first(one.equal_to),
@@ -63,14 +63,14 @@ def _row(report: Report, one: Recommendation, period_s: float) -> Recommendation
 
 def _cheapest(report: Report, one: Recommendation) -> bool:
     """Whether no other engine reaches the target in less or, within the noise, the same time."""
-    others = [
-        other.s_per_turn
-        for other in report.recommendations
-        if other.target == one.target and other.engine != one.engine and other.variant is not None
-    ]
-    if one.variant is None or len(report.engines) < 2:
+    if one.reason or len(report.engines) < 2:
         return False
-    return one.s_per_turn * (1.0 + report.noise) < min(others, default=math.inf)
+    others = [
+        other.best.s_per_turn
+        for other in report.recommendations
+        if other.target == one.target and other is not one and not other.reason
+    ]
+    return one.best.s_per_turn * (1.0 + report.noise) < min(others, default=math.inf)
 
 
 def _first(names: Sequence[str], most: int = 2) -> str:

@@ -97,7 +97,7 @@ def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommend
     """What a user takes away of an engine."""
     own = [row for row in rows if row.look.engine == engine]
     told = [_held(row) for row in own if row.gated]
-    told.append(_cheapest([one for one in chosen if one.engine == engine]))
+    told.append(_cheapest([one for one in chosen if one.best.engine == engine]))
     told += [_shipped(row) for row in own if row.look.variant == "as-shipped" and not row.gated]
     return " ".join(text for text in told if text)
 
@@ -134,11 +134,11 @@ def _cheapest(chosen: Sequence[Recommendation]) -> str:
     asked = next((one for one in chosen if one.target == ASKED), None)
     if asked is None:
         return ""
-    if asked.variant is None:
+    if asked.reason:
         return f"For an error of {error_text(ASKED, 1)} on every scene: {asked.reason}."
     return (
-        f"Cheapest for an error of {error_text(ASKED, 1)} on every scene: {asked.variant} at "
-        f"{asked.steps_per_turn:g} steps a turn, {duration(asked.s_per_turn)} a turn."
+        f"Cheapest for an error of {error_text(ASKED, 1)} on every scene: {asked.best.variant} at "
+        f"{asked.best.steps_per_turn:g} steps a turn, {duration(asked.best.s_per_turn)} a turn."
     )
 
 

@@ -102,7 +102,7 @@ def test_engines_stand_side_by_side_for_each_target_and_the_cheapest_is_named() 
         *line("a", "tuned", second_order(1e-1), engine="pymunk"),
     ]
     found = build_recommendation(Report(stored(rows))).words["rows"]
-    told = [(row["one"].target, row["one"].engine, row["cheapest"]) for row in found]
+    told = [(row["one"].target, row["one"].best.engine, row["cheapest"]) for row in found]
     assert told[:2] == [(1e-2, "mujoco", True), (1e-2, "pymunk", False)]
     assert told[2:4] == [(1e-3, "mujoco", True), (1e-3, "pymunk", False)]
     assert found[3]["one"].variant is None  # 1.6e-3 is the best of it
