@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -62,18 +61,17 @@ class Reached:
 
     steps_per_turn: float
     s_per_turn: float
-    how: Literal["along the fit", "at the coarsest step"]
 
 
 def reached(line: Line, target: float) -> Reached | None:
     """Where a line comes to an error of at most ``target`` and stays below it; None: nowhere."""
     dt_s = line.fit.dt_for(target)
     if dt_s is not None:
-        return Reached(line.period_s / dt_s, _cost(line, dt_s), "along the fit")
+        return Reached(line.period_s / dt_s, _cost(line, dt_s))
     runs = line.fit.runs
     if runs and all(error <= target for _, error in runs):
         coarsest = runs[-1][0]
-        return Reached(line.period_s / coarsest, _cost(line, coarsest), "at the coarsest step")
+        return Reached(line.period_s / coarsest, _cost(line, coarsest))
     return None
 
 

@@ -49,10 +49,10 @@ class LineFit:
     one. ``stable_from_s`` is the coarsest step of those (NaN: none); ``failed`` the status of the
     finest run that did not end well, "" where all did, and ``fails_from_s`` its step.
 
-    ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` and ``coefficient``
-    where the error follows no power of the step. Uncertainties hold the true value two times in
-    three, and more often next to a floor, where they allow floor and step to add or to oppose in
-    any proportion (`reports.results.fits.floor_fit`). ``floor_below`` is the largest floor that two
+    ``floor`` and ``floor_error`` are NaN where no floor is seen, ``order`` where the error
+    follows no power of the step. Uncertainties hold the true value two times in three, and more
+    often next to a floor, where they allow floor and step to add or to oppose in any proportion
+    (`reports.results.fits.floor_fit`). ``floor_below`` is the largest floor that two
     such uncertainties allow, NaN where the line says nothing about it; a floor that works against
     the step, rather than adds to it, may hide up to about the finest error where none is seen.
     ``scatter`` is by what share of itself an error is off its curve. ``curve`` is None where no
@@ -62,7 +62,6 @@ class LineFit:
     dt_s: tuple[float, ...]
     error: tuple[float, ...]
     statuses: tuple[str, ...]
-    rounding: float
     kind: Kind
     used: tuple[bool, ...]
     measured: tuple[bool, ...]
@@ -74,7 +73,6 @@ class LineFit:
     floor: float = math.nan
     floor_error: float = math.nan
     floor_below: float = math.nan
-    coefficient: float = math.nan
     scatter: float = math.nan
     curve: Curve | None = None
 
@@ -140,7 +138,6 @@ def fit_line(
         tuple(dt_s),
         tuple(error),
         tuple(ends),
-        rounding,
         "too few",
         used=(False,) * len(ends),
         measured=_mask(found.well, len(ends)),
@@ -186,7 +183,6 @@ def _with_floor(line: LineFit, dts: Array, errors: Array, curve: Curve) -> LineF
         floor=curve.floor,
         floor_error=_farthest(curve.floor, near.floor),
         floor_below=far.floor[1],
-        coefficient=curve.coefficient if told else math.nan,
     )
 
 
@@ -204,7 +200,6 @@ def _without_floor(line: LineFit, fit: tuple[int, ...], dts: Array, errors: Arra
         order=curve.order,
         order_error=more / math.sqrt(float(np.sum((x - x.mean()) ** 2))),
         floor_below=min(far.floor[1], float(errors.min())) if falls else math.nan,
-        coefficient=curve.coefficient,
     )
 
 

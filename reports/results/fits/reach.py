@@ -21,34 +21,19 @@ def reach(
     ``error_at``, or where that is None a straight line in the logarithms. None where the finest
     error is over the target already, and where none is: the step is then outside of the knots.
     """
-    for (fine, below), (coarse, above) in itertools.pairwise(knots):
-        if below > target:
-            return None
-        if above >= target:
-            return _between(fine, below, coarse, above, target, error_at)
-    return None
-
-
-def _between(
-    fine: float,
-    below: float,
-    coarse: float,
-    above: float,
-    target: float,
-    error_at: Callable[[float], float | None],
-) -> float:
-    """Where the error rises through ``target``, by halving the interval."""
-
-    def error(dt_s: float) -> float:
-        fitted = error_at(dt_s)
-        if fitted is not None:
-            return fitted
-        return interpolate((fine, coarse), (below, above), dt_s) or 0.0
-
+    pairs = itertools.pairwise(knots)
+    rise = next((x for x in pairs if x[0][1] > target or x[1][1] >= target), None)
+    if rise is None or rise[0][1] > target:
+        return None
+    (fine, below), (coarse, above) = rise
     low, high = math.log(fine), math.log(coarse)
     for _ in range(STEPS_OF_HALVING):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if error(math.exp(middle)) <= target else (low, middle)
+        dt_s = math.exp(middle)
+        error = error_at(dt_s)
+        if error is None:
+            error = interpolate((fine, coarse), (below, above), dt_s) or 0.0
+        low, high = (middle, high) if error <= target else (low, middle)
     return math.exp(low)
 
 

@@ -1,8 +1,6 @@
-"""What a fitted line says, in words: the verdict, and the numbers behind it."""
+"""What a fitted line says, in words."""
 
 from __future__ import annotations
-
-import math
 
 from reports.output.numbers import count, short
 from reports.results.fits.forms import LEVEL
@@ -34,24 +32,6 @@ def words(fit: LineFit, unit: str, period_s: float) -> str:
         return told
     below = _per_turn(fit.stable_from_s, period_s)
     return f"{told}; {FAILS.get(fit.failed, 'fails')} below {below}"
-
-
-def numbers(fit: LineFit, unit: str, period_s: float) -> str:
-    """Order and floor with their uncertainties, and the steps that they stand on; "" without a
-    fit."""
-    if fit.curve is None:
-        return ""
-    fine, coarse = fit.used_range_s
-    order = f"order {fit.order:.2f} +- {fit.order_error:.2f}"
-    texts = [order if math.isfinite(fit.order) else "no order"]
-    if fit.kind == "floor":
-        texts = [f"floor {short(fit.floor)} +- {short(fit.floor_error)} {unit}", *texts]
-        if fit.curve.alignment < 0.0:
-            texts.append("floor and step work against each other")
-    elif fit.kind == "order":
-        texts.append(f"no floor down to {short(fit.finest_error)} {unit}")
-    texts.append(f"{sum(fit.used)} steps, {period_s / coarse:.4g} to {_per_turn(fine, period_s)}")
-    return ", ".join(texts)
 
 
 def _told(fit: LineFit, unit: str) -> str:

@@ -64,7 +64,6 @@ def test_the_time_to_a_target_is_taken_along_the_fit() -> None:
     assert time_to(line, 1e-4) == pytest.approx(2e-6 * 90 * math.sqrt(10), rel=1e-3)
     found = reached(line, 1e-4)
     assert found is not None
-    assert found.how == "along the fit"
     assert found.steps_per_turn == pytest.approx(90 * math.sqrt(10), rel=1e-3)
 
 
@@ -74,7 +73,6 @@ def test_nothing_is_extrapolated_to_either_side() -> None:
     assert reached(line, 1e-6) is None
     at_most = reached(line, 1e-2)  # 1e-3 at the coarsest
     assert at_most is not None
-    assert at_most.how == "at the coarsest step"
     assert at_most.steps_per_turn == pytest.approx(90)
     assert time_to(line, 1e-2) == pytest.approx(2e-6 * 90)
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from reports.judge.three_steps import AT_ROUNDING
 from reports.results.fits.line import Kind, LineFit, fit_line
 
 STEPS = 1e-2 / 2.0 ** np.arange(6)
@@ -28,7 +29,8 @@ def test_a_power_of_the_step_has_its_order_and_no_floor(order: float, number: in
     found = fit_line(STEPS[:number], line(order)[:number], rounding=0.0)
     assert found.kind == "order"
     assert found.order == pytest.approx(order)
-    assert found.coefficient == pytest.approx(10.0)
+    assert found.curve is not None
+    assert found.curve.coefficient == pytest.approx(10.0)
     assert found.order_error < 0.1
     assert all(found.used)
     assert math.isnan(found.floor)
@@ -45,7 +47,8 @@ def test_a_floor_under_a_power_of_the_step_is_found(order: float, share: float) 
     assert found.kind == "floor"
     assert found.floor == pytest.approx(floor, rel=1e-3)
     assert found.order == pytest.approx(order, abs=0.01)
-    assert found.coefficient == pytest.approx(10.0, rel=0.05)
+    assert found.curve is not None
+    assert found.curve.coefficient == pytest.approx(10.0, rel=0.05)
     assert found.floor_error < 0.2 * floor
     assert floor < found.floor_below < 1.5 * floor
 
@@ -63,13 +66,13 @@ def test_an_error_that_no_step_changes_is_a_floor_of_no_order() -> None:
     assert found.floor == pytest.approx(7.5e-4)
     assert found.floor_error < 0.05 * 7.5e-4
     assert math.isnan(found.order)
-    assert math.isnan(found.coefficient)
 
 
 def test_an_error_that_comes_up_to_its_floor_is_a_floor() -> None:
     found = fit_line(STEPS, 1e-2 * (1.0 - 20.0 * STEPS))
     assert (found.kind, found.floor) == ("floor", pytest.approx(1e-2, rel=1e-3))
-    assert found.coefficient < 0.0
+    assert found.curve is not None
+    assert found.curve.coefficient < 0.0
 
 
 @pytest.mark.parametrize("number", [1, 2])
@@ -249,12 +252,17 @@ ERRORS: dict[str, tuple[Kind, np.ndarray]] = {
 def same(fit: LineFit, other: LineFit, error: float, dt: float) -> None:
     """Two fits are one, but for units of error and of time."""
     assert (fit.kind, fit.used) == (other.kind, other.used)
-    per = error / dt**fit.order if math.isfinite(fit.order) else math.nan
     scales = {"order": 1.0, "order_error": 1.0, "floor": error, "floor_error": error,
-              "floor_below": error, "coefficient": per, "scatter": 1.0}  # fmt: skip
+              "floor_below": error, "scatter": 1.0}  # fmt: skip
     for name, scale in scales.items():
         expected = scale * getattr(fit, name)
         assert getattr(other, name) == pytest.approx(expected, rel=1e-4, nan_ok=True), name
+    assert (fit.curve is None) == (other.curve is None)
+    if fit.curve is not None and other.curve is not None:
+        ends = zip(fit.used_range_s, other.used_range_s, strict=True)
+        for own, others in ends:
+            assert other.curve.at(others) == pytest.approx(error * fit.curve.at(own), rel=1e-4)
+            assert others == pytest.approx(dt * own)
 
 
 @settings(max_examples=15, deadline=None, derandomize=True, database=None)
@@ -267,7 +275,7 @@ def test_units_of_error_and_time_do_not_matter(name: str, error: float, dt: floa
     kind, errors = ERRORS[name]
     fit = fit_line(STEPS, errors)
     assert fit.kind == kind
-    same(fit, fit_line(dt * STEPS, error * errors, rounding=error * fit.rounding), error, dt)
+    same(fit, fit_line(dt * STEPS, error * errors, rounding=error * AT_ROUNDING), error, dt)
 
 
 @settings(max_examples=15, deadline=None, derandomize=True, database=None)

@@ -10,7 +10,7 @@ import pytest
 
 from reports.output.numbers import short
 from reports.results.fits.line import fit_line
-from reports.results.fits.words import numbers, words
+from reports.results.fits.words import words
 
 PERIOD = 0.36
 PER_TURN = np.array([45, 90, 180, 360, 720, 1440])
@@ -76,17 +76,6 @@ def test_what_falls_slower_than_any_integrator_is_no_plain_order() -> None:
     assert said([4e-3, 3e-3, 2.4e-3]) == (
         "order 0.4: slower than any integrator, a floor may be near"
     )  # fmt: skip
-
-
-def test_numbers_name_their_uncertainty_and_the_steps_they_stand_on() -> None:
-    fit = fit_line(STEPS, 10.0 * STEPS**2, statuses=["diverged", *["ok"] * 5])
-    assert numbers(fit, "rad", PERIOD) == (
-        f"order 2.00 +- {fit.order_error:.2f}, no floor down to 6.2e-7 rad, "
-        "5 steps, 90 to 1440 steps per turn"
-    )
-    fit = fit_line(STEPS, 7.5e-4 + 10.0 * STEPS**2)
-    assert numbers(fit, "rad", PERIOD).startswith(f"floor 7.5e-4 +- {short(fit.floor_error)} rad")
-    assert numbers(fit_line(STEPS, [0.0] * 6), "rad", PERIOD) == ""
 
 
 @pytest.mark.parametrize(
