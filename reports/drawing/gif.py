@@ -108,24 +108,15 @@ def turn_of(scene: Scene, samples: int) -> Motion:
 def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) -> None:
     """One position with the paths of the points behind it."""
     low, high = box_of(path)
-    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal", adjustable="box")
-    for name, point in path.points.items():
-        if name not in scene.ground:
-            axes.plot(*point.position.T, color=GUIDE, linewidth=0.8, zorder=1)
-    colours = colours_of(scene)
-    for slider in scene.sliders.values():
-        rail = GUIDE if slider.on == GROUND else colours[slider.on]
-        draw_slider(axes, slider, rail, motion, path, index, size)
-    for name, link in scene.links.items():
-        corners = [motion.points[point].position[index] for point in link.points]
-        draw_link(axes, corners, colours[name])
+    size = draw_bodies(axes, scene, motion, path, index, 0.8)
     blocks = {slider.point for slider in scene.sliders.values()}
     for name, point in motion.points.items():
-        letter = (0.055 if name in blocks else 0.025) * size  # clear of the block
-        draw_pin(axes, name, point.position[index], name in scene.ground, size, letter)
+        aside = (0.055 if name in blocks else 0.025) * size  # clear of the block
+        x, y = (float(each) + aside for each in point.position[index])
+        axes.annotate(name, (x, y), fontsize=8, color=INK, zorder=6)
     theta = math.degrees(motion.links[scene.driver.link].theta[index])
     axes.set_title(f"{scene.name}   {scene.driver.link} {theta:.0f} deg", fontsize=9, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
@@ -151,7 +142,37 @@ def box_of(path: Motion) -> tuple[Array, Array]:
     return np.asarray(low - spare), np.asarray(high + spare)
 
 
-def draw_link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
+def draw_bodies(
+    axes: Axes, scene: Scene, motion: Motion, path: Motion, index: int, line: float
+) -> float:
+    """Paths (lines of ``line`` points), guides, blocks, links and pins, without a letter.
+
+    They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
+    what moves [m].
+    """
+    low, high = box_of(path)
+    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    for name, point in path.points.items():
+        if name not in scene.ground:
+            axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
+    colours = colours_of(scene)
+    for slider in scene.sliders.values():
+        rail = GUIDE if slider.on == GROUND else colours[slider.on]
+        _slider(axes, slider, rail, motion, path, index, size)
+    for name, link in scene.links.items():
+        ends = [motion.points[point].position[index] for point in link.points]
+        _link(axes, ends, colours[name])
+    for name, point in motion.points.items():
+        place = point.position[index]
+        if name in scene.ground:  # on a triangle
+            foot = 0.035 * size
+            corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+            axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
+        axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
+    return size
+
+
+def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
     """A bar between two points; with more points a plate."""
     places = np.array(corners)
     if len(places) > 2:
@@ -160,20 +181,7 @@ def draw_link(axes: Axes, corners: Sequence[Array], colour: str) -> None:
     axes.plot(*places.T, color=colour, linewidth=4, solid_capstyle="round", zorder=3)
 
 
-def draw_pin(
-    axes: Axes, name: str, place: Array, grounded: bool, size: float, letter: float
-) -> None:
-    """A pin with its letter aside; one of the ground stands on a triangle."""
-    if grounded:
-        foot = 0.035 * size
-        corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
-        axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
-    axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
-    aside = (float(place[0]) + letter, float(place[1]) + letter)
-    axes.annotate(name, aside, fontsize=8, color=INK, zorder=6)
-
-
-def draw_slider(
+def _slider(
     axes: Axes,
     slider: Slider,
     colour: str,
@@ -185,10 +193,8 @@ def draw_slider(
     """The guide as far as the slider runs on it, and the block."""
     travel = path.sliders[slider.name].displacement
     place = motion.points[slider.point].position[index]
-    angle, along = slider.direction_rad, float(motion.sliders[slider.name].displacement[index])
-    if slider.on != GROUND:
-        angle += float(motion.links[slider.on].theta[index])
-    direction = np.array([math.cos(angle), math.sin(angle)])
+    along = float(motion.sliders[slider.name].displacement[index])
+    direction = guide_direction(slider, motion, index)
     reach = 0.06 * size
     ends = [travel.min() - reach - along, travel.max() + reach - along]
     rail = place + np.outer(ends, direction)
@@ -197,3 +203,11 @@ def draw_slider(
     across = np.array([-direction[1], direction[0]])
     corners = place + half @ np.array([direction, across])
     axes.fill(*corners.T, facecolor="white", edgecolor=INK, linewidth=1.2, zorder=4)
+
+
+def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
+    """The unit vector along a guide at a sample."""
+    angle = slider.direction_rad
+    if slider.on != GROUND:
+        angle += float(motion.links[slider.on].theta[index])
+    return np.array([math.cos(angle), math.sin(angle)])

@@ -12,9 +12,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -71,42 +73,20 @@ def sheet(
     grid = panels.rows * panels.height + (panels.rows - 1) * down
     height = EDGE + head + panels.top + grid + panels.bottom + legend + foot + EDGE
     figure = Figure(figsize=(width, height), dpi=200)
-    found = []
-    for row in range(panels.rows):
-        for column in range(panels.columns):
-            left = panels.left + column * (inner + across)
-            top = EDGE + head + panels.top + row * (panels.height + down)
-            box = (left, height - top - panels.height, inner, panels.height)
-            found.append(figure.add_axes(_share(box, width, height)))
+    for row, column in itertools.product(range(panels.rows), range(panels.columns)):
+        left = panels.left + column * (inner + across)
+        top = EDGE + head + panels.top + row * (panels.height + down)
+        bottom = height - top - panels.height
+        figure.add_axes((left / width, bottom / height, inner / width, panels.height / height))
+    edge = EDGE / width
     if title:
-        figure.text(
-            EDGE / width,
-            1 - EDGE / height,
-            cut(title, room, LARGE),
-            size=LARGE,
-            va="top",
-        )
+        figure.text(edge, 1 - EDGE / height, cut(title, room, LARGE), size=LARGE, va="top")
     if entries:
-        _legend(figure, entries, number, (EDGE / width, (EDGE + foot + legend) / height), room)
+        _legend(figure, entries, number, (edge, (EDGE + foot + legend) / height), room)
     if lines:
-        figure.text(
-            EDGE / width,
-            EDGE / height,
-            "\n".join(lines),
-            size=TINY,
-            color=QUIET,
-            va="bottom",
-            linespacing=1.25,
-        )
-    return figure, found
-
-
-def _share(
-    box: tuple[float, float, float, float], width: float, height: float
-) -> tuple[float, float, float, float]:
-    """A box [inch] as shares of the figure."""
-    left, bottom, across, up = box
-    return left / width, bottom / height, across / width, up / height
+        look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "bottom", "linespacing": 1.25}
+        figure.text(edge, EDGE / height, "\n".join(lines), **look)
+    return figure, figure.axes
 
 
 def _columns(labels: Sequence[str], room: float) -> int:
