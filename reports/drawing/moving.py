@@ -69,7 +69,7 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
         "sliders": [_slider(scene, name, motion) for name in scene.sliders],
         "box": [*places.min(axis=0), *places.max(axis=0)],
         "turning": not isinstance(scene.driver.law, Oscillating),
-        "crank_deg": np.degrees(_first_turn(driver)),
+        "crank_deg": np.degrees(first_turn(driver)),
         "places": packed(_rows(points.values(), len(time_s))),
         "angles": packed(_stacked([motion.links[name].theta for name in links], len(time_s))),
     }
@@ -116,19 +116,18 @@ def _slider(scene: Scene, name: str, motion: Motion) -> dict[str, object]:
     }
 
 
-def _first_turn(angle_rad: Array) -> Array:
+def first_turn(angle_rad: Array) -> Array:
     """Angles that start in the first turn: whole turns are taken off."""
     return np.asarray(angle_rad - math.tau * math.floor(float(angle_rad[0]) / math.tau + 1e-9))
 
 
 def _rows(vectors: Iterable[Array], samples: int) -> Array:
     """Vectors (T, 2) as rows: x and y of each."""
-    found = [vector.T for vector in vectors]
-    return np.vstack(found) if found else np.zeros((0, samples))
+    return _stacked([row for vector in vectors for row in vector.T], samples)
 
 
 def _stacked(series: list[Array], samples: int) -> Array:
-    return np.vstack(series) if series else np.zeros((0, samples))
+    return np.reshape(series, (-1, samples)) if series else np.zeros((0, samples))
 
 
 def _at(time_s: Array, own_s: Array, row: Array, period_s: float) -> Array:

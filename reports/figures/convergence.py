@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -28,7 +29,7 @@ from reports.results.lines import Line, Named, named
 from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
-from reports.results.points import PLACE, around, ends, fitted, measured, of_scene, scenes_of
+from reports.results.points import PLACE, around, ends, fitted, measured
 
 STEP = "time step [s]"
 PER_TURN = "steps per turn"
@@ -113,8 +114,8 @@ def _failed(
 
 def _strip(lines: Sequence[Line]) -> float:
     """The share of a panel's height that failed runs take, where there are any."""
-    by_scene = [sum(bool(ends(line)) for line in of_scene(lines, s)) for s in scenes_of(lines)]
-    return min(0.075 * max(by_scene), 0.3)
+    failed = Counter(line.scene for line in lines if ends(line))
+    return min(0.075 * max(failed.values(), default=0), 0.3)
 
 
 def _limits(axes: Sequence[Axes], lines: Sequence[Line], unit_s: float) -> None:

@@ -8,7 +8,6 @@ them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from models.array import Array
+from reports.drawing.moving import first_turn
 from reports.figures.grids import grid
 from reports.figures.style import INK, TINY, power_of_ten
 from reports.output.numbers import short
@@ -40,26 +39,26 @@ LOOKS: dict[str, tuple[str, CurveStyle]] = {
     "geometric": ("floor and discretisation, not told apart", {"color": INK, "dashes": (7, 1.5)}),
     "gap": ("closure: gap of the pins / L", {"color": "#4a90c9", "dashes": (5, 1.2, 1, 1.2)}),
 }
-"""Legend and line of each part, in the order in which they are drawn."""
+"""Legend and line of each part, in the order of `Parts.curves`."""
 
 
-def draw(report: Report, scene: str) -> Figure | None:
+def draw(report: Report, name: str) -> Figure | None:
     """The panels of a scene; None where there is nothing to split."""
-    lines, known = report.lines_of(scene), report.scenes[scene]
-    body = None if known is None else worst_body(lines, report.stored.trace, known.longest_m)
-    if known is None or body is None:
+    lines, scene = report.lines_of(name), report.scenes[name]
+    body = None if scene is None else worst_body(lines, report.stored.trace, scene.longest_m)
+    if scene is None or body is None:
         return None
-    found = [_cell(line, split(line, report.stored.trace, body, known.longest_m)) for line in lines]
+    cells = [_cell(line, split(line, report.stored.trace, body, scene.longest_m)) for line in lines]
     unit = "rad" if body.scale == 1.0 else "L"
     titles = [label(named(line)) for line in lines]
-    steps = {one.steps_per_turn for one in found if one is not None}
+    steps = {one.steps_per_turn for one in cells if one is not None}
     at = " and ".join(f"{n:g}" for n in sorted(steps))
-    title = f"Error over the crank angle: {scene}, {body.name}, {at} steps per turn"
-    labels = (f"angle of {known.driver.link} [deg]", f"error of {body.name} [unit in the panel]")
-    drawn = {name for one in found if one is not None for name, _ in curves(one.parts)}
+    title = f"Error over the crank angle: {name}, {body.name}, {at} steps per turn"
+    labels = (f"angle of {scene.driver.link} [deg]", f"error of {body.name} [unit in the panel]")
+    drawn = {part for one in cells if one is not None for part in one.parts.curves}
     entries = [(Line2D([], [], **LOOKS[n][1]), LOOKS[n][0]) for n in LOOKS if n in drawn]
     figure, axes = grid(titles, title, labels, entries, notes(report, lines), apart=True)
-    for line, one, panel in zip(lines, found, axes, strict=True):
+    for line, one, panel in zip(lines, cells, axes, strict=True):
         if one is None:
             panel.set(xticks=[], yticks=[])
             panel.text(0.5, 0.5, ends(line) or "no trace", ha="center", transform=panel.transAxes)
@@ -79,16 +78,8 @@ class ShownCell:
 
     @property
     def scale(self) -> float:
-        largest = max(float(np.max(np.abs(curve))) for _, curve in curves(self.parts))
+        largest = max(float(np.max(np.abs(curve))) for curve in self.parts.curves.values())
         return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
-
-
-def curves(parts: Parts) -> Iterator[tuple[str, Array]]:
-    """The parts that there are, by the names of `LOOKS`; what is told apart is not drawn whole."""
-    for name in LOOKS:
-        curve = getattr(parts, name)
-        if curve is not None and not (name == "geometric" and parts.floor is not None):
-            yield name, curve
 
 
 def _cell(line: Line, found: Split) -> ShownCell | None:
@@ -107,9 +98,8 @@ def _cell(line: Line, found: Split) -> ShownCell | None:
 
 def _panel(axes: Axes, cell: ShownCell, unit: str) -> None:
     """The curves of a cell over the angle of the driver, from its first turn on."""
-    driver = cell.parts.driver_rad
-    turn = np.degrees(driver - math.tau * math.floor(driver[0] / math.tau + 1e-9))
-    for name, curve in curves(cell.parts):
+    turn = np.degrees(first_turn(cell.parts.driver_rad))
+    for name, curve in cell.parts.curves.items():
         axes.plot(turn, curve / cell.scale, **LOOKS[name][1])
     axes.set_xlim(float(turn.min()), float(turn.max()))
     axes.xaxis.set_major_locator(MultipleLocator(90.0) if np.ptp(turn) > 180 else MaxNLocator(4))

@@ -24,7 +24,7 @@ from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.pareto import front, front_over_all
-from reports.results.points import PLACE, around, ends, scenes_of, timed
+from reports.results.points import PLACE, around, ends, timed
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"
@@ -121,7 +121,7 @@ def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
 
 def _entries(lines: Sequence[Line], known: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
     """The legend: a variant each; how runs ended that have no point, where it is one scene."""
-    single = len(scenes_of(lines)) == 1
+    single = len({line.scene for line in lines}) == 1
     found: dict[Named, tuple[Artist, str]] = {}
     for line in lines:
         name = named(line)

@@ -105,7 +105,7 @@ def render(report: Report, sections: Sequence[Section]) -> str:
             count(len(report.scenes), "scene"),
             count(len(report.cells), "cell"),
         ),
-        made=max((str(run.get("started", "")) for run in stored_runs(report)), default=""),
+        made=max((str(run.get("started", "")) for run in report.stored.manifest.runs), default=""),
         first="verdict",
         looks=list(report.looks.values()),
     )
@@ -124,7 +124,7 @@ def assembled(head: Head, sections: Sequence[Section]) -> str:
     late = "\n".join(_script(name) for name in names)
     plotly = _plotly() if any(one.plotly for one in sections) else ""
     styles = dict.fromkeys(["page.css", *(style for one in sections for style in one.styles)])
-    looks = [_shape(look) for look in head.looks]
+    looks = [{**vars(look), "name": look.name} for look in head.looks]
     return environment.get_template("page.html").render(
         policy=policy([script for script in (early, plotly, late) if script]),
         style=Markup("\n".join(_asset(name) for name in styles)),
@@ -138,16 +138,6 @@ def assembled(head: Head, sections: Sequence[Section]) -> str:
         ],
         head=head,
     )
-
-
-def stored_runs(report: Report) -> Sequence[dict[str, object]]:
-    """The runs that filled the store."""
-    return [dict(run) for run in report.stored.manifest.runs]
-
-
-def _shape(look: Look) -> dict[str, object]:
-    """What the scripts need of a look."""
-    return {**vars(look), "name": look.name}
 
 
 @cache

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.output.numbers import error_text
-from reports.stability.matrix import OUTCOMES, CaseFacts, Critical, Graded, Matrix, Outcome
+from reports.stability.matrix import OUTCOMES, CaseFacts, Graded, Matrix, Outcome
 from reports.stability.table import LETTERS
 
 SIGNS: Mapping[str, str] = {str(name): letter for name, letter in LETTERS.items()} | {
@@ -120,11 +120,14 @@ def heat(matrix: Matrix, pictured: frozenset[int] = frozenset()) -> Heat:
     numbered: dict[tuple[str, HeatKey], list[tuple[int, Graded]]] = {}
     for number, run in enumerate(matrix.runs):
         numbered.setdefault((run.case, (run.engine, run.profile)), []).append((number, run))
-    words = {(one.case, (one.engine, one.profile)): one for one in matrix.critical}
+    words = {(one.case, (one.engine, one.profile)): one.words for one in matrix.critical}
     groups: dict[str, tuple[HeatRow, ...]] = {}
     for case in matrix.cases:
         strips = tuple(
-            _strip(case, numbered.get((case.name, x), []), words.get((case.name, x)), pictured)
+            Strip(
+                tuple(_cells(case, numbered.get((case.name, x), []), pictured)),
+                words.get((case.name, x), ""),
+            )
             for x in lines
         )
         row = HeatRow(case, strips, ", ".join(case.good))
@@ -139,17 +142,6 @@ def _held(strips: Sequence[Strip]) -> str:
     run = [s for s in strips if any(cell.number is not None for cell in s.cells)]
     held = sum(all(cell.held for cell in s.cells if cell.number is not None) for s in run)
     return f"holds {held} of {len(run)} throughout"
-
-
-def _strip(
-    case: CaseFacts,
-    runs: Sequence[tuple[int, Graded]],
-    critical: Critical | None,
-    pictured: frozenset[int],
-) -> Strip:
-    """A case in one column."""
-    cells = tuple(_cells(case, runs, pictured))
-    return Strip(cells, "" if critical is None else critical.words)
 
 
 def _cells(

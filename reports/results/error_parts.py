@@ -70,6 +70,15 @@ class Parts:
     floor: Array | None = None
     discretisation: Array | None = None
 
+    @property
+    def curves(self) -> dict[str, Array]:
+        """The parts that there are, by name; what is told apart is not there whole."""
+        names = ("total", "drive", "floor", "discretisation", "geometric", "gap")
+        every = {name: getattr(self, name) for name in names}
+        if self.floor is not None:
+            del every["geometric"]
+        return {name: curve for name, curve in every.items() if curve is not None}
+
 
 @dataclass(frozen=True)
 class Split:
@@ -218,29 +227,25 @@ def _parts(
     trace: Trace, body: CurveBody, longest_m: float, limit: _Extrapolated | None, period_s: float
 ) -> Parts:
     """The parts of one cell, at the instants where all of them are known."""
-    total = trace[body.series] / body.scale
-    time_s, driver, gap = trace["time_s"], trace["driver_rad"], trace["gap"] / longest_m
+    series = {
+        "time_s": trace["time_s"],
+        "driver_rad": trace["driver_rad"],
+        "total": trace[body.series] / body.scale,
+        "gap": trace["gap"] / longest_m,
+    }
     logged = trace.get(f"geometric.{body.series}")
     if logged is None:
-        return Parts(time_s, driver, total, gap)
+        return Parts(**series)
     geometric = logged / body.scale
-    parts = Parts(time_s, driver, total, gap, drive=total - geometric, geometric=geometric)
+    series |= {"drive": series["total"] - geometric, "geometric": geometric}
     if limit is None:
-        return parts
-    here, there = shared(time_s, limit.time_s, period_s)
+        return Parts(**series)
+    here, there = shared(series["time_s"], limit.time_s, period_s)
     if len(here) < SHARED:
-        return parts
+        return Parts(**series)
+    series = {name: values[here] for name, values in series.items()}
     floor = limit.error[there]
-    return Parts(
-        time_s=time_s[here],
-        driver_rad=driver[here],
-        total=total[here],
-        gap=gap[here],
-        drive=(total - geometric)[here],
-        geometric=geometric[here],
-        floor=floor,
-        discretisation=geometric[here] - floor,
-    )
+    return Parts(**series, floor=floor, discretisation=series["geometric"] - floor)
 
 
 def shared(a_s: Array, b_s: Array, period_s: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

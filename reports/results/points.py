@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import pandas as pd
 
@@ -51,19 +51,10 @@ def fitted(line: Line) -> str:
 
 def around(values: Iterable[float], least: float = 1.6, spare: float = 0.2) -> tuple[float, float]:
     """Limits of a logarithmic axis around values, some room beside them [decades]."""
-    known = [math.log10(value) for value in values]
-    low, high = (min(known), max(known)) if known else (-0.5, 0.5)
+    powers = [math.log10(value) for value in values]
+    low, high = (min(powers), max(powers)) if powers else (-0.5, 0.5)
     more = max(least - (high - low), 0.0) / 2 + spare
     return 10.0 ** (low - more), 10.0 ** (high + more)
-
-
-def of_scene(lines: Sequence[Line], scene: str | None) -> list[Line]:
-    """The lines of a scene; all of them for None."""
-    return [line for line in lines if scene in (None, line.scene)]
-
-
-def scenes_of(lines: Sequence[Line]) -> list[str]:
-    return list(dict.fromkeys(line.scene for line in lines))
 
 
 def _positive(values: pd.Series[float]) -> pd.Series[bool]:

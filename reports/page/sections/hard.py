@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from reports.drawing.packed import embedded
@@ -29,20 +30,18 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
     drawn = _drawn(matrix, room)
     shown = [number for number, _ in drawn]
     found = heat(matrix, frozenset(shown))
-    engines: dict[str, int] = {}
-    for column in found.columns:
-        engines[column.engine] = engines.get(column.engine, 0) + 1
     known = {case.name: case for case in matrix.cases}
+    meanings = {str(name): words for name, words in MEANINGS.items()}
     return Section(
         anchor="hard",
         title="Hard cases",
         template="hard.html",
         words={
             "columns": found.columns,
-            "engines": engines,
+            "engines": Counter(column.engine for column in found.columns),
             "groups": found.groups,
             "legend": [
-                (sign(name), kind(name), name, _meaning(name), number)
+                (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
                 for name, number in outcomes_seen(matrix).items()
             ],
             "shades": [f"below {error_text(SHADES[0], 1)}", *map(_from, SHADES)],
@@ -67,12 +66,6 @@ def lighter(matrix: Matrix, section: Section, over: int) -> Section:
     assert section.embedded is not None
     held = len(embedded([section.embedded["drawings"], section.embedded["pictures"]]))
     return hard(matrix, held - over)
-
-
-def _meaning(outcome: str) -> str:
-    """What an outcome means, in words."""
-    known = (meaning for name, meaning in MEANINGS.items() if name == outcome)
-    return next(known, "not known to this page")
 
 
 def _from(error: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +16,14 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.describe.facts import facts
 from reports.describe.law import describe_law
-from reports.drawing.moving import displacements, drawing, drawn_links, instants, moving_points
+from reports.drawing.moving import (
+    displacements,
+    drawing,
+    drawn_links,
+    first_turn,
+    instants,
+    moving_points,
+)
 from reports.drawing.packed import packed, size_of
 from reports.output.numbers import error_text
 from reports.page.sections.base import Section
@@ -47,15 +54,13 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
         },
         embedded={
             "scenes": [_DrawnScene(report, scene, sizes, held).embedded() for scene in scenes],
-            "judged": sorted({report.look(x).number for x in report.lines if _judged(x)}),
+            "judged": sorted(
+                {report.look(x).number for x in report.lines if x.cells["gated"].all()}
+            ),
         },
         scripts=("legend.js", "charts.js", "mechanism.js", "stage.js", "parts.js", "motion.js"),
         plotly=True,
     )
-
-
-def _judged(line: Line) -> bool:
-    return bool(line.cells["gated"].all())
 
 
 def _sizes(report: Report, scene: Scene) -> dict[str, int]:
@@ -140,29 +145,18 @@ class _DrawnScene:
         """The curves of one cell, and the number of their axis."""
         if parts is None:
             return None
-        rows: Mapping[str, Array | None] = {
-            "total": parts.total,
-            "drive": parts.drive,
-            "floor": parts.floor,
-            "discretisation": parts.discretisation,
-            "geometric": parts.geometric if parts.floor is None else None,
-            "gap": parts.gap,
-        }
-        there = {name: row for name, row in rows.items() if row is not None}
         axis = json.dumps(self._axis(parts), default=float)
         return {
-            "names": list(there),
-            "curves": packed(np.vstack(list(there.values()))),
+            "names": list(parts.curves),
+            "curves": packed(np.vstack(list(parts.curves.values()))),
             "axis": self.axes.setdefault(axis, len(self.axes)),
         }
 
     def _axis(self, parts: Parts) -> dict[str, object]:
         """The crank angle [deg], from its first turn on, and the part of the period [%]."""
-        angle = parts.driver_rad
-        turn = angle - math.tau * math.floor(float(angle[0]) / math.tau + 1e-9)
         part = (parts.time_s - parts.time_s[0]) / self.scene.driver.law.period_s
         return {
-            "angle": [round(float(a), 3) for a in np.degrees(turn)],
+            "angle": [round(float(a), 3) for a in np.degrees(first_turn(parts.driver_rad))],
             "part": [round(100.0 * float(p), 3) for p in part],
         }
 

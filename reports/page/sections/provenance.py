@@ -30,7 +30,11 @@ def build(report: Report) -> Section:
             "damage": report.stored.notice,
             "other_processors": left_out(report.stored.cells),
             "settings": [_settings(report, engine) for engine in report.engines],
-            "cells": [_cell(report, line, row) for line in report.lines for row in _rows(line)],
+            "cells": [
+                {"look": report.look(line), **row}
+                for line in report.lines
+                for row in line.cells.to_dict("records")
+            ],
             "scenes": report.stored.manifest.scenes,
         },
     )
@@ -61,12 +65,3 @@ def _settings(report: Report, engine: str) -> dict[str, object]:
         values = [value_text(line.settings.get(name)) for line in variants.values()]
         rows.append((name, [(value, value != known) for value in values]))
     return {"engine": engine, "looks": list(variants), "usual": first.name, "rows": rows}
-
-
-def _rows(line: Line) -> list[dict[str, object]]:
-    return [{str(k): v for k, v in row.items()} for row in line.cells.to_dict("records")]
-
-
-def _cell(report: Report, line: Line, row: Mapping[str, object]) -> dict[str, object]:
-    """A cell as a row of the table of all cells."""
-    return {"look": report.look(line), **row}
