@@ -19,15 +19,15 @@ FULL_TURN = math.tau - 1e-9
 def facts(scene: Scene, structure: Structure) -> list[str]:
     """Grashof class and transmission angles of a four-bar; the driver's range where it cannot turn
     fully; swing or stroke and time ratio of every output between two limit positions."""
-    found = []
+    lines = []
     if [group.kind for group in structure.groups] == ["RRR"]:
         with contextlib.suppress(StructureError):  # two links that stand still, or turn as one
-            found.append(_grashof(FourBar.of(scene)))
+            lines.append(_grashof(FourBar.of(scene)))
     spans = reach(scene)
     if sum(end - start for start, end in spans) < FULL_TURN:
         words = " and ".join(f"{_deg(a)} to {_deg(b)} deg" for a, b in spans)
-        return [*found, f"{scene.driver.link} can stand at {words}"]
-    return found + list(_travels(scene))
+        return [*lines, f"{scene.driver.link} can stand at {words}"]
+    return lines + list(_travels(scene))
 
 
 def _grashof(bar: FourBar) -> str:
@@ -46,12 +46,12 @@ def _travels(scene: Scene) -> Iterator[str]:
         every = travels(scene, (*scene.links, *scene.sliders))
     except CrankcheckError:
         return  # the mechanism passes a singular position
-    for output, found in every.items():
-        if not isinstance(found, Travel):
+    for output, travel in every.items():
+        if not isinstance(travel, Travel):
             continue  # it turns fully, stands still, or turns back more than twice
-        size = f"{found.stroke:.6g} m" if output in scene.sliders else f"{_deg(found.stroke)} deg"
+        size = f"{travel.stroke:.6g} m" if output in scene.sliders else f"{_deg(travel.stroke)} deg"
         word = "stroke" if output in scene.sliders else "swing"
-        yield f"{output}: {word} {size}, time ratio {found.time_ratio:.6g}"
+        yield f"{output}: {word} {size}, time ratio {travel.time_ratio:.6g}"
 
 
 def _deg(angle_rad: float) -> str:

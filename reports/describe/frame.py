@@ -10,7 +10,7 @@ import pandas as pd
 
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 
-Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
+BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
 def motion_frame(motion: Motion) -> pd.DataFrame:
@@ -51,7 +51,7 @@ def cleaned(motion: Motion) -> Motion:
     )
 
 
-def _cleaned(body: Body, bound: Body) -> Body:
+def _cleaned(body: BodyMotion, bound: BodyMotion) -> BodyMotion:
     """One body's arrays; a bound is per sample, also for vectors."""
     fields = {}
     for name, values in vars(body).items():

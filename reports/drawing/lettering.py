@@ -43,15 +43,15 @@ def place(
     frame : tuple
         Width and height of the drawing [inch]; all is measured from its lower left corner.
     """
-    found: list[tuple[float, float]] = []
+    centres: list[tuple[float, float]] = []
     boxes: list[tuple[float, float, float, float]] = []
     for label in labels:
         tried = _candidates(label)
         costs = [_cost(label, centre, heavy, light, boxes, frame) for centre in tried]
         x, y = tried[int(np.argmin(costs))]
-        found.append((float(x), float(y)))
+        centres.append((float(x), float(y)))
         boxes.append((float(x), float(y), *label.size))
-    return found
+    return centres
 
 
 def _candidates(label: Label) -> Array:

@@ -39,13 +39,13 @@ def packed(rows: Array) -> dict[str, object]:
     the row's largest. Samples that are not finite are `MISSING`.
     """
     rows = np.atleast_2d(np.asarray(rows, dtype=np.float64))
-    known = np.isfinite(rows)
-    filled = np.where(known, rows, 0.0)
+    there = np.isfinite(rows)
+    filled = np.where(there, rows, 0.0)
     scales = np.max(np.abs(filled), axis=1, initial=0.0) / LEVELS
     safe = np.where(scales > 0.0, scales, 1.0)
     # A row of subnormal numbers has too coarse a scale: its integers may come out beyond 16 bits.
     levels = np.clip(np.round(filled / safe[:, None]), -LEVELS, LEVELS)
-    whole = np.where(known, levels, MISSING).astype("<i2")
+    whole = np.where(there, levels, MISSING).astype("<i2")
     return {
         "samples": rows.shape[1],
         "scales": scales,

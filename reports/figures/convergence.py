@@ -40,14 +40,14 @@ ALONG = 60
 
 def draw(report: Report, scene: str) -> Figure:
     """The plot of one scene, with steps per turn along the top."""
-    own, known = report.lines_of(scene), marks(report.lines)
+    own, mark_of = report.lines_of(scene), marks(report.lines)
     panels = Panels(top=0.27)
     title, under = f"Convergence: {scene}", notes(report, own)
-    figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, known), under, columns=1)
+    figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, mark_of), under, columns=1)
     _limits([axes], own, 1.0)
-    _panel(axes, own, known, 1.0)
+    _panel(axes, own, mark_of, 1.0)
     strip = _strip(own)
-    _failed(axes, own, known, 1.0, strip)
+    _failed(axes, own, mark_of, 1.0, strip)
     if strip:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
@@ -59,30 +59,30 @@ def draw(report: Report, scene: str) -> Figure:
 
 def draw_all(report: Report) -> Figure:
     """The plots of all scenes side by side, over steps per turn."""
-    lines, scenes, known = report.lines, list(report.scenes), marks(report.lines)
+    lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **mark.style), label(name)) for name, mark in known.items()
+        (Line2D([], [], **mark.style), label(name)) for name, mark in mark_of.items()
     ]
     strip = _strip(lines)
     if strip:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
-    known = {name: mark.scaled(0.75) for name, mark in known.items()}
+    mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
     labels = (PER_TURN, PLACE)
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
     _limits(axes, lines, 0.0)
     for scene, one in zip(scenes, axes, strict=True):
         own = report.lines_of(scene)
-        _panel(one, own, known, own[0].period_s)
-        _failed(one, own, known, own[0].period_s, strip)
+        _panel(one, own, mark_of, own[0].period_s)
+        _failed(one, own, mark_of, own[0].period_s, strip)
         _count(one, own)
     return figure
 
 
-def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Named, Mark], unit_s: float) -> None:
+def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:
     """Points, fits and floors of one scene; steps in ``unit_s``."""
     left = axes.get_xlim()[0]
     for line in lines:
-        mark, rows, fit = known[named(line)], measured(line), line.fit
+        mark, rows, fit = mark_of[named(line)], measured(line), line.fit
         x = rows["dt_s"] / unit_s
         axes.plot(x, rows["place_pure"], color=mark.colour, linewidth=0.35)
         axes.plot(x, rows["place_pure"], linestyle="none", **mark.points)
@@ -95,7 +95,7 @@ def _panel(axes: Axes, lines: Sequence[Line], known: Mapping[Named, Mark], unit_
 
 
 def _failed(
-    axes: Axes, lines: Sequence[Line], known: Mapping[Named, Mark], unit_s: float, strip: float
+    axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float, strip: float
 ) -> None:
     """The runs that did not end well, in rows of a strip along the top."""
     rows = [line for line in lines if ends(line)]
@@ -108,7 +108,7 @@ def _failed(
         steps = line.cells.loc[line.cells["status"] != "ok", "dt_s"] / unit_s
         high = 1.0 - strip * (at + 0.5) / len(rows)
         axes.plot(
-            steps, [high] * len(steps), ls="none", transform=across, **known[named(line)].points
+            steps, [high] * len(steps), ls="none", transform=across, **mark_of[named(line)].points
         )
 
 
@@ -165,11 +165,11 @@ def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
     )
 
 
-def _entries(lines: Sequence[Line], known: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
+def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
     """The legend: each variant with its fit, and how its other runs ended."""
     return [
         (
-            Line2D([], [], **known[named(line)].style),
+            Line2D([], [], **mark_of[named(line)].style),
             ": ".join([label(named(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
         )
         for line in lines

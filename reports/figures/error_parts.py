@@ -82,18 +82,18 @@ class ShownCell:
         return 10.0 ** math.floor(math.log10(largest)) if largest > 0.0 else 1.0
 
 
-def _cell(line: Line, found: Split) -> ShownCell | None:
+def _cell(line: Line, parts: Split) -> ShownCell | None:
     """The cell that ended well with the number of steps nearest to `STEPS`; None without one."""
-    rows = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(found.cells))]
+    rows = line.cells[(line.cells["status"] == "ok") & line.cells["key"].isin(list(parts.cells))]
     if rows.empty:
         return None
     away = [abs(math.log(n / STEPS)) for n in rows["steps_per_turn"]]
     row = rows.iloc[int(np.argmin(away))]
-    if math.isnan(found.floor):
+    if math.isnan(parts.floor):
         floor = "floor not told apart"
     else:
-        floor = f"floor {short(found.floor)}" if found.seen else "no floor seen"
-    return ShownCell(float(row["steps_per_turn"]), found.cells[str(row["key"])], floor)
+        floor = f"floor {short(parts.floor)}" if parts.seen else "no floor seen"
+    return ShownCell(float(row["steps_per_turn"]), parts.cells[str(row["key"])], floor)
 
 
 def _panel(axes: Axes, cell: ShownCell, unit: str) -> None:

@@ -75,18 +75,18 @@ def marks(lines: Iterable[Line]) -> Mapping[Named, Mark]:
     names = list(dict.fromkeys(named(line) for line in lines))
     engines = list(dict.fromkeys(engine for engine, _, _ in names))
     before = dict.fromkeys(engines, 0)
-    found: dict[Named, Mark] = {}
+    every: dict[Named, Mark] = {}
     for name in names:
         at, k = engines.index(name[0]), before[name[0]]
         before[name[0]] += 1
-        found[name] = Mark(
+        every[name] = Mark(
             marker=MARKERS[k % len(MARKERS)],
             filled=at % 2 == 0,
             dashes=_dashes(k // len(MARKERS) * len(engines) + at),
             colour=COLOURS[at % len(COLOURS)][k % len(COLOURS[0])],
             size=SIZES[at % 2 == 0][k % len(COLOURS[0])],
         )
-    return found
+    return every
 
 
 def _dashes(turn: int) -> tuple[float, ...]:

@@ -33,14 +33,14 @@ def draw_all(report: Report) -> Figure | None:
     """A panel per target error; None where nothing was timed."""
     if not report.timed:
         return None
-    lines, known = report.lines, marks(report.lines)
+    lines, mark_of = report.lines, marks(report.lines)
     stairs = [performance_profile(lines, target, report.noise) for target in TARGETS]
     titles = [f"error up to {power_of_ten(target)} rad or L" for target in TARGETS]
-    entries = [(Line2D([], [], **mark.style), label(name)) for name, mark in known.items()]
+    entries = [(Line2D([], [], **mark.style), label(name)) for name, mark in mark_of.items()]
     under = notes(report, lines, timed=True)
     title = "Performance profile: reached within a factor of the fastest"
     figure, axes = grid(titles, title, (FACTOR, SHARE), entries, under, height=1.6)
-    by_label = {label(named(line)): known[named(line)] for line in lines}
+    by_label = {label(named(line)): mark_of[named(line)] for line in lines}
     last = max(float(stair["factor"].max()) for stair in stairs)
     for stair, one in zip(stairs, axes, strict=True):
         _axes(one, last)

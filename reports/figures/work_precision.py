@@ -33,14 +33,14 @@ CostAndError = tuple[float, float]
 
 def draw(report: Report, scene: str) -> Figure | None:
     """The diagram of one scene; None where none of its cells was timed."""
-    own, known = report.lines_of(scene), marks(report.lines)
+    own, mark_of = report.lines_of(scene), marks(report.lines)
     if not _points(own):
         return None
-    entries = [*_entries(own, known), _front_entry()]
+    entries = [*_entries(own, mark_of), _front_entry()]
     title, under = f"Work and precision: {scene}", notes(report, own, timed=True)
     figure, (axes,) = sheet(COLUMN_IN, Panels(top=0.05), title, entries, under)
     _limits([axes], _points(own))
-    _panel(axes, report, own, known)
+    _panel(axes, report, own, mark_of)
     axes.set_xlabel(COST)
     axes.set_ylabel(PLACE)
     return figure
@@ -51,35 +51,37 @@ def draw_all(report: Report) -> Figure | None:
     lines, scenes = report.lines, list(report.scenes)
     if not _points(lines):
         return None
-    known = marks(lines)
+    mark_of = marks(lines)
     names = [ALL, *scenes]
-    entries = [*_entries(lines, known), _front_entry()]
+    entries = [*_entries(lines, mark_of), _front_entry()]
     title, under = "Work and precision", notes(report, lines, timed=True)
     figure, axes = grid(names, title, (COST, PLACE), entries, under)
-    known = {name: mark.scaled(0.75) for name, mark in known.items()}
+    mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
     _limits(axes, _points(lines))
-    _over(axes[0], report, known)
+    _over(axes[0], report, mark_of)
     for scene, one in zip(scenes, axes[1:], strict=True):
-        _panel(one, report, report.lines_of(scene), known)
+        _panel(one, report, report.lines_of(scene), mark_of)
     return figure
 
 
-def _panel(axes: Axes, report: Report, lines: Sequence[Line], known: Mapping[Named, Mark]) -> None:
+def _panel(
+    axes: Axes, report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
+) -> None:
     """The curves of one scene over its front."""
     cells = pd.concat([line.cells for line in lines])
     best = cells.set_index("key").loc[front(cells, report.noise)]
     _stair(axes, zip(best["s_per_turn"], best["place_pure"], strict=True))
     for line in lines:
         rows = timed(line)
-        axes.plot(rows["s_per_turn"], rows["place_pure"], **known[named(line)].style)
+        axes.plot(rows["s_per_turn"], rows["place_pure"], **mark_of[named(line)].style)
 
 
-def _over(axes: Axes, report: Report, known: Mapping[Named, Mark]) -> None:
+def _over(axes: Axes, report: Report, mark_of: Mapping[Named, Mark]) -> None:
     """The curves over all scenes: variants that fail on one of them have no point."""
     over = report.candidates
     best = front_over_all(over, report.noise)
     _stair(axes, ((one.s_per_turn, one.worst_error) for one in best))
-    for name, mark in known.items():
+    for name, mark in mark_of.items():
         own = [one for one in over if (one.engine, one.variant, one.drive) == name]
         points = [(c.s_per_turn, c.worst_error) for c in own if not c.faults]
         axes.plot(*zip(*points, strict=True) if points else ([], []), **mark.style)
@@ -119,16 +121,16 @@ def _limits(axes: Sequence[Axes], points: Sequence[CostAndError]) -> None:
         logarithmic(one, "y", *around(error for _, error in points))
 
 
-def _entries(lines: Sequence[Line], known: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
+def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
     """The legend: a variant each; how runs ended that have no point, where it is one scene."""
     single = len({line.scene for line in lines}) == 1
-    found: dict[Named, tuple[Artist, str]] = {}
+    entries: dict[Named, tuple[Artist, str]] = {}
     for line in lines:
         name = named(line)
         fate = ends(line) if single else ""
         words = label(name) + (f" ({fate})" if fate else "")
-        found.setdefault(name, (Line2D([], [], **known[name].style), words))
-    return list(found.values())
+        entries.setdefault(name, (Line2D([], [], **mark_of[name].style), words))
+    return list(entries.values())
 
 
 def _front_entry() -> tuple[Artist, str]:

@@ -55,16 +55,16 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
         A store that can not be read, part by part.
     """
     report = PageReport(stored, matrix)
-    found = {name: build(report) for name, build in SECTIONS.items()}
-    text = _rendered(report, found)
+    sections = {name: build(report) for name, build in SECTIONS.items()}
+    text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
-    if over > 0 and found["motion"] is not None:
-        found["motion"] = motion(report, BUDGET - over)
-        text = _rendered(report, found)
+    if over > 0 and sections["motion"] is not None:
+        sections["motion"] = motion(report, BUDGET - over)
+        text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
-    if over > 0 and matrix is not None and found["hard"] is not None:
-        found["hard"] = lighter(matrix, found["hard"], over)
-        text = _rendered(report, found)
+    if over > 0 and matrix is not None and sections["hard"] is not None:
+        sections["hard"] = lighter(matrix, sections["hard"], over)
+        text = _rendered(report, sections)
     return text
 
 
@@ -90,9 +90,9 @@ def _stability_head(matrix: Matrix) -> Head:
     )
 
 
-def _rendered(report: PageReport, found: Mapping[str, Section | None]) -> str:
+def _rendered(report: PageReport, sections: Mapping[str, Section | None]) -> str:
     """The page of the sections that have something to show."""
-    return render(report, [section for section in found.values() if section is not None])
+    return render(report, [section for section in sections.values() if section is not None])
 
 
 def render(report: Report, sections: Sequence[Section]) -> str:

@@ -152,14 +152,14 @@ def _snippets(report: Report) -> Iterator[str]:
             best = one.best
             same = (best.engine, best.variant, best.drive, best.steps_per_turn)
             groups.setdefault(same, []).append(one)
-    told = []
+    texts = []
     for (engine, variant, _, steps), group in groups.items():
         tightest = min(group, key=lambda one: one.target)
         targets = listed([short_target(one.target) for one in group])
         title = f"{engine} {variant}, {steps:g} steps per turn (error up to {targets})"
         if text := tightest.snippet():
-            told.append(folded(title, code(text, snippet_writer(engine).language)))
-    kept, left = fitted(told, ROOM["snippets"])
+            texts.append(folded(title, code(text, snippet_writer(engine).language)))
+    kept, left = fitted(texts, ROOM["snippets"])
     yield from kept
     if left:
         yield f"and {left} more to be copied from the page of `crankcheck report`"

@@ -149,12 +149,12 @@ def _cells(
 ) -> Iterator[HeatCell]:
     """A cell for each value, whether it was run or not."""
     for value, label in zip(case.values, case.labels, strict=True):
-        found = [pair for pair in runs if pair[1].grid and same(pair[1].value, value)]
-        if not found:
+        own = [pair for pair in runs if pair[1].grid and same(pair[1].value, value)]
+        if not own:
             words = f"{amount(value, case.unit)}: not run"
             yield HeatCell(None, label, "\N{MIDDLE DOT}", "none", -1, False, words, False)
             continue
-        number, run = found[0]
+        number, run = own[0]
         yield HeatCell(
             number=number,
             label=label,
@@ -177,9 +177,11 @@ def told(case: CaseFacts, run: Graded) -> str:
 
 def outcomes_seen(matrix: Matrix) -> dict[str, int]:
     """The outcomes of the grid with how often they came, known ones in their order, then others."""
-    found = Counter(str(run.outcome) for run in matrix.runs if run.grid)
-    known: tuple[Outcome, ...] = OUTCOMES
-    return {name: found[name] for name in (*known, *sorted(set(found) - set(known))) if found[name]}
+    counts = Counter(str(run.outcome) for run in matrix.runs if run.grid)
+    names: tuple[Outcome, ...] = OUTCOMES
+    return {
+        name: counts[name] for name in (*names, *sorted(set(counts) - set(names))) if counts[name]
+    }
 
 
 def _lost(value: float | None) -> bool:

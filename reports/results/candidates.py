@@ -106,12 +106,12 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
             by_step.setdefault(round(float(row["steps_per_turn"]), 6), {})[scene] = row
     first = next(iter(group.values()))
     versions = tuple(sorted({line.version for line in group.values()}, key=numbers))
-    found = []
+    every = []
     for steps, rows in sorted(by_step.items()):
         faults = {scene: _fault(rows.get(scene)) for scene in scenes}
         good = {scene: row for scene, row in rows.items() if not faults[scene]}
         complete = tuple(good.values()) if len(good) == len(scenes) else ()
-        found.append(
+        every.append(
             Candidate(
                 engine=first.engine,
                 variant=first.variant,
@@ -125,7 +125,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
                 s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
             )
         )
-    return found
+    return every
 
 
 def _fault(row: pd.Series | None) -> str:

@@ -129,12 +129,12 @@ def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ..
     groups: dict[tuple[str, str, Drive], list[Line]] = {}
     for line in lines:
         groups.setdefault((line.engine, line.variant, line.drive), []).append(line)
-    found = []
+    costs = []
     for named, group in groups.items():
         timed = [x for line in group if len(x := line.cells.dropna(subset=["us_per_step"]))]
         cells = pd.concat(timed or [group[0].cells.iloc[:0]])
         times = {target: [t for x in group if (t := time_to(x, target))] for target in targets}
-        found.append(
+        costs.append(
             Costs(
                 *named,
                 us_per_step=mean(cells["us_per_step"]),
@@ -145,7 +145,7 @@ def costs_of(lines: Sequence[Line], targets: Sequence[float]) -> tuple[Costs, ..
                 scenes=scenes,
             )
         )
-    return tuple(found)
+    return tuple(costs)
 
 
 def mean(values: Iterable[float]) -> float:

@@ -150,13 +150,16 @@ def split(line: Line, trace: Callable[[str], Trace], body: CurveBody, longest_m:
     traces = {str(key): trace(str(key)) for key in line.cells["key"]}
     traces = {key: one for key, one in traces.items() if body.series in one}
     limit = _limit(line, traces, body)
-    told = limit if isinstance(limit, _Extrapolated) else None
-    cells = {key: _parts(one, body, longest_m, told, line.period_s) for key, one in traces.items()}
-    if told is None:
+    extrapolated = limit if isinstance(limit, _Extrapolated) else None
+    cells = {
+        key: _parts(one, body, longest_m, extrapolated, line.period_s)
+        for key, one in traces.items()
+    }
+    if extrapolated is None:
         return Split(cells, why=str(limit))
-    floor = float(np.max(np.abs(told.error)))
+    floor = float(np.max(np.abs(extrapolated.error)))
     # A line that falls as far as it was run has no floor: what is left is doubt.
-    doubt = told.doubt if line.fit.kind == "floor" else max(told.doubt, floor)
+    doubt = extrapolated.doubt if line.fit.kind == "floor" else max(extrapolated.doubt, floor)
     return Split(cells, floor=floor, doubt=doubt)
 
 

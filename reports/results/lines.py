@@ -78,7 +78,7 @@ def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
     """
     cells = comparable(stored.cells)
     chosen = _newest(cells)
-    found = [
+    every = [
         _line(rows.sort_values("dt_s", ascending=False).reset_index(drop=True), quantity)
         for key, rows in cells.groupby("line", sort=False)
         if key in chosen
@@ -92,19 +92,19 @@ def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
             variants.index(which) if which in variants else len(variants),
         )
 
-    return tuple(sorted(found, key=place))
+    return tuple(sorted(every, key=place))
 
 
 def _variants(manifest: Manifest) -> list[tuple[str, str]]:
     """Engine and name of the variants of all runs, in the order of their studies."""
-    found: dict[tuple[str, str], None] = {}
+    names: dict[tuple[str, str], None] = {}
     for run in manifest.runs:
         try:
             study = Study.model_validate(run.get("study"))
         except ValidationError:  # of another version of crankcheck: then as the cells come
             continue
-        found |= {(one.engine, one.name): None for each in study.variants for one in each.each()}
-    return list(found)
+        names |= {(one.engine, one.name): None for each in study.variants for one in each.each()}
+    return list(names)
 
 
 def _newest(cells: pd.DataFrame) -> set[str]:

@@ -41,15 +41,15 @@ class Look:
 
 def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
     """A look for every engine, variant and drive, in the order of the lines."""
-    found: dict[Named, Look] = {}
+    every: dict[Named, Look] = {}
     engines: dict[str, int] = {}
     for line in lines:
-        if named(line) in found:
+        if named(line) in every:
             continue
         family = engines.setdefault(line.engine, len(engines))
-        place = sum(1 for engine, *_ in found if engine == line.engine)
-        found[named(line)] = Look(
-            number=len(found),
+        place = sum(1 for engine, *_ in every if engine == line.engine)
+        every[named(line)] = Look(
+            number=len(every),
             engine=line.engine,
             variant=called(line.variant, line.drive),
             version=line.version,
@@ -58,7 +58,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
             dash=DASHES[place % len(DASHES)],
             size=SIZES[place % len(SIZES)],
         )
-    return found
+    return every
 
 
 def label(name: Named) -> str:

@@ -26,11 +26,11 @@ def comparable(cells: pd.DataFrame) -> pd.DataFrame:
 
     Processors are told apart by name: two machines of one kind can not be.
     """
-    found = cells.reindex(columns=[*cells.columns, *(c for c in TIMES if c not in cells.columns)])
+    cleared = cells.reindex(columns=[*cells.columns, *(c for c in TIMES if c not in cells.columns)])
     name = machine(cells)
     if name is not None:
-        found.loc[found["processor"] != name, list(TIMES)] = np.nan
-    return found
+        cleared.loc[cleared["processor"] != name, list(TIMES)] = np.nan
+    return cleared
 
 
 def _timed(cells: pd.DataFrame) -> pd.DataFrame:

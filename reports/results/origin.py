@@ -70,5 +70,5 @@ def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
 def facts_of(report: Report) -> Mapping[str, str]:
     """What the last run of the store says of where it ran."""
     runs = report.stored.manifest.runs
-    found = runs[-1].get("provenance") if runs else None
-    return {str(k): str(v) for k, v in found.items()} if isinstance(found, Mapping) else {}
+    facts = runs[-1].get("provenance") if runs else None
+    return {str(k): str(v) for k, v in facts.items()} if isinstance(facts, Mapping) else {}

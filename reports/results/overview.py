@@ -70,10 +70,10 @@ class Report:
     @cached_property
     def engines(self) -> Mapping[str, str]:
         """The engines with their versions, in the order of the study."""
-        found: dict[str, dict[str, None]] = {}
+        versions_of: dict[str, dict[str, None]] = {}
         for line in self.lines:
-            found.setdefault(line.engine, {})[line.version] = None
-        return {engine: ", ".join(versions) for engine, versions in found.items()}
+            versions_of.setdefault(line.engine, {})[line.version] = None
+        return {engine: ", ".join(versions) for engine, versions in versions_of.items()}
 
     @property
     def timed(self) -> bool:

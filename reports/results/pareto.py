@@ -39,14 +39,14 @@ def front_over_all(candidates: Iterable[Candidate], noise: float = 0.0) -> tuple
 
 def _unbeaten(points: Iterable[tuple[CellKey, float, float]], noise: float) -> list[CellKey]:
     """Names of (name, error, time) that are faster than all that are as accurate."""
-    found: list[CellKey] = []
+    unbeaten: list[CellKey] = []
     least = math.inf
     finite = [p for p in points if math.isfinite(p[1]) and math.isfinite(p[2])]
     for name, _, time_s in sorted(finite, key=lambda p: (p[1], p[2])):
         if time_s * (1.0 + _known(noise)) < least:
-            found.append(name)
+            unbeaten.append(name)
             least = time_s
-    return found
+    return unbeaten
 
 
 def _known(noise: float) -> float:

@@ -69,27 +69,27 @@ def recommendations(
     """
     every = lines(stored)
     within = noise(stored)
-    known = candidates(every)
+    choice = candidates(every)
     engines = dict.fromkeys(line.engine for line in every)
     return tuple(
-        _recommended(target, [c for c in known if c.engine == name], every, within)
+        _recommended(target, [c for c in choice if c.engine == name], every, within)
         for name in engines
         for target in targets
     )
 
 
 def _recommended(
-    target: float, known: Sequence[Candidate], every: Sequence[Line], within: float
+    target: float, choice: Sequence[Candidate], every: Sequence[Line], within: float
 ) -> Recommendation:
     """The recommendation of one engine."""
-    good = [one for one in known if one.reaches(target)]
+    good = [one for one in choice if one.reaches(target)]
     timed = [one for one in good if math.isfinite(one.s_per_turn)]
     if not timed:
-        best = nearest(known, target)
+        best = nearest(choice, target)
         return Recommendation(target, best, reason=nothing(best, good, target))
     best, equal_to = _cheapest(timed, within)
-    caution = broken(best, known, target)
-    steady = [one for one in timed if caution and not broken(one, known, target)]
+    caution = broken(best, choice, target)
+    steady = [one for one in timed if caution and not broken(one, choice, target)]
     steadier = None
     if steady:
         steadiest, _ = _cheapest(steady, within)

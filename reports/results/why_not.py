@@ -14,9 +14,9 @@ SHOWN = 3
 """Scenes that a sentence names; of more it gives the number."""
 
 
-def nearest(known: Sequence[Candidate], target: float) -> Candidate:
+def nearest(choice: Sequence[Candidate], target: float) -> Candidate:
     """What reaches the target on most scenes, of those with the least error."""
-    return max(known, key=lambda c: (c.reaching(target), -c.worst_error, -_worst(c), -_cost(c)))
+    return max(choice, key=lambda c: (c.reaching(target), -c.worst_error, -_worst(c), -_cost(c)))
 
 
 def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
@@ -30,14 +30,14 @@ def nothing(best: Candidate, good: Sequence[Candidate], target: float) -> str:
     return f"nearest is {best.name}: {_shortfall(best, target)}"
 
 
-def broken(one: Candidate, known: Sequence[Candidate], target: float) -> str:
+def broken(one: Candidate, choice: Sequence[Candidate], target: float) -> str:
     """Where the same settings miss the target at a finer step; empty where they keep it.
 
     What was not run at a finer step says nothing.
     """
     finer = [
         c
-        for c in known
+        for c in choice
         if c.same_settings(one) and c.steps_per_turn > one.steps_per_turn and _missed(c, target)
     ]
     if not finer:

@@ -35,22 +35,22 @@ CURVE = 25
 
 def build(report: Report) -> Section:
     """The section."""
-    told = {
+    names = {
         name: words
         for name, (words, _) in DIAGRAMS.items()
         if name in report.cells and report.cells[name].notna().any()
     }
-    drawn = {name: [_drawn(report, x) for x in _lines(report, name)] for name in told}
+    drawn = {name: [_drawn(report, x) for x in _lines(report, name)] for name in names}
     return Section(
         anchor="convergence",
         title="Error against step",
         template="convergence.html",
         words={
             "scenes": list(report.scenes),
-            "quantities": told,
+            "quantities": names,
             "rows": [_row(report, line) for line in report.lines],
         },
-        embedded={"quantities": drawn, "units": {name: DIAGRAMS[name][1] for name in told}},
+        embedded={"quantities": drawn, "units": {name: DIAGRAMS[name][1] for name in names}},
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )

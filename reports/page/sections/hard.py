@@ -29,17 +29,17 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
     """The section of a matrix, its moving pictures in ``room`` characters."""
     drawn = _drawn(matrix, room)
     shown = [number for number, _ in drawn]
-    found = heat(matrix, frozenset(shown))
-    known = {case.name: case for case in matrix.cases}
+    chart = heat(matrix, frozenset(shown))
+    cases = {case.name: case for case in matrix.cases}
     meanings = {str(name): words for name, words in MEANINGS.items()}
     return Section(
         anchor="hard",
         title="Hard cases",
         template="hard.html",
         words={
-            "columns": found.columns,
-            "engines": Counter(column.engine for column in found.columns),
-            "groups": found.groups,
+            "columns": chart.columns,
+            "engines": Counter(column.engine for column in chart.columns),
+            "groups": chart.groups,
             "legend": [
                 (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
                 for name, number in outcomes_seen(matrix).items()
@@ -52,8 +52,8 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
             "facts": matrix.facts,
         },
         embedded={
-            "cases": {name: _case(case) for name, case in known.items()},
-            "runs": [_run(known.get(run.case), run) for run in matrix.runs],
+            "cases": {name: _case(case) for name, case in cases.items()},
+            "runs": [_run(cases.get(run.case), run) for run in matrix.runs],
             **_pictures(drawn),
         },
         scripts=SCRIPTS,
@@ -81,20 +81,20 @@ def _drawn(matrix: Matrix, room: int) -> list[tuple[int, Picture]]:
     places = {case.name: index for index, case in enumerate(matrix.cases)}
     lines = {(run.engine, run.profile): None for run in matrix.runs}
     columns = {line: index for index, line in enumerate(lines)}
-    found = []
+    shown = []
     for picture in matrix.pictures:
         number = _number(matrix, picture)
         if number is not None and picture.case in places:
-            found.append((number, picture))
-    found.sort(key=lambda x: (places[x[1].case], columns[x[1].engine, x[1].profile], x[0]))
+            shown.append((number, picture))
+    shown.sort(key=lambda x: (places[x[1].case], columns[x[1].engine, x[1].profile], x[0]))
     ranks: dict[tuple[str, str, str], int] = {}
     order = []
-    for index, (_, one) in enumerate(found):
+    for index, (_, one) in enumerate(shown):
         line = (one.case, one.engine, one.profile)
         ranks[line] = ranks.get(line, 0) + 1
         order.append((ranks[line], index))
-    sizes = [len(embedded([one.drawing, one.rows])) for _, one in found]
-    return [found[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
+    sizes = [len(embedded([one.drawing, one.rows])) for _, one in shown]
+    return [shown[i] for i in fitting([index for _, index in sorted(order)], sizes, room)]
 
 
 def _number(matrix: Matrix, picture: Picture) -> int | None:
@@ -121,13 +121,13 @@ def _pictures(drawn: Sequence[tuple[int, Picture]]) -> dict[str, object]:
 
 def _failures(matrix: Matrix, shown: Sequence[int]) -> dict[str, list[tuple[int, str]]]:
     """The runs with a picture by the title of their case: number, and what the choice says."""
-    found: dict[str, list[tuple[int, str]]] = {}
+    runs: dict[str, list[tuple[int, str]]] = {}
     for number in shown:
         run = matrix.runs[number]
         case = matrix.case(run.case)
         words = f"{run.engine} {run.profile}, {amount(run.value, case.unit)}: {run.outcome}"
-        found.setdefault(case.title, []).append((number, words))
-    return found
+        runs.setdefault(case.title, []).append((number, words))
+    return runs
 
 
 def _case(case: CaseFacts) -> dict[str, object]:

@@ -42,18 +42,18 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
     if not scenes:
         return None
     sizes = {key: size for scene in scenes for key, size in _sizes(report, scene).items()}
-    held = steps_held(sizes, report.lines, room)
+    steps = steps_held(sizes, report.lines, room)
     return Section(
         anchor="motion",
         title="Scene by scene",
         template="motion.html",
         words={
             "scenes": [_told(scene) for scene in scenes],
-            "thinned": held < max(len(line.cells) for line in report.lines),
-            "held": held,
+            "thinned": steps < max(len(line.cells) for line in report.lines),
+            "held": steps,
         },
         embedded={
-            "scenes": [_DrawnScene(report, scene, sizes, held).embedded() for scene in scenes],
+            "scenes": [_DrawnScene(report, scene, sizes, steps).embedded() for scene in scenes],
             "judged": sorted(
                 {report.look(x).number for x in report.lines if x.cells["gated"].all()}
             ),
@@ -77,15 +77,15 @@ def _sizes(report: Report, scene: Scene) -> dict[str, int]:
 def _told(scene: Scene) -> dict[str, object]:
     """A scene in words: its source, its driver, and what theory says of it."""
     try:
-        known = facts(scene, analyse(scene))
+        theory = facts(scene, analyse(scene))
     except CrankcheckError:
-        known = []
+        theory = []
     return {
         "name": scene.name,
         "source": scene.source,
         "note": scene.note,
         "driver": f"{scene.driver.link}, {describe_law(scene)}",
-        "facts": known,
+        "facts": theory,
     }
 
 
@@ -115,27 +115,27 @@ class _DrawnScene:
     def _instants(self, lines: Sequence[Line]) -> Array:
         """The instants of the drawing: those of a run that ended well, where there is one."""
         trace = self.report.stored.trace
-        found = [
+        times = [
             trace(str(key)).get("time_s", np.zeros(0))
             for line in lines
             for key in line.cells["key"][line.cells["status"] == "ok"]
         ]
-        longest = max(found, key=len, default=np.zeros(0))
+        longest = max(times, key=len, default=np.zeros(0))
         return longest if len(longest) > 1 else instants(self.scene)
 
     def _line(self, line: Line, time_s: Array, body: CurveBody | None) -> dict[str, object]:
         """A line: what it is off by in the drawing and over the crank angle, at some steps."""
         trace = self.report.stored.trace
-        found = None if body is None else split(line, trace, body, self.scene.longest_m)
+        parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
         return {
             "look": self.report.look(line).number,
-            "floor": "" if found is None else _floor(found),
+            "floor": "" if parts is None else _floor(parts),
             "cells": [
                 {
                     "steps": rows.loc[key]["steps_per_turn"],
                     "off": displacements(self.scene, trace(key), time_s),
-                    "parts": self._parts(found.cells.get(key)) if found else None,
+                    "parts": self._parts(parts.cells.get(key)) if parts else None,
                 }
                 for key in chosen(line, self.sizes, self.held)
             ],

@@ -100,12 +100,12 @@ def _points(cells: pd.DataFrame) -> dict[str, object]:
 
 def _over_all(report: Report) -> dict[str, object]:
     """Each set of settings over all scenes: its worst error against its mean cost."""
-    known = [one for one in report.candidates if math.isfinite(one.worst_error)]
+    finite = [one for one in report.candidates if math.isfinite(one.worst_error)]
     groups: dict[int, list[Candidate]] = {}
-    for one in known:
+    for one in finite:
         look = report.looks[one.engine, one.variant, one.drive]
         groups.setdefault(look.number, []).append(one)
-    unbeaten = sorted(front_over_all(known), key=lambda one: one.s_per_turn)
+    unbeaten = sorted(front_over_all(finite), key=lambda one: one.s_per_turn)
     return {
         "name": ALL,
         "lines": [_group(report, look, group) for look, group in groups.items()],
@@ -119,8 +119,8 @@ def _over_all(report: Report) -> dict[str, object]:
 def _group(report: Report, look: int, group: Sequence[Candidate]) -> dict[str, object]:
     """One set of settings at every step that ended well on all scenes."""
     cells = report.cells
-    held = cells.groupby(["engine", "variant", "drive", cells["steps_per_turn"].round(6)])
-    within = held["verdict"].agg(lambda verdicts: bool((verdicts == "within").all()))
+    groups = cells.groupby(["engine", "variant", "drive", cells["steps_per_turn"].round(6)])
+    within = groups["verdict"].agg(lambda verdicts: bool((verdicts == "within").all()))
     return {
         "look": look,
         "error": [one.worst_error for one in group],

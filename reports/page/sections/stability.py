@@ -25,7 +25,7 @@ class Holds:
 def build(report: Report) -> Section:
     """The section."""
     looks = list(report.looks.values())
-    found = {(x.scene, report.look(x).number): holds(x.cells) for x in report.lines}
+    held = {(x.scene, report.look(x).number): holds(x.cells) for x in report.lines}
     lost = report.cells[report.cells["status"] != "ok"]
     return Section(
         anchor="stability",
@@ -35,7 +35,7 @@ def build(report: Report) -> Section:
             "looks": looks,
             "engines": Counter(look.engine for look in looks),
             "rows": [
-                (scene, [found.get((scene, look.number)) for look in looks])
+                (scene, [held.get((scene, look.number)) for look in looks])
                 for scene in report.scenes
             ],
             "lost": [_lost(report, row) for _, row in lost.iterrows()],

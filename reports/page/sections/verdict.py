@@ -96,10 +96,10 @@ def verdict(gated: pd.DataFrame) -> str:
 def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommendation]) -> str:
     """What a user takes away of an engine."""
     own = [row for row in rows if row.look.engine == engine]
-    told = [_held(row) for row in own if row.gated]
-    told.append(_cheapest([one for one in chosen if one.best.engine == engine]))
-    told += [_shipped(row) for row in own if row.look.variant == "as-shipped" and not row.gated]
-    return " ".join(text for text in told if text)
+    texts = [_held(row) for row in own if row.gated]
+    texts.append(_cheapest([one for one in chosen if one.best.engine == engine]))
+    texts += [_shipped(row) for row in own if row.look.variant == "as-shipped" and not row.gated]
+    return " ".join(text for text in texts if text)
 
 
 def _held(row: VerdictRow) -> str:
@@ -117,16 +117,16 @@ def _held(row: VerdictRow) -> str:
 def _shipped(row: VerdictRow) -> str:
     """What an engine does as it comes."""
     text = f"As shipped it is within tolerance in {_share(row)}"
-    told = []
+    texts = []
     if row.floors:
-        told.append(
+        texts.append(
             f"on {len(row.floors)} of {count(row.lines, 'scene')} the error stops falling, at "
             f"{spread([error_text(f) for f in sorted(row.floors)])}, however small the step"
         )
     if row.orders:
-        rest = "on the others it" if told else "its error"
-        told.append(f"{rest} falls with order {row.order} of the step")
-    return text + (f": {'; '.join(told)}." if told else ".")
+        rest = "on the others it" if texts else "its error"
+        texts.append(f"{rest} falls with order {row.order} of the step")
+    return text + (f": {'; '.join(texts)}." if texts else ".")
 
 
 def _cheapest(chosen: Sequence[Recommendation]) -> str:

@@ -124,8 +124,8 @@ class Diff:
 
     def those(self, word: Word) -> tuple[CellPair, ...]:
         """The cells that are worse, better or equal, the largest change first."""
-        found = [pair for pair in self.pairs if pair.word == word]
-        return tuple(sorted(found, key=lambda pair: -pair.factor_of_change))
+        alike = [pair for pair in self.pairs if pair.word == word]
+        return tuple(sorted(alike, key=lambda pair: -pair.factor_of_change))
 
     def code(self, strict: bool = False) -> int:
         """The exit code: 1 where something is worse; ``strict``: or could not be compared.
@@ -184,21 +184,21 @@ def floor(quantity: str, steps_per_turn: float) -> float:
 def other_settings(pairs: Iterable[CellPair]) -> Mapping[tuple[str, str], Mapping[str, str]]:
     """The settings that an engine held otherwise, by engine and variant: not the version alone
     changed. Each comes with both values of one example."""
-    found: dict[tuple[str, str], dict[str, str]] = {}
+    differing: dict[tuple[str, str], dict[str, str]] = {}
     for pair in pairs:
         was, now = pair.old.settings, pair.new.settings
         for name in was.keys() & now.keys():
             before, after = json.dumps(was[name]), json.dumps(now[name])
             if before != after:
-                here = found.setdefault((pair.name.engine, pair.name.variant), {})
+                here = differing.setdefault((pair.name.engine, pair.name.variant), {})
                 here.setdefault(name, f"{name} {before} -> {after}")
-    return {key: dict(sorted(here.items())) for key, here in found.items()}
+    return {key: dict(sorted(here.items())) for key, here in differing.items()}
 
 
 def _same_scene(old: StoredCell, new: StoredCell) -> bool:
     """Whether both are of one scene, as far as the runs tell."""
-    known = old.scene_digest and new.scene_digest
-    return not known or old.scene_digest == new.scene_digest
+    told = old.scene_digest and new.scene_digest
+    return not told or old.scene_digest == new.scene_digest
 
 
 def _pair(old: StoredCell, new: StoredCell, factor: float) -> CellPair:

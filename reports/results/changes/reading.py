@@ -12,7 +12,7 @@ from typing import cast
 from models.errors import CrankcheckError
 from models.files import scene_texts
 from reports.plan.key import digest
-from reports.results.changes.runs import CellName, Row, StoredCell, StoredRun, stored_cell, text
+from reports.results.changes.runs import CellName, CellRow, StoredCell, StoredRun, stored_cell, text
 from reports.store.examine import STOPPED
 from reports.store.folder import has_parts
 from reports.store.manifest import MANIFEST
@@ -22,7 +22,7 @@ CELLS, FACTS = "verify.csv", "verify.json"
 WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
 
 
-Contents = tuple[list[Row], StoredRun]
+Contents = tuple[list[CellRow], StoredRun]
 """The rows of the cells in a folder, and the run that they are of, still without them."""
 
 
@@ -98,7 +98,7 @@ def _store(folder: Path) -> Contents:
     stored = read_store(folder)
     runs = stored.manifest.runs
     facts = runs[-1].get("provenance") if runs else None
-    rows = cast("list[Row]", stored.cells.to_dict("records"))
+    rows = cast("list[CellRow]", stored.cells.to_dict("records"))
     gone = [each for each in stored.damage if each.lost]
     return rows, StoredRun(
         str(folder),
@@ -114,7 +114,7 @@ def _verification(folder: Path) -> Contents:
     path = folder / CELLS
     try:
         with path.open(encoding="utf-8", newline="") as lines:
-            rows: list[Row] = [
+            rows: list[CellRow] = [
                 {key: value for key, value in row.items() if isinstance(key, str)}
                 for row in csv.DictReader(lines)
             ]
@@ -124,25 +124,25 @@ def _verification(folder: Path) -> Contents:
         raise CrankcheckError(f"{path}: no cells in it; verify again")
     notice: tuple[str, ...] = ()
     try:
-        known = json.loads((folder / FACTS).read_text(encoding="utf-8"))
+        facts = json.loads((folder / FACTS).read_text(encoding="utf-8"))
     except FileNotFoundError:  # the cells are enough to compare
-        known, notice = {}, (f"{folder}: no {FACTS}, so {CELLS} can not be checked",)
+        facts, notice = {}, (f"{folder}: no {FACTS}, so {CELLS} can not be checked",)
     except (ValueError, RecursionError) as error:
         raise CrankcheckError(f"{folder / FACTS}: not JSON ({error}); verify again") from None
-    if not isinstance(known, dict):
+    if not isinstance(facts, dict):
         raise CrankcheckError(f"{folder / FACTS}: no facts of a verification; verify again")
-    if cut := _cut(rows, known.get("cells")):
+    if cut := _cut(rows, facts.get("cells")):
         raise CrankcheckError(f"{path}: cut short ({cut}); verify again")
-    digests = _texts(known.get("scenes"))
+    digests = _texts(facts.get("scenes"))
     rows = [{"scene_digest": digests.get(text(row.get("scene")), ""), **row} for row in rows]
-    return rows, StoredRun(str(folder), {}, _texts(known.get("provenance")), notice=notice)
+    return rows, StoredRun(str(folder), {}, _texts(facts.get("provenance")), notice=notice)
 
 
-def _cut(rows: Sequence[Row], cells: object) -> str:
+def _cut(rows: Sequence[CellRow], cells: object) -> str:
     """How one sees that the file of the cells was cut short; the other one knows their number."""
-    known = len(cells) if isinstance(cells, list) and cells else len(rows)
-    if known != len(rows):
-        return f"{len(rows)} of the {known} cells that {FACTS} knows"
+    number = len(cells) if isinstance(cells, list) and cells else len(rows)
+    if number != len(rows):
+        return f"{len(rows)} of the {number} cells that {FACTS} knows"
     return "its last row is not whole" if None in rows[-1].values() else ""
 
 

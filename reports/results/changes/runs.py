@@ -16,7 +16,7 @@ from reports.results.cost import apart
 
 COMPARED = tuple(DEFAULTS)
 """What is compared: the largest error of each, as a pure number."""
-Row = Mapping[str, object]
+CellRow = Mapping[str, object]
 
 
 @dataclass(frozen=True)
@@ -118,21 +118,21 @@ def run_of(
 ) -> StoredRun:
     """A verification that was just made; ``digests`` of the scenes by name."""
     rows = (cell_row(one) | {"scene_digest": digests.get(one.cell.scene.name)} for one in checked)
-    found = (stored_cell(row, facts) for row in rows)
-    return StoredRun("this run", {cell.name: cell for cell in found}, facts)
+    cells = (stored_cell(row, facts) for row in rows)
+    return StoredRun("this run", {cell.name: cell for cell in cells}, facts)
 
 
 def planned_run(cells: Sequence[Cell], digests: Mapping[str, str]) -> StoredRun:
     """A verification that is still to be made: the names of its cells, without any error."""
-    found = {}
+    planned = {}
     for cell in cells:
         steps, turns = same(cell.steps_per_turn), same(cell.turns)
         name = CellName(cell.scene.name, cell.engine, cell.profile, cell.drive, steps, turns)
-        found[name] = StoredCell(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
-    return StoredRun("what was asked for", found)
+        planned[name] = StoredCell(name, "", "", "", {}, scene_digest=digests.get(name.scene, ""))
+    return StoredRun("what was asked for", planned)
 
 
-def stored_cell(row: Row, facts: Mapping[str, str]) -> StoredCell:
+def stored_cell(row: CellRow, facts: Mapping[str, str]) -> StoredCell:
     """One cell of a row as `reports.judge.rows.cell_row` makes it, of a store or of a CSV file,
     with the ``scene_digest`` where that is known.
 
@@ -173,11 +173,11 @@ def _error(value: object) -> float:
     return math.inf if found is None else found
 
 
-def _gaps(row: Row) -> dict[str, float]:
+def _gaps(row: CellRow) -> dict[str, float]:
     """The gaps of pins and of sliders over the longest link, which the larger of both tells."""
     pure = number(row.get("gap_pure"))
-    known = {kind: number(row.get(f"{kind}_gap_m")) for kind in ("pin", "slider")}
-    gaps = {f"{kind} gap": gap_m for kind, gap_m in known.items() if gap_m is not None}
+    measured_m = {kind: number(row.get(f"{kind}_gap_m")) for kind in ("pin", "slider")}
+    gaps = {f"{kind} gap": gap_m for kind, gap_m in measured_m.items() if gap_m is not None}
     if pure is None or not gaps:
         return {}
     share = pure / max(gaps.values()) if pure else 0.0
@@ -198,7 +198,7 @@ def _settings(content: str) -> Mapping[str, object]:
     return found
 
 
-def _cost(row: Row) -> CellCost | None:
+def _cost(row: CellRow) -> CellCost | None:
     least, a, b = (number(row.get(f"us_per_step{part}")) for part in ("", "_a", "_b"))
     if not (least and a and b):
         return None

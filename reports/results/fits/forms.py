@@ -91,8 +91,8 @@ def _curved(dts: Array, errors: Array) -> bool:
     """Whether points on a straight line would be better on a parabola: the order changes."""
     line, parabola = curvature(dts, errors)
     freedom = len(dts) - 3
-    known = max(parabola / max(freedom, 1), LEAST_SCATTER**2)
-    return bool(freedom > 0 and line - parabola > _times(freedom) ** 2 * known)
+    spread = max(parabola / max(freedom, 1), LEAST_SCATTER**2)
+    return bool(freedom > 0 and line - parabola > _times(freedom) ** 2 * spread)
 
 
 def slower(than: float, dts: Array, errors: Array) -> bool:

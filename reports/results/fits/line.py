@@ -36,7 +36,7 @@ from reports.results.fits.forms import (
 from reports.results.fits.points import NEAR_ROUNDING, points
 from reports.results.fits.reach import reach
 
-Kind = Literal[
+FitKind = Literal[
     "order", "floor", "grows", "irregular", "too few", "at rounding", "diverges", "not run"
 ]
 
@@ -62,7 +62,7 @@ class LineFit:
     dt_s: tuple[float, ...]
     error: tuple[float, ...]
     statuses: tuple[str, ...]
-    kind: Kind
+    kind: FitKind
     used: tuple[bool, ...]
     measured: tuple[bool, ...]
     stable_from_s: float = math.nan
@@ -132,24 +132,24 @@ def fit_line(
         Lengths differ, a step is not positive and finite, or an error is negative.
     """
     ends = ["ok"] * len(dt_s) if statuses is None else list(statuses)
-    found = points(dt_s, error, ends, rounding)
-    failed = "" if found.bad is None else ends[found.bad]
+    sorted_out = points(dt_s, error, ends, rounding)
+    failed = "" if sorted_out.bad is None else ends[sorted_out.bad]
     line = LineFit(
         tuple(dt_s),
         tuple(error),
         tuple(ends),
         "too few",
         used=(False,) * len(ends),
-        measured=_mask(found.well, len(ends)),
-        stable_from_s=dt_s[found.well[-1]] if found.well else math.nan,
-        fails_from_s=math.nan if found.bad is None else dt_s[found.bad],
+        measured=_mask(sorted_out.well, len(ends)),
+        stable_from_s=dt_s[sorted_out.well[-1]] if sorted_out.well else math.nan,
+        fails_from_s=math.nan if sorted_out.bad is None else dt_s[sorted_out.bad],
         failed="diverged" if failed == "ok" else failed,
     )
-    if not found.well:
-        return replace(line, kind="not run" if found.bad is None else "diverges")
-    if len({dt_s[i] for i in found.fit}) < 3:
-        return replace(line, kind="at rounding" if found.at_rounding else "too few")
-    fitted = _fitted(line, found.fit)
+    if not sorted_out.well:
+        return replace(line, kind="not run" if sorted_out.bad is None else "diverges")
+    if len({dt_s[i] for i in sorted_out.fit}) < 3:
+        return replace(line, kind="at rounding" if sorted_out.at_rounding else "too few")
+    fitted = _fitted(line, sorted_out.fit)
     if fitted.kind == "floor" and fitted.floor <= NEAR_ROUNDING * rounding:
         return fit_line(dt_s, error, rounding=NEAR_ROUNDING * rounding, statuses=statuses)
     return fitted
@@ -173,13 +173,13 @@ def _with_floor(line: LineFit, dts: Array, errors: Array, curve: Curve) -> LineF
     """A floor, with the doubt of curves of any alignment; its order where the points tell it."""
     dts, errors, more = dts[: curve.points], errors[: curve.points], uncertainty(curve)
     (alone,) = within(dts, errors, curve, [more**2])
-    told = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
+    ordered = alone.order[0] > ORDERS[0] or alone.order[1] < ORDERS[-1]
     near, far = within(dts, errors, curve, [more**2, (2.0 * more) ** 2], ALIGNMENTS)
     return replace(
         line,
         kind="floor",
-        order=curve.order if told else math.nan,
-        order_error=_farthest(curve.order, near.order) if told else math.nan,
+        order=curve.order if ordered else math.nan,
+        order_error=_farthest(curve.order, near.order) if ordered else math.nan,
         floor=curve.floor,
         floor_error=_farthest(curve.floor, near.floor),
         floor_below=far.floor[1],
@@ -214,6 +214,6 @@ def _mask(indices: Sequence[int], number: int) -> tuple[bool, ...]:
     return tuple(i in there for i in range(number))
 
 
-def _farthest(found: float, bounds: tuple[float, float]) -> float:
-    """How far the farther bound is off what was found."""
-    return max(bounds[1] - found, found - bounds[0])
+def _farthest(value: float, bounds: tuple[float, float]) -> float:
+    """How far the farther bound is off the value."""
+    return max(bounds[1] - value, value - bounds[0])

@@ -27,11 +27,11 @@ def words(fit: LineFit, unit: str, period_s: float) -> str:
         if "ok" not in fit.statuses:
             return f"{verb} at every step"
         return f"{verb} at {_per_turn(fit.fails_from_s, period_s)}"
-    told = _told(fit, unit)
+    verdict = _told(fit, unit)
     if not fit.failed:
-        return told
+        return verdict
     below = _per_turn(fit.stable_from_s, period_s)
-    return f"{told}; {FAILS.get(fit.failed, 'fails')} below {below}"
+    return f"{verdict}; {FAILS.get(fit.failed, 'fails')} below {below}"
 
 
 def _told(fit: LineFit, unit: str) -> str:

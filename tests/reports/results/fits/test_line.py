@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reports.judge.three_steps import AT_ROUNDING
-from reports.results.fits.line import Kind, LineFit, fit_line
+from reports.results.fits.line import FitKind, LineFit, fit_line
 
 STEPS = 1e-2 / 2.0 ** np.arange(6)
 
@@ -242,7 +242,7 @@ def test_no_floor_is_claimed_on_first_order_lines_with_scatter() -> None:
     assert kinds.count("floor") <= 3
 
 
-ERRORS: dict[str, tuple[Kind, np.ndarray]] = {
+ERRORS: dict[str, tuple[FitKind, np.ndarray]] = {
     "order": ("order", scattered(line(2.0), 0.05, np.random.default_rng(1))),
     "floor": ("floor", scattered(line(1.0, 1e-2), 0.02, np.random.default_rng(1))),
     "against": ("floor", np.sqrt(1e-6 - 1.4e-3 * (0.1 * STEPS) + (0.1 * STEPS) ** 2 * 1e0)),
