@@ -100,10 +100,12 @@ class Motion:
         )
 
 
-Body = TypeVar("Body", LinkMotion, PointMotion, SliderMotion)
+BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
 
 
-def _each(bodies: Mapping[str, Body], change: Callable[[Array], Array]) -> dict[str, Body]:
+def _each(
+    bodies: Mapping[str, BodyMotion], change: Callable[[Array], Array]
+) -> dict[str, BodyMotion]:
     return {
         name: type(body)(**{key: change(series) for key, series in vars(body).items()})
         for name, body in bodies.items()

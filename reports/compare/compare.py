@@ -26,7 +26,7 @@ from reports.compare.branch import departure
 from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
-from reports.compare.errors import Error, Errors, Kind
+from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track, lacking
 from reports.quantities import QUANTITIES, named
@@ -51,10 +51,10 @@ class _Instants:
         return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
 
     @cached_property
-    def parts(self) -> tuple[tuple[Kind, NDArray[np.bool_], _Instants], ...]:
+    def parts(self) -> tuple[tuple[ErrorKind, NDArray[np.bool_], _Instants], ...]:
         """The first samples, those at change points and the rest, by kind, without empty ones."""
         first = np.arange(self.time_s.size) < _settled(self)
-        kinds: tuple[tuple[Kind, NDArray[np.bool_]], ...] = (
+        kinds: tuple[tuple[ErrorKind, NDArray[np.bool_]], ...] = (
             ("start", first),
             ("total", ~first & ~self.passed),
             ("passage", ~first & self.passed),
@@ -128,7 +128,9 @@ def _settled(at: _Instants) -> int:
     return min(SETTLING, at.time_s.size // 4)
 
 
-def _row(track: Track, at: _Instants, source: Source = "reported", kind: Kind = "total") -> Error:
+def _row(
+    track: Track, at: _Instants, source: Source = "reported", kind: ErrorKind = "total"
+) -> Error:
     """A track as numbers."""
     measured = size(length(track.error))
     return Error(

@@ -9,7 +9,7 @@ from typing import Literal
 
 from reports.quantities.quantity import BodyKind, Source, tolerance_name
 
-Kind = Literal["total", "geometric", "start", "passage"]
+ErrorKind = Literal["total", "geometric", "start", "passage"]
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Error:
     body_kind: BodyKind
     body: str
     source: Source
-    kind: Kind
+    kind: ErrorKind
     unit: str
     scale: float
     maximum: float
@@ -103,7 +103,7 @@ class Errors:
     starts_in_passage: bool = False
 
     def worst(
-        self, quantity: str, source: Source = "reported", kind: Kind = "total"
+        self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
     ) -> Error | None:
         """The largest error of a quantity as a pure number (not finite counts as largest)."""
         return largest(

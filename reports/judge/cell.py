@@ -26,7 +26,7 @@ from reports.judge.tolerance import limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run
 
-Runner = Callable[..., Run]
+CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
 
 
@@ -90,7 +90,7 @@ def check(cell: Cell) -> Checked:
     return examined(cell)[0]
 
 
-def examined(cell: Cell, runner: Runner | None = None) -> tuple[Checked, Run | None]:
+def examined(cell: Cell, runner: CellRunner | None = None) -> tuple[Checked, Run | None]:
     """As `check`, and the run at the full step, None where there is none.
 
     ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
@@ -100,7 +100,7 @@ def examined(cell: Cell, runner: Runner | None = None) -> tuple[Checked, Run | N
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell, runner: Runner) -> tuple[Checked, Run | None]:
+def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     try:
         state = solve(cell.scene, np.zeros(1), bound=False).state()
@@ -159,7 +159,7 @@ def unfinished(cell: Cell, status: str, reason: str) -> Checked:
     return Checked(**vars(evidence), cell=cell, findings=judge(evidence))
 
 
-def _run(cell: Cell, runner: Runner, state: State, finer: int) -> Run:
+def _run(cell: Cell, runner: CellRunner, state: State, finer: int) -> Run:
     """The cell with its step cut into ``finer`` parts, logged at the same instants."""
     return runner(
         cell.scene,

@@ -6,19 +6,19 @@ import json
 import math
 from collections.abc import Iterator
 
-from reports.compare.errors import Kind, largest
+from reports.compare.errors import ErrorKind, largest
 from reports.judge.cell import Checked
 from reports.judge.tolerance import DEFAULTS
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
-Column = tuple[str, str, BodyKind, Source, Kind]
+Column = tuple[str, str, BodyKind, Source, ErrorKind]
 
 
 def _columns() -> Iterator[Column]:
     """The error columns of the frame of cells: name, and the rows that it is the maximum of."""
     for name, entry in QUANTITIES.items():
-        more: list[tuple[Source, Kind]] = [("reported", "geometric")] * (entry.role == "place")
+        more: list[tuple[Source, ErrorKind]] = [("reported", "geometric")] * (entry.role == "place")
         more += [("differenced", "total") for each in entry.criteria if each.tolerance.differenced]
         for measure in entry.measures:
             yield measure.column, name, measure.body_kind, "reported", "total"

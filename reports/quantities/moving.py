@@ -11,10 +11,10 @@ from reports.quantities.quantity import Measure, Series
 
 Order = Literal[0, 1, 2]
 """The place itself, or a rate of it."""
-Moving = Literal["link", "slider", "point"]
+MovingKind = Literal["link", "slider", "point"]
 
 
-def moving(kind: Moving, order: Order, column: str) -> Measure:
+def moving(kind: MovingKind, order: Order, column: str) -> Measure:
     """Angles, displacements or positions of the moving bodies of a kind, or a rate of them."""
     turns = kind == "link"
 
@@ -25,7 +25,7 @@ def moving(kind: Moving, order: Order, column: str) -> Measure:
     def truth(scene: Scene, reference: Motion) -> Series:
         """Without points of the ground, and without the driver's angle, which is the drive."""
         driver = (scene.driver.link,) if order == 0 else ()
-        still: Mapping[Moving, Collection[str]] = {"link": driver, "point": scene.ground}
+        still: Mapping[MovingKind, Collection[str]] = {"link": driver, "point": scene.ground}
         bodies = _read(reference, kind, order).items()
         return {name: series for name, series in bodies if name not in still.get(kind, ())}
 
@@ -41,7 +41,7 @@ def moving(kind: Moving, order: Order, column: str) -> Measure:
     )
 
 
-def _read(motion: Motion | Bound | None, kind: Moving, order: Order) -> Series:
+def _read(motion: Motion | Bound | None, kind: MovingKind, order: Order) -> Series:
     """The series of a motion, or of a bound, if it is there."""
     if motion is None:
         return {}

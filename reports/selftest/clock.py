@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from models.scene import Scene
-from reports.judge.cell import Runner
+from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, Fault, in_log, switched
 from reports.selftest.logs import WHEN, last, moved, output, rows, with_link, with_times
 from sim.engine import Run
@@ -18,7 +18,7 @@ from sim.run import run
 from sim.spoil import rounded
 
 
-def _late(size: float) -> Runner:
+def _late(size: float) -> CellRunner:
     """Every sample is that of so many samples later."""
     samples = round(size)
 
@@ -30,7 +30,7 @@ def _late(size: float) -> Runner:
     return runner
 
 
-def _other_step(share: float) -> Runner:
+def _other_step(share: float) -> CellRunner:
     """The engine's step is longer than it was told, and the stamps know nothing of it."""
 
     def runner(*args: Any, dt_s: float, **options: Any) -> Run:

@@ -12,7 +12,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene, span
-from reports.judge.cell import Runner
+from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, REFUSED, Fault, Plant, can_set, in_engine, in_settings
 from reports.selftest.logs import last, moved
 from sim.engine import Run, Session
@@ -36,7 +36,7 @@ def _third(steps: int) -> Iterable[int]:
     return (steps // 3,)
 
 
-def _dropped(turns: float) -> Runner:
+def _dropped(turns: float) -> CellRunner:
     """The loop opens so many turns before the end of one turn."""
     plant = _done(
         lambda tools, session, _: tools.open_loop(session),
@@ -79,7 +79,7 @@ def _iterations(size: float) -> str:
     return f"{round(1.0 / size)} iter."
 
 
-def _servo(size: float) -> Runner:
+def _servo(size: float) -> CellRunner:
     """The crank is turned by a motor that has to see an error first."""
 
     def runner(*args: Any, drive: str, **options: Any) -> Run:
@@ -88,7 +88,7 @@ def _servo(size: float) -> Runner:
     return runner
 
 
-def _misread(size: float) -> Runner:
+def _misread(size: float) -> CellRunner:
     """Velocities are taken for those of the instants of the positions, which Euler's are not."""
 
     def runner(*args: Any, **options: Any) -> Run:

@@ -14,7 +14,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Scene
-from reports.judge.cell import Runner
+from reports.judge.cell import CellRunner
 from sim.engine import Run, Session
 from sim.registry import available, engine, offering
 from sim.run import run
@@ -23,7 +23,7 @@ from sim.spoil import Opening, Spoiler, SpoiltEngine, WrongSetting, spoiler
 FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
 REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
-Plant = Callable[[float], Runner]
+Plant = Callable[[float], CellRunner]
 FaultGroup = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
 
 
@@ -79,7 +79,7 @@ class Fault:
 def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
     """The engine is given another scene than the reference, well assembled."""
 
-    def plant(size: float) -> Runner:
+    def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
             wrong = change(scene, size)
             return run(wrong, solve(wrong, np.zeros(1)).state(), *args, **options)
@@ -97,7 +97,7 @@ def can_set(what: WrongSetting) -> Callable[[str], bool]:
 def in_settings(what: WrongSetting) -> Plant:
     """The engine is set otherwise than asked for."""
 
-    def plant(size: float) -> Runner:
+    def plant(size: float) -> CellRunner:
         def runner(
             scene: Scene, state: Any, name: str, *args: Any, settings: Any = None, **options: Any
         ) -> Run:
@@ -120,7 +120,7 @@ def in_engine(
     that is over.
     """
 
-    def plant(size: float) -> Runner:
+    def plant(size: float) -> CellRunner:
         def runner(scene: Scene, state: Any, name: str, *args: Any, **options: Any) -> Run:
             steps = options["steps"]
 
@@ -138,7 +138,7 @@ def in_engine(
 def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
     """The engine runs the scene as ever; what it has logged is changed afterwards."""
 
-    def plant(size: float) -> Runner:
+    def plant(size: float) -> CellRunner:
         def runner(scene: Scene, *args: Any, **options: Any) -> Run:
             return change(scene, run(scene, *args, **options), size)
 

@@ -13,7 +13,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import PointMotion
 from models.scene import Scene
-from reports.judge.cell import Runner
+from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, Plant, in_log, in_scene, switched
 from reports.selftest.logs import every_series, last, moved, with_points
 from reports.selftest.mechanism import other_branch
@@ -64,7 +64,7 @@ def _displaced(scene: Scene, done: Run, share: float) -> Run:
     return replace(done, motion=replace(motion, sliders={name: off}))
 
 
-def _other_midway(size: float) -> Runner:
+def _other_midway(size: float) -> CellRunner:
     """The second half of the log is that of the other assembly, from a run of it."""
 
     def runner(scene: Scene, *args: Any, **options: Any) -> Run:

@@ -18,7 +18,7 @@ from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import SETTLING, compare
 from reports.compare.completeness import incomplete
-from reports.compare.errors import Errors, Kind
+from reports.compare.errors import ErrorKind, Errors
 from reports.judge.tolerance import limits
 from reports.quantities.quantity import Source
 from sim.engine import Poses, Run
@@ -33,7 +33,9 @@ def compared(scene: Scene, run: Run) -> Errors | None:
     return compare(Beside.of(Truth(scene), run))
 
 
-def pure(errors: Errors, quantity: str, source: Source = "reported", kind: Kind = "total") -> float:
+def pure(
+    errors: Errors, quantity: str, source: Source = "reported", kind: ErrorKind = "total"
+) -> float:
     """The worst error of a quantity as a pure number."""
     row = errors.worst(quantity, source, kind)
     assert row is not None, (quantity, source, kind)
