@@ -47,8 +47,8 @@ class CaseFacts:
     """A case as a reader needs it: what is made hard, and what a good engine does.
 
     ``values`` are those of the parameter, from easy to hard; ``labels`` says them in a few
-    characters. ``good`` are the outcomes of an engine that holds; ``within`` is the class: the
-    error, as a pure number, that counts as held.
+    characters, as `label` does if not given. ``good`` are the outcomes of an engine that holds;
+    ``within`` is the class: the error, as a pure number, that counts as held.
     """
 
     name: str
