@@ -77,12 +77,12 @@ def python_of(folder: Path) -> Path:
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
-def place(cache: Path, one: EngineVersion) -> Path:
+def place(cache: Path, asked: EngineVersion) -> Path:
     """The folder of an environment: another for every Python and every numpy."""
     python = platform.python_version()
     build = (sysconfig.get_config_var("SOABI"), platform.machine(), sys.base_prefix)
     short = hashlib.sha256(repr(build).encode()).hexdigest()[:8]
-    name = f"{one.name}-python-{python}-numpy-{held_numpy()}-{short}"
+    name = f"{asked.name}-python-{python}-numpy-{held_numpy()}-{short}"
     return cache / "environments" / name
 
 
@@ -91,12 +91,14 @@ def held_numpy() -> str:
     return installed_version("numpy")
 
 
-def commands(uv: str | None, folder: Path, one: EngineVersion, constraint: Path) -> list[list[str]]:
+def commands(
+    uv: str | None, folder: Path, asked: EngineVersion, constraint: Path
+) -> list[list[str]]:
     """What makes an environment and installs an engine, with its own dependencies, into it.
 
     Wheels only: an engine that has to be compiled first would be another one on every machine.
     """
-    wheels = ["--only-binary", ":all:", "--constraint", str(constraint), one.requirement]
+    wheels = ["--only-binary", ":all:", "--constraint", str(constraint), asked.requirement]
     python = str(python_of(folder))
     if uv:
         return [
@@ -114,7 +116,7 @@ def clean_variables(variables: Mapping[str, str] = os.environ) -> dict[str, str]
     return {name: text for name, text in variables.items() if not LEAK.fullmatch(name.upper())}
 
 
-def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
+def ready(cache: Path, asked: EngineVersion, uv: str | None, run: Runner) -> Path:
     """The interpreter of the version's environment, which is made if it is not there yet.
 
     An environment counts as there once it is complete: what a killed install left is made anew.
@@ -126,38 +128,38 @@ def ready(cache: Path, one: EngineVersion, uv: str | None, run: Runner) -> Path:
     CrankcheckError
         The cache can not be written.
     """
-    folder = place(cache, one)
+    folder = place(cache, asked)
     python = python_of(folder)
     if (folder / COMPLETE).is_file() and python.is_file():
         return python
     _clear(folder)
     constraint = cache / "environments" / f"numpy-{held_numpy()}.txt"
     write(constraint, f"numpy=={held_numpy()}\n")
-    for command in commands(uv, folder, one, constraint):
+    for command in commands(uv, folder, asked, constraint):
         ended = run(command, clean_variables(), constraint.parent)
         if ended.code:
             _clear(folder)
             raise NotMeasuredError(f"not installed: {reason(ended.output, ended.complaint)}")
-    _check(python, one, run)
-    write(folder / COMPLETE, f"{one.requirement}\n")
+    _check(python, asked, run)
+    write(folder / COMPLETE, f"{asked.requirement}\n")
     return python
 
 
-def _check(python: Path, one: EngineVersion, run: Runner) -> None:
+def _check(python: Path, asked: EngineVersion, run: Runner) -> None:
     """Ask the new interpreter for the version that it finds. Raises NotMeasuredError."""
-    package = declaration(one.engine).install
+    package = declaration(asked.engine).install
     question = f"from importlib.metadata import version; print(version({package!r}))"
     ended = run([str(python), "-P", "-c", question], clean_variables(), None)
     answer = ended.output.strip()
     try:
-        same = not ended.code and Version(answer) == one.version
+        same = not ended.code and Version(answer) == asked.version
     except InvalidVersion:
         same = False
     if not same:
         raise NotMeasuredError(
             shortened(
-                f"installed, but the new environment finds {answer or 'no ' + one.engine} in place "
-                f"of {one.version}: look into the settings of pip or uv"
+                f"installed, but the new environment finds {answer or 'no ' + asked.engine} in "
+                f"place of {asked.version}: look into the settings of pip or uv"
             )
         )
 

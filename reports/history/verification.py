@@ -73,9 +73,9 @@ def key_of(what: Iterable[object]) -> str:
     return hashlib.sha256("\n".join([*parts, *map(repr, what)]).encode()).hexdigest()[:16]
 
 
-def place(cache: Path, one: EngineVersion, key: str) -> Path:
+def place(cache: Path, asked: EngineVersion, key: str) -> Path:
     """The folder of the result of a version."""
-    return cache / "results" / f"{one.name}-{key}"
+    return cache / "results" / f"{asked.name}-{key}"
 
 
 def kept(folder: Path) -> bool:
@@ -85,7 +85,7 @@ def kept(folder: Path) -> bool:
 
 def measure(
     folder: Path,
-    one: EngineVersion,
+    asked: EngineVersion,
     python: Path,
     arguments: Sequence[str],
     run: Runner = patient,
@@ -103,10 +103,10 @@ def measure(
     try:
         aside.parent.mkdir(parents=True, exist_ok=True)
         shutil.rmtree(aside, ignore_errors=True)
-        package = declaration(one.engine).package
+        package = declaration(asked.engine).package
         signals = leave_to_parent.__module__
         code = LAUNCH.format(engine=package, folders=borrowed(), signals=signals)
-        options = ["verify", "--engine", one.engine, "-o", str(aside), *arguments]
+        options = ["verify", "--engine", asked.engine, "-o", str(aside), *arguments]
         ended = run([str(python), "-P", "-c", code, *options], clean_variables(), None)
         if not kept(aside):
             raise NotMeasuredError(_not_run(ended))

@@ -36,12 +36,12 @@ def scenes(console: Console) -> None:
 
 def engines(console: Console, settings: bool) -> None:
     """The engines: version, or the command that installs them; profiles, also with settings."""
-    for one in available():
-        state = one.version or f"not installed: {one.install}"
-        console.print(Text(f"{one.name}  {state}", "bold" if one.version else "yellow"))
-        if one.version is None:
+    for entry in available():
+        state = entry.version or f"not installed: {entry.install}"
+        console.print(Text(f"{entry.name}  {state}", "bold" if entry.version else "yellow"))
+        if entry.version is None:
             continue
-        for profile in engine(one.name).profiles.values():
+        for profile in engine(entry.name).profiles.values():
             grid = Table.grid(padding=(0, 2, 0, 0))
             grid.add_column(no_wrap=True, min_width=12)
             grid.add_column(overflow="fold")
