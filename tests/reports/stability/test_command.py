@@ -145,10 +145,10 @@ def test_a_mistake_ends_with_2_and_says_what_would_work(
 
 
 def test_a_run_over_its_limit_is_a_row_with_its_reason(crank: Crank) -> None:
-    args = ["stability", "wrong-branch", "--engine", "pymunk", "--profile", "as-shipped"]
-    result = crank(*args, "--limit-s", "1e-4")
-    assert result.exit_code == 0, result.output
-    assert "crashed" in result.stdout
+    args = ["stability", "long-fourbar", "--engine", "pymunk", "--profile", "as-shipped"]
+    result = crank(*args, "--at", "1e4", "--limit-s", "0.05")
+    assert result.exit_code == 1, result.output
+    assert "crashed no end within 0.05 s" in result.stdout
 
 
 def test_the_report_of_a_folder_of_hard_cases_is_their_page(
