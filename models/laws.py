@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Self
 
 import numpy as np
 
 from models.array import Array
 
 
-class Law(Protocol):
-    """A smooth law of motion of the driver.
+class Law(ABC):
+    """A smooth law of motion of the driver. Raises ValueError for numbers that drive nothing.
 
     ``period_s`` is what one "turn" of a run means for the law, and ``peak_speed_rad_s`` the
     speed that errors of velocity are divided by; both are positive. ``offset_rad``,
@@ -20,53 +21,14 @@ class Law(Protocol):
     fastest circular frequency in the law, are what the rounding of the law grows with.
     """
 
-    @property
-    def offset_rad(self) -> float: ...
-
-    @property
-    def phase_rad(self) -> float: ...
-
-    @property
-    def fastest_rad_s(self) -> float: ...
-
-    @property
-    def period_s(self) -> float: ...
-
-    @property
-    def peak_speed_rad_s(self) -> float: ...
-
-    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """Angle [rad], angular velocity [rad/s], angular acceleration [rad/s^2], shape of time."""
-        ...
-
-    def turned(self, angle_rad: float) -> Law:
-        """The law with a constant angle [rad] added."""
-        ...
-
-    def mirrored(self) -> Law:
-        """The law with every angle of the opposite sign."""
-        ...
-
-    def sped_up(self, factor: float) -> Law:
-        """The law that runs ``factor`` times as fast through the same angles."""
-        ...
-
-
-@dataclass(frozen=True)
-class ConstantSpeed:
-    """theta = start + speed t."""
-
-    start_rad: float
-    speed_rad_s: float
-
     def __post_init__(self) -> None:
-        _finite(self)
-        if self.speed_rad_s == 0.0:
-            raise ValueError("speed_rad_s is 0: a driver at rest drives nothing")
+        for name, number in vars(self).items():
+            if not math.isfinite(number):
+                raise ValueError(f"{name} is {number}: a law of motion needs finite numbers")
 
     @property
-    def offset_rad(self) -> float:
-        return abs(self.start_rad)
+    @abstractmethod
+    def offset_rad(self) -> float: ...
 
     @property
     def phase_rad(self) -> float:
@@ -74,15 +36,52 @@ class ConstantSpeed:
 
     @property
     def fastest_rad_s(self) -> float:
-        return abs(self.speed_rad_s)
+        return self.peak_speed_rad_s
 
     @property
     def period_s(self) -> float:
-        return math.tau / abs(self.speed_rad_s)
+        return math.tau / self.peak_speed_rad_s
+
+    @property
+    @abstractmethod
+    def peak_speed_rad_s(self) -> float: ...
+
+    @abstractmethod
+    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        """Angle [rad], angular velocity [rad/s], angular acceleration [rad/s^2], shape of time."""
+
+    @abstractmethod
+    def turned(self, angle_rad: float) -> Law:
+        """The law with a constant angle [rad] added."""
+
+
+@dataclass(frozen=True)
+class _ToSpeed(Law):
+    """A law that starts at an angle and comes to one speed."""
+
+    start_rad: float
+    speed_rad_s: float
+
+    @property
+    def offset_rad(self) -> float:
+        return abs(self.start_rad)
 
     @property
     def peak_speed_rad_s(self) -> float:
         return abs(self.speed_rad_s)
+
+    def turned(self, angle_rad: float) -> Self:
+        return replace(self, start_rad=self.start_rad + angle_rad)
+
+
+@dataclass(frozen=True)
+class ConstantSpeed(_ToSpeed):
+    """theta = start + speed t."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.speed_rad_s == 0.0:
+            raise ValueError("speed_rad_s is 0: a driver at rest drives nothing")
 
     def angle(self, time_s: Array) -> Array:
         """The angle alone [rad]."""
@@ -92,18 +91,9 @@ class ConstantSpeed:
         theta = self.angle(time_s)
         return theta, np.full_like(theta, self.speed_rad_s), np.zeros_like(theta)
 
-    def turned(self, angle_rad: float) -> ConstantSpeed:
-        return replace(self, start_rad=self.start_rad + angle_rad)
-
-    def mirrored(self) -> ConstantSpeed:
-        return ConstantSpeed(-self.start_rad, -self.speed_rad_s)
-
-    def sped_up(self, factor: float) -> ConstantSpeed:
-        return replace(self, speed_rad_s=self.speed_rad_s * factor)
-
 
 @dataclass(frozen=True)
-class Oscillating:
+class Oscillating(Law):
     """theta = centre + amplitude sin(frequency t + phase); frequency is circular [rad/s]."""
 
     centre_rad: float
@@ -112,7 +102,7 @@ class Oscillating:
     phase_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        _finite(self)
+        super().__post_init__()
         if self.amplitude_rad == 0.0 or self.frequency_rad_s == 0.0:
             raise ValueError(
                 "an oscillating driver needs an amplitude and a frequency other than 0"
@@ -143,66 +133,33 @@ class Oscillating:
     def turned(self, angle_rad: float) -> Oscillating:
         return replace(self, centre_rad=self.centre_rad + angle_rad)
 
-    def mirrored(self) -> Oscillating:
-        return replace(self, centre_rad=-self.centre_rad, amplitude_rad=-self.amplitude_rad)
-
-    def sped_up(self, factor: float) -> Oscillating:
-        return replace(self, frequency_rad_s=self.frequency_rad_s * factor)
-
 
 @dataclass(frozen=True)
-class FromRest:
+class FromRest(_ToSpeed):
     """From rest to a constant speed by a cycloidal ramp of ``rise_s``; acceleration is continuous.
 
     Within the ramp, with tau = t / rise: omega = speed (tau - sin(2 pi tau) / (2 pi)).
     """
 
-    start_rad: float
-    speed_rad_s: float
     rise_s: float
 
     def __post_init__(self) -> None:
-        _finite(self)
+        super().__post_init__()
         if self.speed_rad_s == 0.0 or self.rise_s <= 0.0:
             raise ValueError("a start from rest needs speed_rad_s other than 0 and rise_s above 0")
 
     @property
-    def offset_rad(self) -> float:
-        return abs(self.start_rad)
-
-    @property
-    def phase_rad(self) -> float:
-        return 0.0
-
-    @property
     def fastest_rad_s(self) -> float:
         return max(abs(self.speed_rad_s), math.tau / self.rise_s)
-
-    @property
-    def period_s(self) -> float:
-        return math.tau / abs(self.speed_rad_s)
-
-    @property
-    def peak_speed_rad_s(self) -> float:
-        return abs(self.speed_rad_s)
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         share, rate, second = _ramp(time_s, self.rise_s)
         speed = self.speed_rad_s
         return self.start_rad + speed * share, speed * rate, speed * second
 
-    def turned(self, angle_rad: float) -> FromRest:
-        return replace(self, start_rad=self.start_rad + angle_rad)
-
-    def mirrored(self) -> FromRest:
-        return replace(self, start_rad=-self.start_rad, speed_rad_s=-self.speed_rad_s)
-
-    def sped_up(self, factor: float) -> FromRest:
-        return replace(self, speed_rad_s=self.speed_rad_s * factor, rise_s=self.rise_s / factor)
-
 
 @dataclass(frozen=True)
-class SpeedChange:
+class SpeedChange(Law):
     """From one constant speed to another by a cycloidal ramp of ``rise_s`` that begins at ``at_s``.
 
     With ``rise_s`` 0 the speed jumps: it is the new one from ``at_s`` on, and the acceleration is
@@ -216,7 +173,7 @@ class SpeedChange:
     rise_s: float
 
     def __post_init__(self) -> None:
-        _finite(self)
+        super().__post_init__()
         if self.after_rad_s == 0.0 or self.rise_s < 0.0:
             raise ValueError(
                 "a change of speed needs after_rad_s other than 0 and rise_s of 0 or more"
@@ -227,16 +184,8 @@ class SpeedChange:
         return abs(self.start_rad) + abs((self.after_rad_s - self.before_rad_s) * self.at_s)
 
     @property
-    def phase_rad(self) -> float:
-        return 0.0
-
-    @property
     def fastest_rad_s(self) -> float:
         return max(self.peak_speed_rad_s, math.tau / self.rise_s if self.rise_s else 0.0)
-
-    @property
-    def period_s(self) -> float:
-        return math.tau / self.peak_speed_rad_s
 
     @property
     def peak_speed_rad_s(self) -> float:
@@ -251,23 +200,6 @@ class SpeedChange:
     def turned(self, angle_rad: float) -> SpeedChange:
         return replace(self, start_rad=self.start_rad + angle_rad)
 
-    def mirrored(self) -> SpeedChange:
-        return replace(
-            self,
-            start_rad=-self.start_rad,
-            before_rad_s=-self.before_rad_s,
-            after_rad_s=-self.after_rad_s,
-        )
-
-    def sped_up(self, factor: float) -> SpeedChange:
-        return replace(
-            self,
-            before_rad_s=self.before_rad_s * factor,
-            after_rad_s=self.after_rad_s * factor,
-            at_s=self.at_s / factor,
-            rise_s=self.rise_s / factor,
-        )
-
 
 def _ramp(time_s: Array, rise_s: float) -> tuple[Array, Array, Array]:
     """A speed that rises from 0 to 1: its integral [s], the speed [1], its rate [1/s]."""
@@ -278,10 +210,3 @@ def _ramp(time_s: Array, rise_s: float) -> tuple[Array, Array, Array]:
     half = np.sin(math.pi * tau) ** 2
     share = rise_s * (tau**2 / 2 - half / (2 * math.pi**2)) + after
     return share, tau - np.sin(math.tau * tau) / math.tau, 2.0 / rise_s * half
-
-
-def _finite(law: ConstantSpeed | Oscillating | FromRest | SpeedChange) -> None:
-    """Refuse a law with a number that is not finite."""
-    for name, number in vars(law).items():
-        if not math.isfinite(number):
-            raise ValueError(f"{name} is {number}: a law of motion needs finite numbers")

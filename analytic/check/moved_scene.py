@@ -1,4 +1,4 @@
-"""The same mechanism somewhere else: turned, moved, mirrored, scaled, or run at another speed.
+"""The same mechanism somewhere else: turned, moved or scaled.
 
 A mechanism does not know where it stands, so errors as pure numbers must not change either.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from analytic.structure.mobility import analyse
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
@@ -52,37 +51,6 @@ def moved(scene: Scene, by_m: Point) -> Scene:
     )
 
 
-def mirrored(scene: Scene) -> Scene:
-    """The scene mirrored in the x-axis; pins of two-link dyads change their branch with it."""
-
-    def flip(p: Point) -> Point:
-        return (p[0], -p[1])
-
-    def link(old: Link) -> Link:
-        points = {name: flip(place) for name, place in old.points.items()}
-        return replace(old, points=points, centre_m=flip(old.centre_m))
-
-    def slider(old: Slider) -> Slider:
-        return replace(
-            old,
-            through_m=flip(old.through_m),
-            direction_rad=-old.direction_rad,
-            angle_rad=-old.angle_rad,
-        )
-
-    sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
-    flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
-    return replace(
-        scene,
-        ground={name: flip(place) for name, place in scene.ground.items()},
-        links={name: link(old) for name, old in scene.links.items()},
-        sliders={name: slider(old) for name, old in scene.sliders.items()},
-        driver=Driver(scene.driver.link, scene.driver.law.mirrored()),
-        branch={**scene.branch, **flipped},
-        gravity_m_s2=flip(scene.gravity_m_s2),
-    )
-
-
 def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with every length times ``factor``, made of rods of the same mass per length.
 
@@ -116,14 +84,4 @@ def scaled(scene: Scene, factor: float) -> Scene:
         links={name: link(old) for name, old in scene.links.items()},
         sliders={name: slider(old) for name, old in scene.sliders.items()},
         gravity_m_s2=grow(scene.gravity_m_s2),
-    )
-
-
-def sped_up(scene: Scene, factor: float) -> Scene:
-    """The scene driven ``factor`` times as fast through the same angles, in similar motion."""
-    g = scene.gravity_m_s2
-    return replace(
-        scene,
-        driver=Driver(scene.driver.link, scene.driver.law.sped_up(factor)),
-        gravity_m_s2=(g[0] * factor**2, g[1] * factor**2),
     )

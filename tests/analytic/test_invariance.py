@@ -17,6 +17,7 @@ from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
+from tests.worlds.other_way import mirrored, sped_up
 from tests.worlds.strategies import swing_times
 
 
@@ -70,10 +71,10 @@ def _assert_same(
 
 CHANGES: dict[str, tuple[Callable[[Scene], Scene], tuple[float, float, float, bool]]] = {
     "turned": (lambda s: transform.rotated(s, 0.7), (0.7, 1.0, 1.0, False)),
-    "mirrored": (transform.mirrored, (0.0, 1.0, 1.0, True)),
+    "mirrored": (mirrored, (0.0, 1.0, 1.0, True)),
     "larger": (lambda s: transform.scaled(s, 10.0), (0.0, 10.0, 1.0, False)),
     "smaller": (lambda s: transform.scaled(s, 0.1), (0.0, 0.1, 1.0, False)),
-    "faster": (lambda s: transform.sped_up(s, 50.0), (0.0, 1.0, 50.0, False)),
+    "faster": (lambda s: sped_up(s, 50.0), (0.0, 1.0, 50.0, False)),
 }
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from tests.worlds.other_way import faster_law, mirrored_law
 
 LAWS: list[Law] = [
     ConstantSpeed(0.3, -7.0),
@@ -34,8 +35,8 @@ def test_transformed_laws_follow_the_transformation(law: Law) -> None:
     t = np.linspace(0.0, 0.7, 11)
     theta, omega, alpha = law.at(t)
     assert np.allclose(law.turned(0.7).at(t)[0], theta + 0.7)
-    assert np.allclose(law.mirrored().at(t), [-theta, -omega, -alpha])
-    fast = law.sped_up(3.0)
+    assert np.allclose(mirrored_law(law).at(t), [-theta, -omega, -alpha])
+    fast = faster_law(law, 3.0)
     assert np.allclose(fast.at(t / 3.0), [theta, 3.0 * omega, 9.0 * alpha])
     assert fast.period_s == pytest.approx(law.period_s / 3.0)
     assert fast.peak_speed_rad_s == pytest.approx(law.peak_speed_rad_s * 3.0)
