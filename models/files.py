@@ -83,12 +83,12 @@ def scene_texts(names: Iterable[str]) -> dict[str, str]:
 
     Raises CrankcheckError as `load_scene`.
     """
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for given in tuple(names) or tuple(shipped()):
         path = find_scene(given)
         text = read_text(path)
-        found[parse_scene(text, str(path)).name] = text
-    return found
+        texts[parse_scene(text, str(path)).name] = text
+    return texts
 
 
 def parse_scene(text: str, place: str) -> Scene:
@@ -222,5 +222,4 @@ def _short(found: object) -> str:
     """What was found, short enough for a message."""
     if isinstance(found, float) and not math.isfinite(found):
         return str(found)
-    text = repr(found)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return cut(repr(found))

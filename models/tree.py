@@ -14,14 +14,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import EngineError
-from models.joints import (
-    Prism,
-    Slot,
-    bodies,
-    joints,
-    local_point,
-    turned,
-)
+from models.joints import Prism, Slot, bodies, joints, local_point, turned
 from models.motion import State
 from models.poses import Frame, along, frames
 from models.scene import GROUND, Point, Scene, Slider
@@ -142,12 +135,12 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
     """The joints in order of priority; each entry lists equally good ways to hold one joint."""
     pivot = scene.driver_pivot
     yield [_Edge(GROUND, scene.driver.link, pivot)]
-    found = joints(scene)
-    for held in found.slides:
-        yield _slides(held)
+    ties = joints(scene)
+    for slide in ties.slides:
+        yield _slides(slide)
     pairs = [
         (pin.point, _Edge(a, b, pin.point))
-        for pin in found.pins
+        for pin in ties.pins
         for i, a in enumerate(pin.bodies)
         for b in pin.bodies[i + 1 :]
     ]
@@ -155,14 +148,14 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
         yield [edge]
 
 
-def _slides(held: Prism | Slot) -> list[_Edge]:
+def _slides(slide: Prism | Slot) -> list[_Edge]:
     """The ways to hold a slide."""
-    slider = held.slider
-    if isinstance(held, Prism):
-        return [_Edge(slider.on, held.body, slider.point, slider, turns=False)]
-    if not held.bodies:
+    slider = slide.slider
+    if isinstance(slide, Prism):
+        return [_Edge(slider.on, slide.body, slider.point, slider, turns=False)]
+    if not slide.bodies:
         raise EngineError(_needs_mass(slider))
-    return [_Edge(slider.on, body, slider.point, slider) for body in held.bodies]
+    return [_Edge(slider.on, body, slider.point, slider) for body in slide.bodies]
 
 
 def _needs_mass(slider: Slider) -> str:
@@ -184,15 +177,15 @@ def _check_close(scene: Scene, close: Sequence[str]) -> None:
 
 def _closures(scene: Scene, at_point: _Groups) -> tuple[LoopPin, ...]:
     """The pins that the tree leaves open: one closure between each two groups at a point."""
-    found: list[LoopPin] = []
+    closures: list[LoopPin] = []
     for pin in joints(scene).pins:
         first = pin.bodies[0]
-        found += [
+        closures += [
             LoopPin(pin.point, (first, body))
             for body in pin.bodies[1:]
             if at_point.join((pin.point, first), (pin.point, body))
         ]
-    return tuple(found)
+    return tuple(closures)
 
 
 def _limbs(scene: Scene, where: dict[str, Frame], edges: Sequence[_Edge]) -> tuple[Limb, ...]:
@@ -221,13 +214,17 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     base, body = where[parent], where[child]
     angle = body.theta - base.theta
     rate = body.omega - base.omega
-    hinge = Freedom(f"{child}.{edge.point}", "hinge", (0.0, 0.0), 0.0, angle, rate)
+
+    def hinge(anchor: Point) -> Freedom:
+        """The joint that turns about a point of the child."""
+        return Freedom(f"{child}.{edge.point}", "hinge", anchor, 0.0, angle, rate)
+
     if edge.slider is None:
         anchor = local_point(scene, child, edge.point)
         arm = turned(anchor, angle)
         pivot = local_point(scene, parent, edge.point)
         offset = (pivot[0] - arm[0], pivot[1] - arm[1])
-        return Limb(child, parent, offset, angle, (_anchored(hinge, anchor),))
+        return Limb(child, parent, offset, angle, (hinge(anchor),))
     slider, guide = edge.slider, where[edge.slider.on]
     rider = edge.b
     place = where[rider].at(local_point(scene, rider, edge.point))
@@ -238,10 +235,5 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     offset = base.into(body.origin)
     if not edge.turns:
         return Limb(child, parent, offset, angle, (slide,))
-    hinge = _anchored(hinge, body.into(place))
-    return Limb(child, parent, offset, angle, (slide, hinge) if rides else (hinge, slide))
-
-
-def _anchored(hinge: Freedom, anchor: Point) -> Freedom:
-    """The hinge at a point of the body."""
-    return Freedom(hinge.name, hinge.kind, anchor, 0.0, hinge.ref, hinge.rate)
+    turns = hinge(body.into(place))
+    return Limb(child, parent, offset, angle, (slide, turns) if rides else (turns, slide))

@@ -64,13 +64,17 @@ class Structure:
         """The mobility for people, and what the count makes of it where that is something else."""
         if not self.redundant:
             return f"mobility {self.mobility}"
-        spare = ", ".join(bridge.link for bridge in self.redundant)
-        return f"mobility {self.mobility} ({self.count} by count; redundant: {spare})"
+        return f"mobility {self.mobility} ({self.count} by count; redundant: {self.spare})"
 
     @property
     def pairs(self) -> int:
-        """p5: the number of pairs of one freedom."""
-        return _count_pairs(self.pins, self.prismatics)
+        """p5: the number of pairs of one freedom; a pin that joins k bodies is k - 1 of them."""
+        return sum(len(names) - 1 for names in self.pins.values()) + len(self.prismatics)
+
+    @property
+    def spare(self) -> str:
+        """The names of the redundant links."""
+        return ", ".join(bridge.link for bridge in self.redundant)
 
 
 def sliding_body(slider: Slider) -> str:
@@ -92,33 +96,27 @@ def analyse(scene: Scene) -> Structure:
     pins = _pins(scene)
     prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
     order, left = decompose(bodies, scene.driver.link, Pairs(pins, prismatics))
-    found = Structure(bodies, pins, prismatics, order)
-    if left or found.mobility != 1:
-        raise StructureError(f"{scene.name}: {_fault(found, left)}")
-    _check_held(scene, found.groups)
-    _check_branches(scene, found.groups)
-    return found
+    structure = Structure(bodies, pins, prismatics, order)
+    if left or structure.mobility != 1:
+        raise StructureError(f"{scene.name}: {_fault(structure, left)}")
+    _check_held(scene, structure.groups)
+    _check_branches(scene, structure.groups)
+    return structure
 
 
-def _fault(found: Structure, left: list[str]) -> str:
+def _fault(structure: Structure, left: list[str]) -> str:
     """Why this is no mechanism of dyads with one driver: ``left`` could not be placed."""
-    if found.mobility == 1:
-        known = {GROUND, *found.bodies} - set(left)
-        pairs = Pairs(found.pins, found.prismatics)
-        outer = {body: pairs.outer(body, known) for body in left}
-        return _no_closed_form(left, outer, found.pins, found.prismatics)
-    n, p5 = len(found.bodies), found.pairs
-    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {found.count}"
-    if found.redundant:
-        spare = ", ".join(bridge.link for bridge in found.redundant)
-        count += f", but {found.mobility} where redundant links ({spare}) are not counted"
-    return f"{count}; one driver needs mobility 1. {_what_to_do(found.mobility)}"
-
-
-def _what_to_do(mobility: int) -> str:
+    mobility = structure.mobility
+    if mobility == 1:
+        return _no_closed_form(structure, left)
+    n, p5 = len(structure.bodies), structure.pairs
+    count = f"mobility W = 3 n - 2 p5 - p4 = 3*{n} - 2*{p5} - 0 = {structure.count}"
+    if structure.redundant:
+        count += f", but {mobility} where redundant links ({structure.spare}) are not counted"
+    cure = "Remove a link or a pin that holds the mechanism rigid."
     if mobility > 1:
-        return "Pin a loose link, or remove one; bodies are pinned where they name the same point."
-    return "Remove a link or a pin that holds the mechanism rigid."
+        cure = "Pin a loose link, or remove one; bodies are pinned where they name the same point."
+    return f"{count}; one driver needs mobility 1. {cure}"
 
 
 def _pins(scene: Scene) -> dict[str, tuple[str, ...]]:
@@ -130,20 +128,11 @@ def _pins(scene: Scene) -> dict[str, tuple[str, ...]]:
     return {point: tuple(names) for point, names in bodies.items() if len(names) > 1}
 
 
-def _count_pairs(
-    pins: Mapping[str, tuple[str, ...]], prismatics: Mapping[str, tuple[str, str]]
-) -> int:
-    """A pin that joins k bodies is k - 1 pairs."""
-    return sum(len(names) - 1 for names in pins.values()) + len(prismatics)
-
-
-def _no_closed_form(
-    left: list[str],
-    outer: Mapping[str, list[tuple[str, str]]],
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> str:
-    """Which links are in the way, and why."""
+def _no_closed_form(structure: Structure, left: list[str]) -> str:
+    """Which of the links left over are in the way, and why."""
+    pins, prismatics = structure.pins, structure.prismatics
+    placed, pairs = {GROUND, *structure.bodies} - set(left), Pairs(pins, prismatics)
+    outer = {body: pairs.outer(body, placed) for body in left}
     for body in left:
         if len(outer[body]) > 1:
             names = ", ".join(name for _, name in outer[body])
@@ -151,11 +140,11 @@ def _no_closed_form(
                 f"{body} is held by {len(outer[body])} pairs ({names}) to bodies that are placed "
                 "before it, so it is rigid and another link is loose: mobility 1 is only a count"
             )
-    parts = _parts(left, pins, prismatics)
+    parts = _parts(structure, left)
     most = MOST_LOOKS // (len(left) + len(pins) + len(prismatics))
     for group in itertools.islice(_sets(parts), most):
         size = len(group)
-        inside, outside = _pairs_of(set(group), left, pins, prismatics)
+        inside, outside = _pairs_of(set(group), structure, left)
         if 3 * size == 2 * (inside + sum(len(outer[body]) for body in group)) and not outside:
             return (
                 f"links {few(group, SHOWN)} form an Assur group of {size} links and "
@@ -165,15 +154,11 @@ def _no_closed_form(
     return f"{few(left, SHOWN)} do not hang on the driver and the ground by dyads; check their pins"
 
 
-def _parts(
-    left: list[str],
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> list[list[str]]:
+def _parts(structure: Structure, left: list[str]) -> list[list[str]]:
     """The links left over, apart where no pair without a known body joins them: a group is one."""
     unknown = set(left)
     part = {body: [body] for body in left}
-    for names in (*pins.values(), *prismatics.values()):
+    for names in (*structure.pins.values(), *structure.prismatics.values()):
         if not unknown.issuperset(names):
             continue
         first = part[names[0]]
@@ -195,20 +180,15 @@ def _sets(parts: list[list[str]]) -> Iterator[tuple[str, ...]]:
             yield from itertools.combinations(part, size)
 
 
-def _pairs_of(
-    group: set[str],
-    left: list[str],
-    pins: Mapping[str, tuple[str, ...]],
-    prismatics: Mapping[str, tuple[str, str]],
-) -> tuple[int, int]:
+def _pairs_of(group: set[str], structure: Structure, left: list[str]) -> tuple[int, int]:
     """The pairs between members of the group, and whether it hangs on others that are left."""
     others = set(left) - group
     inside = outside = 0
-    for names in pins.values():
+    for names in structure.pins.values():
         unknown = [name for name in names if name in group]
         if unknown and set(names) <= group | others:
             inside += len(unknown) - 1
-    for a, b in prismatics.values():
+    for a, b in structure.prismatics.values():
         inside += {a, b} <= group
         outside += len({a, b} & group) == 1 and len({a, b} & others) == 1
     return inside, outside
