@@ -10,7 +10,7 @@ import numpy as np
 
 from analytic.change_points.smooth import WINDOW, Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.parts import Dyad, OpenError
+from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError
 from analytic.dyads.steps import Step
 from models.array import Array, Mask
@@ -47,7 +47,7 @@ class ChangePoints:
         phase = np.remainder(theta - self.start, self.period)
         return np.asarray(1.0 - 2.0 * (np.searchsorted(self.angles - self.start, phase) % 2))
 
-    def mend(self, chunk: Chunk, dyad: Dyad) -> Dyad:
+    def mend(self, chunk: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         theta, closure = chunk.theta, dyad.closure
         assert closure.short_m is not None
         short = np.array(np.broadcast_to(closure.short_m, theta.shape))
@@ -62,8 +62,8 @@ class ChangePoints:
                 continue
             index = np.flatnonzero(np.abs(x) < piece.window)
             speed = _rates(chunk, index)
-            first = put(first, index, *piece.first.at(x[index] / piece.half, speed))
-            second = put(second, index, *piece.second.at(x[index] / piece.half, speed))
+            first = put(first, theta.shape, index, *piece.first.at(x[index] / piece.half, speed))
+            second = put(second, theta.shape, index, *piece.second.at(x[index] / piece.half, speed))
             short[index] = np.minimum(short[index], 0.0)
         if not chunk.stretch and np.any(open_ := short > 0.5 * closure.rounding_m):
             raise OpenError(np.where(open_, short, -np.abs(short)))
@@ -143,7 +143,7 @@ class _Own:
         self.sign = passage.sign
         self.unknowns: tuple[Unknown, Unknown]
 
-    def mend(self, _: Chunk, dyad: Dyad) -> Dyad:
+    def mend(self, _: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         short = dyad.closure.short_m
         assert short is not None
         if np.any(short > 0.5 * dyad.closure.rounding_m):

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.dyads.parts import SlideError, Sliding, Turning
+from analytic.dyads.parts import First, SlideError, Sliding, Turning
 from analytic.dyads.plane import EPS, AngleError, Real, Vec
 from models.array import Array
 
@@ -52,7 +52,7 @@ def weights(count: int, x: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Series:
+class Interpolant:
     """An unknown with its first two derivatives by the driver's angle.
 
     ``values`` and ``bounds`` are those at the nodes, (3, n); ``doubt`` is what interpolation may
@@ -67,7 +67,7 @@ class Series:
     @staticmethod
     def of(
         fine: tuple[Array, Array], coarse: tuple[Array, Array], half: float, *, turning: bool
-    ) -> Series:
+    ) -> Interpolant:
         """The series of one set of nodes, held to that of another; angles but for whole turns."""
         values, bounds = fine
         at = PROBES * WINDOW
@@ -78,7 +78,9 @@ class Series:
         doubt = np.abs(apart).max(axis=1)
         doubt = SAFETY * doubt + COUNT * EPS * np.abs(values).max(axis=1)
         third = np.abs(np.diff(seen[2])).max() / (half * WINDOW * float(PROBES[1] - PROBES[0]))
-        return Series(values, bounds, doubt, SAFETY * float(third + doubt[2] / (half * WINDOW)))
+        return Interpolant(
+            values, bounds, doubt, SAFETY * float(third + doubt[2] / (half * WINDOW))
+        )
 
     def worst(self) -> Array:
         """The largest bounds in the window, (3,)."""
@@ -121,8 +123,8 @@ class Piece:
     """
 
     half: float
-    first: Series
-    second: Series
+    first: Interpolant
+    second: Interpolant
     doubt: float
 
     @property
@@ -134,11 +136,13 @@ class Piece:
     def of(solved: Solved, centre: float, half: float, longest_m: float) -> Piece:
         """The piece around the driver angle ``centre``. Raises OpenError at nodes out of reach."""
         wide, narrow = centre + half * nodes(COUNT), centre + half * nodes(FEWER)
-        series: list[Series] = []
+        series: list[Interpolant] = []
         doubt = 0.0
         for fine, coarse in zip(solved(wide), solved(narrow), strict=True):
             turning = isinstance(fine, Turning)
-            found = Series.of(_levels(fine, wide), _levels(coarse, narrow), half, turning=turning)
+            found = Interpolant.of(
+                _levels(fine, wide), _levels(coarse, narrow), half, turning=turning
+            )
             sizes = np.abs(found.values).max(axis=1) + (1.0 if turning else longest_m)
             doubt = max(doubt, float((found.worst() / sizes)[1:].max()))
             series.append(found)
@@ -163,36 +167,29 @@ def _levels(found: Unknown, theta: Array) -> tuple[Array, Array]:
 
 
 def put(
-    unknown: Unknown, index: Index, found: tuple[Array, ...], bounds: tuple[Array, ...]
-) -> Unknown:
-    """An unknown with its values and bounds at the samples ``index`` replaced."""
-    size = len(np.atleast_1d(_value(unknown)))
+    unknown: First,
+    shape: tuple[int, ...],
+    index: Index,
+    values: tuple[Array, ...],
+    bounds: tuple[Array, ...],
+) -> First:
+    """An unknown over all samples, its values and bounds at those of ``index`` replaced."""
 
     def into(old: Real, new: Array) -> Array:
-        array = np.array(np.broadcast_to(old, (size,)))
+        array = np.array(np.broadcast_to(old, shape))
         array[index] = new
         return array
 
     if isinstance(unknown, Sliding):
-        olds = unknown.s, unknown.speed, unknown.acceleration
-        s, speed, acceleration = (into(*pair) for pair in zip(olds, found, strict=True))
+        s, speed, acceleration = map(into, (unknown.s, unknown.speed, unknown.acceleration), values)
         e = unknown.error
-        if e is None:
-            return Sliding(s, speed, acceleration, None)
-        each = zip((e.displacement, e.speed, e.acceleration), bounds, strict=True)
-        return Sliding(s, speed, acceleration, SlideError(*(into(*pair) for pair in each)))
-    length = unknown.length
-    turn = Vec(
-        into(unknown.turn.x, length * np.cos(found[0])),
-        into(unknown.turn.y, length * np.sin(found[0])),
-    )
-    omega, alpha = into(unknown.omega, found[1]), into(unknown.alpha, found[2])
-    old = unknown.error
-    if old is None:
-        return Turning(turn, omega, alpha, None, length)
-    each = zip((old.theta, old.omega, old.alpha), bounds, strict=True)
-    return Turning(turn, omega, alpha, AngleError(*(into(*pair) for pair in each)), length)
-
-
-def _value(unknown: Unknown) -> Real:
-    return unknown.s if isinstance(unknown, Sliding) else unknown.turn.x
+        if e is not None:
+            e = SlideError(*map(into, (e.displacement, e.speed, e.acceleration), bounds))
+        return Sliding(s, speed, acceleration, e)
+    angle, length, error = values[0], unknown.length, unknown.error
+    x = into(unknown.turn.x, length * np.cos(angle))
+    y = into(unknown.turn.y, length * np.sin(angle))
+    omega, alpha = map(into, (unknown.omega, unknown.alpha), values[1:])
+    if error is not None:
+        error = AngleError(*map(into, (error.theta, error.omega, error.alpha), bounds))
+    return Turning(Vec(x, y), omega, alpha, error, length)

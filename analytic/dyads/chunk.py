@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from analytic.dyads.parts import Closure, Dyad, Sliding
+from analytic.dyads.parts import Closure, Dyad, First, Second, Sliding
 from analytic.dyads.plane import (
     AngleError,
     BodyKinematics,
@@ -30,7 +30,7 @@ class Passage(Protocol):
         """What the branch of the scene is multiplied by at driver angles [rad], (T,)."""
         ...
 
-    def mend(self, chunk: Chunk, dyad: Dyad) -> Dyad:
+    def mend(self, chunk: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         """The dyad without what is lost in and beside its change points. Raises OpenError."""
         ...
 
@@ -94,17 +94,17 @@ class Chunk:
             )
         return self.points[name]
 
-    def assembly(self, key: str, branch: int) -> tuple[Real, bool]:
+    def assembly(self, key: str) -> tuple[Real, bool]:
         """The branch of a dyad at every sample, and whether it is stretched where it is open.
 
         In a change point it may be open by rounding, which is mended afterwards.
         """
-        passage = self.passages.get(key)
+        branch, passage = self.scene.branch.get(key, 1), self.passages.get(key)
         if passage is None:
             return branch, self.stretch
         return branch * passage.sign(self.theta), True
 
-    def keep(self, key: str, dyad: Dyad) -> Dyad:
+    def keep(self, key: str, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
         """The solved dyad, mended in its change points, after noting how it is conditioned."""
         passage = self.passages.get(key)
         if passage is not None:

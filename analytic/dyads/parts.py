@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -22,7 +23,7 @@ class Turning:
     turn: Vec
     omega: Real
     alpha: Real
-    error: AngleError | None
+    error: AngleError | None = None
     length: float = 1.0
 
 
@@ -42,7 +43,11 @@ class Sliding:
     s: Real
     speed: Real
     acceleration: Real
-    error: SlideError | None
+    error: SlideError | None = None
+
+
+First = TypeVar("First", Turning, Sliding)
+Second = TypeVar("Second", Turning, Sliding)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,13 +113,18 @@ class Closure:
 
 
 @dataclass(frozen=True, slots=True)
-class Dyad:
+class Dyad(Generic[First, Second]):
     """The solved dyad; ``sine`` is its conditioning (1 best, 0 singular)."""
 
-    first: Turning | Sliding
-    second: Turning | Sliding
+    first: First
+    second: Second
     sine: Real
     closure: Closure
+
+    def bounded(self, first: Any, second: Any) -> Dyad[First, Second]:
+        """The dyad with the bounds of its two unknowns, of the kind that each of them has."""
+        one, other = replace(self.first, error=first), replace(self.second, error=second)
+        return replace(self, first=one, second=other)
 
 
 class OpenError(Exception):

@@ -181,13 +181,13 @@ class BodyKinematics:
         if self.alpha is not STEADY:
             acceleration = arm.perp(self.alpha) + acceleration
         at = self.anchor
-        found = PointKinematics(at.p + arm, at.v + velocity, at.a + acceleration, None)
+        motion = PointKinematics(at.p + arm, at.v + velocity, at.a + acceleration, None)
         if self.error is None or at.error is None:
-            return found
-        error = self._point_error(found, math.hypot(x, y))
-        return PointKinematics(found.p, found.v, found.a, error)
+            return motion
+        error = self._point_error(motion, math.hypot(x, y))
+        return PointKinematics(motion.p, motion.v, motion.a, error)
 
-    def _point_error(self, found: PointKinematics, r: float) -> PointError:
+    def _point_error(self, motion: PointKinematics, r: float) -> PointError:
         """The anchor's errors, those of the rotation over the arm, and the rounding of the sums."""
         assert self.error is not None
         assert self.anchor.error is not None
@@ -196,13 +196,13 @@ class BodyKinematics:
         speed, pull = r * rate, r * (gain + rate * rate)
         change = e.alpha + e.omega * (2 * rate + e.omega)
         return PointError(
-            at.position + r * e.theta + 4 * EPS * (found.p.norm() + self.anchor.p.norm() + r),
+            at.position + r * e.theta + 4 * EPS * (motion.p.norm() + self.anchor.p.norm() + r),
             at.velocity
             + r * (e.omega + (rate + e.omega) * e.theta)
-            + 4 * EPS * (found.v.norm() + self.anchor.v.norm() + speed),
+            + 4 * EPS * (motion.v.norm() + self.anchor.v.norm() + speed),
             at.acceleration
             + r * (change + (gain + rate * rate + change) * e.theta)
-            + 6 * EPS * (found.a.norm() + self.anchor.a.norm() + pull),
+            + 6 * EPS * (motion.a.norm() + self.anchor.a.norm() + pull),
         )
 
 

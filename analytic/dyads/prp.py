@@ -24,7 +24,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
-) -> Dyad:
+) -> Dyad[Sliding, Sliding]:
     """Solve a PRP dyad: the point where two moving lines cross.
 
     Parameters
@@ -50,6 +50,7 @@ def solve(
     -----
     Linear in its unknowns. Error about eps (|G1| + |G2| + s) / sine.
     """
+    # s1 e1 - s2 e2 = G2 - G1, and so for the rates of both sides.
     det = -line1.along.cross(line2.along)
     jacobian = Jacobian(line1.along, -line2.along, det)
     if not stretch and np.min(np.abs(det)) == 0.0:
@@ -59,22 +60,20 @@ def solve(
         s1, s2 = jacobian.solve(line2.point.p - line1.point.p)
         v1, v2 = jacobian.solve(line2.velocity(s2) - line1.velocity(s1))
         a1, a2 = jacobian.solve(line2.acceleration(s2, v2) - line1.acceleration(s1, v1))
-    first, second = Sliding(s1, v1, a1, None), Sliding(s2, v2, a2, None)
     # Lines that are parallel at one angle cross on both sides of it.
     closure = Closure(None, -np.abs(det) if stretch else None)
-    if not certified:
-        return Dyad(first, second, np.abs(det), closure)
-    e1, e2 = _errors(line1, line2, jacobian, first, second)
-    return Dyad(Sliding(s1, v1, a1, e1), Sliding(s2, v2, a2, e2), np.abs(det), closure)
+    dyad = Dyad(Sliding(s1, v1, a1), Sliding(s2, v2, a2), np.abs(det), closure)
+    return dyad.bounded(*_errors(line1, line2, jacobian, dyad)) if certified else dyad
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def _errors(
-    line1: MovingLine, line2: MovingLine, jacobian: Jacobian, first: Sliding, second: Sliding
+    line1: MovingLine, line2: MovingLine, jacobian: Jacobian, dyad: Dyad[Sliding, Sliding]
 ) -> tuple[SlideError, SlideError]:
     """Bounds of the two displacements with their derivatives."""
     assert line1.error is not None
     assert line2.error is not None
+    first, second = dyad.first, dyad.second
     s1, s2, v1, v2 = first.s, second.s, first.speed, second.speed
     gap = (line1.at(s1) - line2.at(s2)).norm()
     place = line1.errors(s1, v1, 0.0, 0.0)[0] + line2.errors(s2, v2, 0.0, 0.0)[0]

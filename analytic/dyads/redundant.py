@@ -23,13 +23,10 @@ import numpy as np
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Turning
 from analytic.dyads.plane import EPS, AngleError, BodyKinematics, PointKinematics, Real, Vec
-from analytic.dyads.riding import known_at, turning_body
+from analytic.dyads.riding import Bar, Placed
 from analytic.structure.groups import Bridge
-from analytic.structure.mobility import Structure
 from models.array import Array
 from models.errors import StructureError
-from models.joints import less, local_point
-from models.scene import Scene
 
 FIT = 1e-9
 """What a redundant link may be off by, over its length, and its rates over those of its pins."""
@@ -46,21 +43,16 @@ Levels = tuple[Real, Real, Real]
 class BridgeStep:
     """A link between two known pins, and further ones that have to agree."""
 
-    def __init__(
-        self, scene: Scene, structure: Structure, bridge: Bridge, known: frozenset[str]
-    ) -> None:
+    def __init__(self, placed: Placed, bridge: Bridge) -> None:
         self.link, self.key = bridge.link, f"link {bridge.link}"
-        self.scene, self.driver = scene.name, scene.driver.link
-        self.holds = {pin: known_at(structure, known, pin) for pin in bridge.pins}
-        self.locals = {pin: local_point(scene, bridge.link, pin) for pin in bridge.pins}
-        spans = {
-            pair: less(self.locals[pair[1]], self.locals[pair[0]])
-            for pair in itertools.combinations(bridge.pins, 2)
-        }
-        self.pin1, self.pin2 = max(spans, key=lambda pair: math.hypot(*spans[pair]))
-        span = spans[self.pin1, self.pin2]
-        self.length = math.hypot(*span)
-        self.back = Vec(span[0] / self.length, span[1] / self.length)
+        self.scene, self.driver = placed.scene.name, placed.scene.driver.link
+        self.holds = {pin: placed.holder(pin) for pin in bridge.pins}
+        self.locals = {pin: placed.local(bridge.link, pin) for pin in bridge.pins}
+        pairs = itertools.combinations(bridge.pins, 2)
+        bars = {pair: Bar(placed, bridge.link, *pair) for pair in pairs}
+        self.pin1, self.pin2 = max(bars, key=lambda pair: bars[pair].length)
+        self.bar = bars[self.pin1, self.pin2]
+        self.length = self.bar.length
 
     def advance(self, chunk: Chunk) -> None:
         """Add the link to the chunk. Raises StructureError where it does not fit."""
@@ -95,8 +87,8 @@ class BridgeStep:
             over = np.broadcast_to(off[level] - room[level], chunk.theta.shape)
             if np.any(over > 0.0):
                 index = int(np.nanargmax(over))
-                found = float(np.broadcast_to(off[level], over.shape)[index])
-                raise StructureError(self._misfit(chunk, pin, level, found, index))
+                misfit = float(np.broadcast_to(off[level], over.shape)[index])
+                raise StructureError(self._misfit(chunk, pin, level, misfit, index))
 
     def _placed(self, p1: PointKinematics, p2: PointKinematics) -> BodyKinematics:
         """The link from the motion of its two pins."""
@@ -104,8 +96,7 @@ class BridgeStep:
         square = d.square()
         omega, alpha = d.cross(v) / square, d.cross(a) / square
         error = _error(p1, p2, d, self.length, (omega, alpha))
-        found = Turning(d, omega, alpha, error, self.length)
-        return turning_body(found, self.back, self.locals[self.pin1], p1)
+        return self.bar.body(Turning(d, omega, alpha, error, self.length), p1)
 
     def _rooms(
         self, chunk: Chunk, one: PointKinematics, other: PointKinematics

@@ -50,9 +50,40 @@ def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointErr
     )
 
 
-def known_at(structure: Structure, known: frozenset[str], pin: str) -> str:
-    """A known body that carries the pin."""
-    return next(body for body in structure.pins[pin] if body in known)
+@dataclass(frozen=True)
+class Placed:
+    """What a group hangs on: the bodies ``known`` of a scene, placed before it."""
+
+    scene: Scene
+    structure: Structure
+    known: frozenset[str]
+
+    def holder(self, pin: str) -> str:
+        """A known body that carries the pin."""
+        return next(body for body in self.structure.pins[pin] if body in self.known)
+
+    def local(self, body: str, point: str) -> Point:
+        """A point in the frame of a body that carries it [m]."""
+        return local_point(self.scene, body, point)
+
+
+class Bar:
+    """A link from a known pin that it hangs on, ``outer``, to another of its pins, ``inner``."""
+
+    def __init__(self, placed: Placed, link: str, outer: str, inner: str) -> None:
+        self.link, self.outer, self.holder = link, outer, placed.holder(outer)
+        self.local = placed.local(link, outer)
+        span = less(placed.local(link, inner), self.local)
+        self.length = math.hypot(*span)
+        self.back = Vec(span[0] / self.length, span[1] / self.length)
+
+    def anchor(self, chunk: Chunk) -> PointKinematics:
+        """The motion of the known pin."""
+        return chunk.point(self.holder, self.outer)
+
+    def body(self, turning: Turning, anchor: PointKinematics) -> BodyKinematics:
+        """The link, by its rotation and the motion of the known pin."""
+        return turning_body(turning, self.back, self.local, anchor)
 
 
 def turning_body(
@@ -97,12 +128,12 @@ class RidingLine:
     slack: float = 0.0
 
     @staticmethod
-    def of(scene: Scene, name: str, known: frozenset[str]) -> RidingLine:
+    def of(placed: Placed, name: str) -> RidingLine:
         """The pair of slider ``name``, of which one body is known."""
-        slider = scene.sliders[name]
+        slider = placed.scene.sliders[name]
         body = sliding_body(slider)
-        pin = local_point(scene, body, slider.point)
-        if slider.on in known:
+        pin = placed.local(body, slider.point)
+        if slider.on in placed.known:
             follow = slider.direction_rad + slider.angle_rad
             return RidingLine(slider.on, slider.through_m, slider.direction_rad, 1, follow, pin)
         follow = -slider.direction_rad - slider.angle_rad

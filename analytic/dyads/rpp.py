@@ -29,7 +29,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
-) -> Dyad:
+) -> Dyad[Sliding, Sliding]:
     """Solve an RPP dyad.
 
     Parameters
@@ -55,13 +55,12 @@ def solve(
         The two lines are parallel.
     """
     across = MovingLine(p1, line.along.turned(inner), line.omega, line.alpha, line.error)
-    found = prp.solve(line, across, certified=certified, stretch=stretch)
-    assert isinstance(found.second, Sliding)
+    crossing = prp.solve(line, across, certified=certified, stretch=stretch)
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
-    second = found.second
+    second = crossing.second
     block = replace(second, s=-second.s, speed=-second.speed, acceleration=-second.acceleration)
     short = None
     if stretch:  # parallel for good, as the angle between the lines is constant
         gap = np.abs((p1.p - line.point.p).cross(line.along))
-        short = np.where(found.sine == 0.0, gap, -gap)
-    return Dyad(found.first, block, found.sine, Closure(None, short))
+        short = np.where(crossing.sine == 0.0, gap, -gap)
+    return Dyad(crossing.first, block, crossing.sine, Closure(None, short))

@@ -27,7 +27,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
-) -> Dyad:
+) -> Dyad[Turning, Sliding]:
     """Solve an RPR dyad.
 
     Parameters
@@ -69,18 +69,17 @@ def solve(
     root, closure = closing_root(square, shortage, stretch)
     s = branch * root
     with np.errstate(divide="ignore", invalid="ignore"):
+        # d = s e + h e', solved for e.
         along = (d * s - d.perp() * offset) * (1.0 / d2)
         across = along.perp()
         jacobian = Jacobian(across * s - along * offset, along, -s)
         w, speed = jacobian.solve(p1.v - p2.v)
+        # The centripetal part of d goes over to the right side, and so does Coriolis'.
         inertia = d * (w * w) - across * (2.0 * w * speed)
         g, acceleration = jacobian.solve(p1.a - p2.a + inertia)
         sine = np.abs(s) / np.sqrt(d2)
-    turning, sliding = Turning(along, w, g, None), Sliding(s, speed, acceleration, None)
-    if not certified:
-        return Dyad(turning, sliding, sine, closure)
-    e1, e2 = _errors(p1, p2, offset, jacobian, turning, sliding)
-    return Dyad(Turning(along, w, g, e1), Sliding(s, speed, acceleration, e2), sine, closure)
+    dyad = Dyad(Turning(along, w, g), Sliding(s, speed, acceleration), sine, closure)
+    return dyad.bounded(*_errors(p1, p2, offset, jacobian, dyad)) if certified else dyad
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -89,12 +88,12 @@ def _errors(
     p2: PointKinematics,
     offset: float,
     jacobian: Jacobian,
-    turning: Turning,
-    sliding: Sliding,
+    dyad: Dyad[Turning, Sliding],
 ) -> tuple[AngleError, SlideError]:
     """Bounds of the angle and the displacement with their derivatives."""
     assert p1.error is not None
     assert p2.error is not None
+    turning, sliding = dyad.first, dyad.second
     s, along = sliding.s, turning.turn
     w, v = np.abs(turning.omega), np.abs(sliding.speed)
     arm = np.hypot(s, offset)

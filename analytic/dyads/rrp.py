@@ -27,7 +27,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
-) -> Dyad:
+) -> Dyad[Turning, Sliding]:
     """Solve an RRP dyad.
 
     Parameters
@@ -59,7 +59,7 @@ def solve(
     Error about eps (|P1| + |G| + s) / sine in the displacement.
     """
     away = line.point.p - p1.p
-    height = line.along.cross(away)
+    height = line.along.cross(away)  # of the line over P1, to the left of e
     square = (length - height) * (length + height)
 
     def shortage() -> tuple[Real, Real]:
@@ -70,19 +70,16 @@ def solve(
     reach = branch * root
     if stretch:
         height = np.clip(height, -length, length)
-    s = reach - line.along.dot(away)
+    s = reach - line.along.dot(away)  # from the foot of P1 to the pin, less that from it to G
     u = (line.along * reach + line.along.perp() * height) * (1.0 / length)
     jacobian = Jacobian(u.perp() * length, -line.along, reach)
     with np.errstate(divide="ignore", invalid="ignore"):
         w, speed = jacobian.solve(line.velocity(s) - p1.v)
-        pull = jacobian.c1.perp() * (w * w)
+        pull = jacobian.c1.perp() * (w * w)  # -omega^2 l u, the centripetal part
         g, acceleration = jacobian.solve(line.acceleration(s, speed) - p1.a - pull)
     sine = np.abs(reach) * (1.0 / length)
-    turning, sliding = Turning(u, w, g, None), Sliding(s, speed, acceleration, None)
-    if not certified:
-        return Dyad(turning, sliding, sine, closure)
-    e1, e2 = _errors(p1, line, length, jacobian, turning, sliding)
-    return Dyad(Turning(u, w, g, e1), Sliding(s, speed, acceleration, e2), sine, closure)
+    dyad = Dyad(Turning(u, w, g), Sliding(s, speed, acceleration), sine, closure)
+    return dyad.bounded(*_errors(p1, line, length, jacobian, dyad)) if certified else dyad
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -91,12 +88,12 @@ def _errors(
     line: MovingLine,
     length: float,
     jacobian: Jacobian,
-    turning: Turning,
-    sliding: Sliding,
+    dyad: Dyad[Turning, Sliding],
 ) -> tuple[AngleError, SlideError]:
     """Bounds of the angle and the displacement with their derivatives."""
     assert p1.error is not None
     assert line.error is not None
+    turning, sliding = dyad.first, dyad.second
     s, speed, w = sliding.s, sliding.speed, np.abs(turning.omega)
     gap = (p1.p + turning.turn * length - line.at(s)).norm()
     place, _, _ = line.errors(s, speed, 0.0, 0.0)

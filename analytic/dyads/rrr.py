@@ -13,8 +13,6 @@ where C lies on the line P1 P2 (toggle).
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
@@ -31,7 +29,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
-) -> Dyad:
+) -> Dyad[Turning, Turning]:
     """Solve an RRR dyad.
 
     Parameters
@@ -64,6 +62,7 @@ def solve(
     """
     d = p2.p - p1.p
     d2 = d.square()
+    # Heron: (4 area)^2 = ((l1 + l2)^2 - d^2) (d^2 - (l1 - l2)^2), below 0 where it cannot close.
     outer, inner = (l1 + l2) ** 2, (l1 - l2) ** 2
     square = outer - d2
     square *= d2 - inner
@@ -75,31 +74,34 @@ def solve(
 
     root, closure = closing_root(square, shortage, stretch)
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The foot of C on d by the law of cosines, (d^2 + l1^2 - l2^2) / (2 d^2), and its height
+        # 2 area / d^2, both over d: r1 is d turned and stretched by them.
         inverse = 1.0 / d2
         along = (0.5 * (l1 - l2) * (l1 + l2)) * inverse
         along += 0.5
         inverse *= 0.5 * branch
-        inverse *= root
+        inverse *= root  # now the height
         r1 = d.turned(Vec(along, inverse))
         r2 = r1 - d
         # Cramer's rule with the columns r1' and -r2' (turned by 90 deg): their cross product is
         # minus twice the area, and a cross product with a turned vector is a dot product.
-        inverse = (-2.0 * branch) / root
+        inverse = (-2.0 * branch) / root  # now 1 over that cross product
         relative = p1.v - p2.v
         w1, w2 = relative.dot(r2), relative.dot(r1)
         w1 *= inverse
         w2 *= inverse
+        # What the centripetal parts, omega^2 r towards the outer pins, leave to alpha.
         relative = (p1.a - p2.a).less(r1, w1 * w1).more(r2, w2 * w2)
         g1, g2 = relative.dot(r2), relative.dot(r1)
         g1 *= inverse
         g2 *= inverse
     sine = root * (0.5 / (l1 * l2))
     first, second = Turning(r1, w1, g1, None, l1), Turning(r2, w2, g2, None, l2)
+    dyad = Dyad(first, second, sine, closure)
     if not certified:
-        return Dyad(first, second, sine, closure)
+        return dyad
     jacobian = Jacobian(r1.perp(), r2.perp(-1.0), (-0.5 * branch) * root)
-    e1, e2 = _errors(p1, p2, jacobian, first, second, np.sqrt(d2))
-    return Dyad(replace(first, error=e1), replace(second, error=e2), sine, closure)
+    return dyad.bounded(*_errors(p1, p2, jacobian, dyad, np.sqrt(d2)))
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -107,13 +109,13 @@ def _errors(
     p1: PointKinematics,
     p2: PointKinematics,
     jacobian: Jacobian,
-    first: Turning,
-    second: Turning,
+    dyad: Dyad[Turning, Turning],
     apart: Real,
 ) -> tuple[AngleError, AngleError]:
     """Bounds of the two angles, rates and accelerations."""
     assert p1.error is not None
     assert p2.error is not None
+    first, second = dyad.first, dyad.second
     l1, l2 = first.length, second.length
     gap = (p1.p + first.turn - p2.p - second.turn).norm()
     # The computed vectors are not quite as long as the links; the residual has to see that too.
@@ -123,7 +125,8 @@ def _errors(
     bend = np.sqrt(residual * l1 * l2 / apart)
     fold = 2.0 * np.abs(jacobian.det) / apart + 2.5 * bend
     turn = np.pi * residual / apart  # of the line between the outer pins
-    folds = (_at_most_pi(fold / l1 + turn), _at_most_pi(fold / l2 + turn))
+    # No angle is wrong by more than half a turn; nor is one that was not found at all (NaN).
+    folds = np.fmin(fold / l1 + turn, np.pi), np.fmin(fold / l2 + turn, np.pi)
     t1, t2 = certify(jacobian, residual, Curvature(l1, 0.0, l2), folds)
     certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2)
     w1, w2 = np.abs(first.omega), np.abs(second.omega)
@@ -138,8 +141,3 @@ def _errors(
         p1.a.norm() + p2.a.norm() + l1 * w1 * w1 + l2 * w2 * w2,
     )
     return AngleError(t1 + 4 * EPS, r1, a1), AngleError(t2 + 4 * EPS, r2, a2)
-
-
-def _at_most_pi(angle: Real) -> Real:
-    """No angle is wrong by more than half a turn; nor is one that was not found at all."""
-    return np.fmin(angle, np.pi)
