@@ -81,7 +81,8 @@ def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
         positions.append(q)
         rates.append(qd)
         seconds.append(_solved(system, q, system.gamma(q, qd, alpha), theta))
-    return _motion(system, np.asarray(time_s, dtype=np.float64), positions, rates, seconds)
+    samples = _Samples(system, np.array(positions), np.array(rates), np.array(seconds))
+    return samples.motion(np.asarray(time_s, dtype=np.float64))
 
 
 def _stations(start: float, end: float) -> Array:
@@ -119,62 +120,74 @@ def _closed(system: Constraints, q: Array, theta: float) -> Array:
     )
 
 
-def _motion(
-    system: Constraints,
-    time_s: Array,
-    positions: list[Array],
-    rates: list[Array],
-    seconds: list[Array],
-) -> Motion:
-    """The coordinates of all samples as a motion of links, points and sliders."""
-    scene = system.scene
-    q, qd, qdd = np.array(positions), np.array(rates), np.array(seconds)
+@dataclass(frozen=True)
+class _Samples:
+    """The coordinates of all samples with their rates and seconds, (T, 3 n), as a motion."""
 
-    def link(body: str) -> LinkMotion:
-        i = system.at[body] + 2
-        return LinkMotion(q[:, i], qd[:, i], qdd[:, i])
+    system: Constraints
+    q: Array
+    rates: Array
+    seconds: Array
 
-    def point(body: str, local: Point) -> PointMotion:
-        if body == GROUND:
-            rest = np.zeros((len(q), 2))
-            return PointMotion(rest + np.array(local), rest, rest.copy())
-        i = system.at[body]
-        c, s = np.cos(q[:, i + 2]), np.sin(q[:, i + 2])
-        arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=1)
-        turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
-        w, g = qd[:, i + 2, None], qdd[:, i + 2, None]
-        at = slice(i, i + 2)
-        return PointMotion(
-            q[:, at] + arm, qd[:, at] + w * turned, qdd[:, at] + g * turned - w * w * arm
+    def motion(self, time_s: Array) -> Motion:
+        """All links, points and sliders."""
+        scene = self.system.scene
+        carriers = {
+            p: (bodies[0], local_point(scene, bodies[0], p)) for p, bodies in scene.pins.items()
+        }
+        for slider in scene.sliders.values():
+            carriers.setdefault(slider.point, self.system.tip(slider))
+        return Motion(
+            time_s,
+            {name: self.link(name) for name in scene.links},
+            {name: self.point(*carrier) for name, carrier in carriers.items()},
+            {name: self.slider(slider) for name, slider in scene.sliders.items()},
         )
 
-    def slider(s: Slider) -> SliderMotion:
-        tip, guide = point(*system.tip(s)), point(s.on, s.through_m)
-        rest = np.zeros(len(q))
-        on = LinkMotion(rest, rest, rest) if s.on == GROUND else link(s.on)
-        angle = on.theta + s.direction_rad
+    def link(self, body: str) -> LinkMotion:
+        """The rotation of a body; the ground has none."""
+        if body == GROUND:
+            rest = np.zeros(len(self.q))
+            return LinkMotion(rest, rest, rest)
+        i = self.system.at[body] + 2
+        return LinkMotion(self.q[:, i], self.rates[:, i], self.seconds[:, i])
+
+    def point(self, body: str, local: Point) -> PointMotion:
+        """The place ``local`` of a body: v = v0 + omega x r, a = a0 + alpha x r - omega^2 r."""
+        if body == GROUND:
+            rest = np.zeros((len(self.q), 2))
+            return PointMotion(rest + np.array(local), rest, rest)
+        turning = self.link(body)
+        c, s = np.cos(turning.theta), np.sin(turning.theta)
+        arm = np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=1)
+        turned = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        omega, alpha = turning.omega[:, None], turning.alpha[:, None]
+        origin = slice(self.system.at[body], self.system.at[body] + 2)
+        return PointMotion(
+            self.q[:, origin] + arm,
+            self.rates[:, origin] + omega * turned,
+            self.seconds[:, origin] + alpha * turned - omega * omega * arm,
+        )
+
+    def slider(self, slider: Slider) -> SliderMotion:
+        """The point of a slider along its line, as seen from the guide."""
+        tip, guide = self.point(*self.system.tip(slider)), self.point(slider.on, slider.through_m)
+        on = self.link(slider.on)
+        angle = on.theta + slider.direction_rad
         along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         across = np.stack([-along[:, 1], along[:, 0]], axis=1)
         away = tip.position - guide.position
-        va, vb = tip.velocity - guide.velocity, tip.acceleration - guide.acceleration
+        drift = tip.velocity - guide.velocity
+        push = tip.acceleration - guide.acceleration
         displacement = np.sum(along * away, axis=1)
-        speed = np.sum(along * va, axis=1) + on.omega * np.sum(across * away, axis=1)
+        aside = np.sum(across * away, axis=1)  # 0 but for the rounding of the solution
+        speed = np.sum(along * drift, axis=1) + on.omega * aside
+        # d^2/dt^2 of along . away, where along turns with the guide: along'' = alpha across -
+        # omega^2 along.
         acceleration = (
-            np.sum(along * vb, axis=1)
-            + 2.0 * on.omega * np.sum(across * va, axis=1)
-            + on.alpha * np.sum(across * away, axis=1)
+            np.sum(along * push, axis=1)
+            + 2.0 * on.omega * np.sum(across * drift, axis=1)
+            + on.alpha * aside
             - on.omega**2 * displacement
         )
         return SliderMotion(displacement, speed, acceleration)
-
-    carriers = {
-        p: (bodies[0], local_point(scene, bodies[0], p)) for p, bodies in scene.pins.items()
-    }
-    for s in scene.sliders.values():
-        carriers.setdefault(s.point, system.tip(s))
-    return Motion(
-        time_s,
-        {name: link(name) for name in scene.links},
-        {name: point(*carrier) for name, carrier in carriers.items()},
-        {name: slider(s) for name, s in scene.sliders.items()},
-    )
