@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from analytic.check.moved_scene import scaled
-from models.laws import Law
+from models.laws import ConstantSpeed, Law
 from models.scene import Link, Scene
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_scene
 
@@ -65,8 +65,14 @@ def _driven(scene: Scene, law: Law) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
+def _sped_up(scene: Scene, factor: float) -> Law:
+    law = scene.driver.law
+    assert isinstance(law, ConstantSpeed)
+    return replace(law, speed_rad_s=law.speed_rad_s * factor)
+
+
 def _faster(scene: Scene, share: float) -> Scene:
-    return _driven(scene, scene.driver.law.sped_up(1.0 + share))
+    return _driven(scene, _sped_up(scene, 1.0 + share))
 
 
 def _ahead(scene: Scene, angle_rad: float) -> Scene:
@@ -74,7 +80,7 @@ def _ahead(scene: Scene, angle_rad: float) -> Scene:
 
 
 def _backwards(scene: Scene, swap: float) -> Scene:
-    return _driven(scene, scene.driver.law.sped_up(-1.0 if swap else 1.0))
+    return _driven(scene, _sped_up(scene, -1.0 if swap else 1.0))
 
 
 def other_branch(scene: Scene, swap: float) -> Scene:
