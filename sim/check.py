@@ -8,12 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.errors import EngineError
-from models.joints import block_name, bodies
+from models.joints import bodies
 from models.motion import State
-from models.poses import Frame, centre_of, frames, mass_of
+from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
 from sim.drive import pace, start_speed
-from sim.engine import BodyPose, Drive, Facts
+from sim.engine import Drive, Facts
 from sim.measure import gaps
 
 SAME = 1e-9
@@ -75,16 +75,16 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) 
     if drive != "free":
         crank = start_speed(scene.driver.law, state.time_s, dt_s, facts.velocity_shift)
         slack += abs(crank - wanted[scene.driver.link].omega)
-    length = _size(scene, state)
+    # Rounding scales with the longest length or coordinate [m].
+    length = max(scene.longest_m, *(math.hypot(*p) for p in state.position.values()))
     push = max(math.hypot(*a) for a in state.acceleration.values())
-    held = {block_name(scene.sliders[name]): pose for name, pose in facts.start.blocks.items()}
-    poses = {**facts.start.links, **held}
     for body in bodies(scene):
-        frame, pose = wanted[body], poses[body]
+        frame, pose = wanted[body], facts.start.bodies[body]
         turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, math.tau))
         if not turn <= SAME:
             yield f"{body} stands at {pose.theta[0]:g} rad, not {frame.theta:g}"
-        yield from _place(body, pose, frame, length)
+        if not np.hypot(*(pose.origin[0] - frame.origin)) <= SAME * length:
+            yield f"{body} lies at {pose.origin[0]}, not {frame.origin} m"
         if not abs(pose.omega[0] - frame.omega) <= SAME * peak + 4.0 * slack:
             yield f"{body} turns at {pose.omega[0]:g} rad/s, not {frame.omega:g}"
         off = float(np.hypot(*(pose.velocity[0] - frame.velocity)))
@@ -92,22 +92,10 @@ def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) 
             yield f"{body} moves at {pose.velocity[0]} m/s, not {frame.velocity}"
 
 
-def _place(body: str, pose: BodyPose, frame: Frame, length: float) -> Iterator[str]:
-    """A body whose frame is elsewhere."""
-    if not np.hypot(*(pose.origin[0] - frame.origin)) <= SAME * length:
-        yield f"{body} lies at {pose.origin[0]}, not {frame.origin} m"
-
-
 def _gaps(scene: Scene, facts: Facts, open_m: float) -> Iterator[str]:
     """Joints that are open at the start by more than ``open_m`` [m]."""
-    limit = SHUT * max(
-        scene.longest_m, float(max(np.abs(p.origin).max() for p in facts.start.links.values()))
-    )
+    farthest = max(float(np.abs(facts.start.bodies[link].origin).max()) for link in scene.links)
+    limit = SHUT * max(scene.longest_m, farthest)
     for name, gap in gaps(scene, facts.start).items():
         if not gap[0] <= limit + open_m:
             yield f"{name} is open by {gap[0]:.2e} m"
-
-
-def _size(scene: Scene, state: State) -> float:
-    """The longest length or coordinate [m], which rounding scales with."""
-    return max(scene.longest_m, *(math.hypot(*p) for p in state.position.values()))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.joints import block_name, bodies
+from models.joints import bodies
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.engine import Energy, Poses
@@ -19,16 +19,12 @@ def energy(scene: Scene, poses: Poses) -> Energy:
     with the mass of its link.
     """
     then = at_velocities(poses)
-    moving = {**then.links, **{block_name(scene.sliders[n]): p for n, p in then.blocks.items()}}
     kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
     gravity = np.array(scene.gravity_m_s2)
     with np.errstate(all="ignore"):  # what has come apart may overflow
         for body in bodies(scene):
-            pose, (mass, inertia), (x, y) = (
-                moving[body],
-                mass_of(scene, body),
-                centre_of(scene, body),
-            )
+            pose, (x, y) = then.bodies[body], centre_of(scene, body)
+            mass, inertia = mass_of(scene, body)
             c, s = np.cos(pose.theta), np.sin(pose.theta)
             arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
             across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)

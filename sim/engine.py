@@ -6,8 +6,8 @@ An adapter turns the engine's own coordinates into `Poses`; everything after tha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from models.array import Array
@@ -60,15 +60,18 @@ class BodyPose:
 
 @dataclass(frozen=True)
 class Poses:
-    """The bodies of the engine over time: every link, and each slider block that has a body.
+    """The bodies of the engine over time, as `models.joints.bodies` names them.
 
     Velocities belong to ``lag_s`` after the times of the positions.
     """
 
     time_s: Array
-    links: Mapping[str, BodyPose]
-    blocks: Mapping[str, BodyPose]
+    bodies: Mapping[str, BodyPose]
     lag_s: float = 0.0
+
+    def changed(self, change: Callable[[BodyPose], BodyPose]) -> Poses:
+        """The poses with every body changed."""
+        return replace(self, bodies={name: change(body) for name, body in self.bodies.items()})
 
 
 @dataclass(frozen=True)

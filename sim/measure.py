@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -150,7 +150,8 @@ def _motion(scene: Scene, poses: Poses, now: Poses, then: Poses) -> Motion:
         sliders[name] = SliderMotion(
             seen.position[:, 0], sped.velocity[:, 0], seen.acceleration[:, 0]
         )
-    links = {n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in poses.links.items()}
+    turning = {name: poses.bodies[name] for name in scene.links}
+    links = {n: LinkMotion(p.theta, p.omega, p.alpha) for n, p in turning.items()}
     return Motion(poses.time_s, links, points, sliders)
 
 
@@ -162,7 +163,7 @@ def _at_now(poses: Poses) -> Poses:
         velocity = body.velocity - lag * body.origin_acceleration
         return replace(body, velocity=velocity, omega=body.omega - lag * body.alpha)
 
-    return poses if lag == 0.0 else _each(poses, back)
+    return poses if lag == 0.0 else poses.changed(back)
 
 
 def at_velocities(poses: Poses) -> Poses:
@@ -173,16 +174,7 @@ def at_velocities(poses: Poses) -> Poses:
         origin = body.origin + lag * body.velocity
         return replace(body, origin=origin, theta=body.theta + lag * body.omega)
 
-    return poses if lag == 0.0 else _each(poses, on)
-
-
-def _each(poses: Poses, change: Callable[[BodyPose], BodyPose]) -> Poses:
-    """The poses with every body changed."""
-    return replace(
-        poses,
-        links={name: change(body) for name, body in poses.links.items()},
-        blocks={name: change(body) for name, body in poses.blocks.items()},
-    )
+    return poses if lag == 0.0 else poses.changed(on)
 
 
 def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
@@ -209,8 +201,8 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
         guide = _guide(slider, poses)
         seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
         off = np.abs(seen.position[:, 1])
-        body = _sliding_body(slider, poses)
-        if body is not None:
+        body = poses.bodies.get(slider.link or block_name(slider))
+        if body is not None:  # else it is a point, which keeps no angle to the line
             turn = body.theta - guide.theta - sliding_angle(slider)
             off = off + np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi) * scene.longest_m
         found[name] = np.maximum(off, found[name]) if name in found else off
@@ -219,9 +211,8 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, _PointPath]]:
     """Every point as each of the bodies that list it carries it."""
-    held = {GROUND: _still(len(poses.time_s)), **poses.links}
-    held |= {block_name(scene.sliders[n]): pose for n, pose in poses.blocks.items()}
-    bodies = {name: _Body(pose) for name, pose in held.items()}
+    frames = {GROUND: _still(len(poses.time_s)), **poses.bodies}
+    bodies = {name: _Body(pose) for name, pose in frames.items()}
     return {
         point: {body: _PointPath(bodies[body], local_point(scene, body, point)) for body in names}
         for point, names in carriers(scene).items()
@@ -237,16 +228,9 @@ def _rider(scene: Scene, slider: Slider) -> str:
     return next(body for body in carriers(scene)[slider.point] if body != slider.on)
 
 
-def _sliding_body(slider: Slider, poses: Poses) -> BodyPose | None:
-    """The body that keeps its angle to the line, if the slider has one."""
-    if slider.link is not None:
-        return poses.links[slider.link]
-    return poses.blocks.get(slider.name)
-
-
 def _guide(slider: Slider, poses: Poses) -> BodyPose:
     """The body that the line belongs to."""
-    return _still(len(poses.time_s)) if slider.on == GROUND else poses.links[slider.on]
+    return _still(len(poses.time_s)) if slider.on == GROUND else poses.bodies[slider.on]
 
 
 def _still(samples: int) -> BodyPose:

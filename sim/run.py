@@ -237,7 +237,7 @@ def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float)
     """
     poses = log.poses
     open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in apart_m.values()], axis=0)
-    spin = np.max([np.abs(pose.omega) for pose in poses.links.values()], axis=0)
+    spin = np.max([np.abs(poses.bodies[link].omega) for link in scene.links], axis=0)
     bad = ~(open_by <= scene.longest_m)
     bad |= ~(spin <= runaway)
     count = int(np.argmax(bad)) if bad.any() else len(bad)
@@ -253,12 +253,7 @@ def stretch(poses: Poses, kept: slice) -> Poses:
     def cut(body: BodyPose) -> BodyPose:
         return BodyPose(**{name: array[kept] for name, array in vars(body).items()})
 
-    return Poses(
-        poses.time_s[kept],
-        {name: cut(body) for name, body in poses.links.items()},
-        {name: cut(body) for name, body in poses.blocks.items()},
-        poses.lag_s,
-    )
+    return replace(poses.changed(cut), time_s=poses.time_s[kept])
 
 
 def joined(logs: Sequence[Poses]) -> Poses:
@@ -269,9 +264,5 @@ def joined(logs: Sequence[Poses]) -> Poses:
             **{name: np.concatenate([vars(b)[name] for b in bodies]) for name in vars(bodies[0])}
         )
 
-    return Poses(
-        np.concatenate([log.time_s for log in logs]),
-        {name: join([log.links[name] for log in logs]) for name in logs[0].links},
-        {name: join([log.blocks[name] for log in logs]) for name in logs[0].blocks},
-        logs[0].lag_s,
-    )
+    bodies = {name: join([log.bodies[name] for log in logs]) for name in logs[0].bodies}
+    return replace(logs[0], time_s=np.concatenate([log.time_s for log in logs]), bodies=bodies)

@@ -19,7 +19,6 @@ import numpy as np
 from mujoco import rollout
 
 from models.errors import EngineError
-from models.joints import blocks
 from models.mjcf import build
 from models.mjcf_options import Writing, driver_joint, has_control
 from models.motion import State
@@ -185,14 +184,8 @@ class MujocoSession:
         q, rate = states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
         lag = self._shift * self._dt
         push = self._accelerations(states, at)
-        found = body_poses(self._limbs, q, rate, push, lag)
-        held = blocks(self._scene)
-        return Poses(
-            time_s=self._start_s + self._dt * at,
-            links={name: found[name] for name in self._scene.links},
-            blocks={slider.name: found[body] for body, slider in held.items()},
-            lag_s=lag,
-        )
+        poses = body_poses(self._limbs, q, rate, push, lag)
+        return Poses(self._start_s + self._dt * at, poses, lag)
 
     def _accelerations(self, states: Array, at: Array) -> Array:
         """Joint accelerations of the states (T, nv), computed on a copy of the data."""

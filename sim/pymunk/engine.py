@@ -11,7 +11,6 @@ import pymunk
 import pymunk.batch
 
 from models.array import Array
-from models.joints import block_name, blocks
 from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Point, Scene
@@ -204,17 +203,11 @@ class PymunkSession:
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
         lag = VELOCITY_SHIFT * self._dt
-        found = {
+        poses = {
             name: _pose(rows[:, row], self._model.centre[name], lag)
             for name, row in self._rows.items()
         }
-        held = blocks(self._scene)
-        return Poses(
-            time_s=self._start_s + self._dt * at,
-            links={name: found[name] for name in self._scene.links},
-            blocks={s.name: found[block_name(s)] for s in held.values()},
-            lag_s=lag,
-        )
+        return Poses(self._start_s + self._dt * at, poses, lag)
 
 
 def _sum(a: Point, b: Point) -> Point:

@@ -44,7 +44,7 @@ def opened(adapter: Engine, scene: Scene, profile: str = "tuned") -> Session:
 def numbers(poses: Poses) -> np.ndarray:
     """All positions and velocities of all bodies, one row per sample."""
     rows = []
-    for body in (*poses.links.values(), *poses.blocks.values()):
+    for body in poses.bodies.values():
         rows += [body.origin, body.velocity, body.theta[:, None], body.omega[:, None]]
     return np.concatenate(rows, axis=1)
 
@@ -108,9 +108,9 @@ def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
 def test_angles_are_continuous_over_turns(adapter: Engine) -> None:
     scene = load_scene("whitworth")
     log = opened(adapter, scene).record(1500, 1)
-    for body in log.poses.links.values():
+    for body in log.poses.bodies.values():
         assert np.abs(np.diff(body.theta)).max() < 0.1
-    assert log.poses.links["crank"].theta[-1] > 14.0
+    assert log.poses.bodies["crank"].theta[-1] > 14.0
 
 
 def test_two_sessions_side_by_side_do_not_disturb_each_other(adapter: Engine) -> None:
@@ -158,8 +158,8 @@ def test_a_model_that_is_not_the_scene_is_refused_by_name(
 def with_rocker(facts: object, change: object) -> object:
     """The facts with another rocker at the start."""
     start = facts.start  # type: ignore[attr-defined]  # Facts
-    body: BodyPose = change(start.links["rocker"])  # type: ignore[operator]  # a lambda
-    changed = replace(start, links={**start.links, "rocker": body})
+    body: BodyPose = change(start.bodies["rocker"])  # type: ignore[operator]  # a lambda
+    changed = replace(start, bodies={**start.bodies, "rocker": body})
     return replace(facts, start=changed)  # type: ignore[type-var]  # Facts
 
 

@@ -67,7 +67,7 @@ def opened(adapter: Engine, chain: Chain, profile: str = "tuned") -> Session:
 
 def numbers(poses: Poses) -> np.ndarray:
     rows = [
-        (b.origin, b.velocity, b.theta[:, None], b.omega[:, None]) for b in poses.links.values()
+        (b.origin, b.velocity, b.theta[:, None], b.omega[:, None]) for b in poses.bodies.values()
     ]
     return np.concatenate([part for row in rows for part in row], axis=1)
 
@@ -173,9 +173,9 @@ def test_velocities_other_than_the_state_s_are_refused_whatever_the_law(
     fake = fake_engine.FakeEngine(lambda _, t: ChainMotion(chain).motion(t))
     facts = opened(fake, chain).facts()
     refuse_other_model(fast, start_of(chain), facts, DT_S, "free")
-    rod = facts.start.links["rocker1"]
-    links = {**facts.start.links, "rocker1": replace(rod, omega=1.01 * rod.omega)}
-    wrong = replace(facts, start=replace(facts.start, links=links))
+    rod = facts.start.bodies["rocker1"]
+    bodies = {**facts.start.bodies, "rocker1": replace(rod, omega=1.01 * rod.omega)}
+    wrong = replace(facts, start=replace(facts.start, bodies=bodies))
     with pytest.raises(EngineError, match=r"rocker1 turns at -1\.01 rad/s, not -1"):
         refuse_other_model(fast, start_of(chain), wrong, DT_S, "free")
 
@@ -250,9 +250,9 @@ def test_a_free_run_that_spins_away_is_diverged(fake_engine: ModuleType) -> None
 
     def spun(by: float) -> Any:
         def faster(poses: Poses) -> Poses:
-            rod = poses.links["rocker1"]
+            rod = poses.bodies["rocker1"]
             at = np.where(poses.time_s > 0.2, by, rod.omega)
-            return replace(poses, links={**poses.links, "rocker1": replace(rod, omega=at)})
+            return replace(poses, bodies={**poses.bodies, "rocker1": replace(rod, omega=at)})
 
         exact = ChainMotion(Chain(1))
         return fake_engine.FakeEngine(lambda _, t: exact.motion(t), disturb=faster)

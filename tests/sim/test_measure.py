@@ -11,7 +11,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.scene import Scene
-from sim.engine import BodyPose, Poses
+from sim.engine import Poses
 from sim.measure import gaps, motion
 
 
@@ -49,9 +49,9 @@ def test_exact_poses_have_no_gaps_at_any_joint(name: str, fake_engine: ModuleTyp
 def test_a_pin_gap_is_the_largest_distance_of_two_copies(fake_engine: ModuleType) -> None:
     scene = load_scene("fourbar-lecture-1")
     poses = exact(scene, fake_engine)
-    body = poses.links["rocker"]
+    body = poses.bodies["rocker"]
     moved = replace(body, origin=body.origin + np.array([3e-4, 4e-4]))
-    found = gaps(scene, replace(poses, links={**poses.links, "rocker": moved}))
+    found = gaps(scene, replace(poses, bodies={**poses.bodies, "rocker": moved}))
     np.testing.assert_allclose(found["C"], 5e-4, rtol=1e-9)
     np.testing.assert_allclose(found["D"], 5e-4, rtol=1e-9)
     assert found["B"].max() < 1e-15
@@ -62,9 +62,9 @@ def test_a_slider_gap_is_the_distance_from_the_line_and_not_along_it(
 ) -> None:
     scene = load_scene("slider-crank-excel-350")
     poses = exact(scene, fake_engine)
-    body = poses.links["rod"]
+    body = poses.bodies["rod"]
     moved = replace(body, origin=body.origin + np.array([3e-4, -4e-4]))
-    found = gaps(scene, replace(poses, links={**poses.links, "rod": moved}))
+    found = gaps(scene, replace(poses, bodies={**poses.bodies, "rod": moved}))
     np.testing.assert_allclose(found["C"], 4e-4, rtol=1e-9)
     np.testing.assert_allclose(found["B"], 5e-4, rtol=1e-9)
 
@@ -72,10 +72,13 @@ def test_a_slider_gap_is_the_distance_from_the_line_and_not_along_it(
 def test_a_sliding_body_that_turns_against_its_line_is_a_gap(fake_engine: ModuleType) -> None:
     scene = load_scene("scotch-yoke")
     poses = exact(scene, fake_engine)
-    yoke, block = poses.links["yoke"], poses.blocks["B"]
-    turned = replace(poses, links={**poses.links, "yoke": replace(yoke, theta=yoke.theta + 1e-5)})
+    yoke, block = poses.bodies["yoke"], poses.bodies["block B"]
+    turned = replace(poses, bodies={**poses.bodies, "yoke": replace(yoke, theta=yoke.theta + 1e-5)})
     np.testing.assert_allclose(gaps(scene, turned)["Y"], 1e-5 * scene.longest_m, rtol=1e-6)
-    tipped = replace(poses, blocks={"B": replace(block, theta=block.theta - 2e-5 + 4 * np.pi)})
+    tipped = replace(
+        poses,
+        bodies={**poses.bodies, "block B": replace(block, theta=block.theta - 2e-5 + 4 * np.pi)},
+    )
     np.testing.assert_allclose(gaps(scene, tipped)["B"], 2e-5 * scene.longest_m, rtol=1e-6)
 
 
@@ -111,15 +114,11 @@ def lagging(scene: Scene, fake_engine: ModuleType, lag_s: float) -> Poses:
         scene, fake_engine.FakeEngine(solve), now.time_s + lag_s, 1e-3
     )
 
-    def mixed(kind: str) -> dict[str, BodyPose]:
-        return {
-            name: replace(body, velocity=other.velocity, omega=other.omega)
-            for (name, body), other in zip(
-                getattr(now, kind).items(), getattr(later, kind).values(), strict=True
-            )
-        }
-
-    return replace(now, links=mixed("links"), blocks=mixed("blocks"), lag_s=lag_s)
+    mixed = {
+        name: replace(body, velocity=other.velocity, omega=other.omega)
+        for (name, body), other in zip(now.bodies.items(), later.bodies.values(), strict=True)
+    }
+    return replace(now, bodies=mixed, lag_s=lag_s)
 
 
 @pytest.mark.parametrize(

@@ -83,9 +83,9 @@ def test_an_angle_error_of_a_link_shows_in_that_link_with_its_size_and_place(
 
 def test_a_gap_is_found_at_the_pin_that_opens(fourbar: Scene, errors_of: Find) -> None:
     def push(poses: Poses) -> Poses:
-        body = poses.links["rocker"]
+        body = poses.bodies["rocker"]
         moved = replace(body, origin=body.origin + np.array([3e-5, -4e-5]))
-        return replace(poses, links={**poses.links, "rocker": moved})
+        return replace(poses, bodies={**poses.bodies, "rocker": moved})
 
     errors = errors_of(fourbar, push)
     gaps = {row.body: row.maximum for row in errors.rows if row.quantity == "gap"}

@@ -87,16 +87,16 @@ def test_every_limit_leaves_room_for_what_the_driver_passes_on(name: str, fourba
 
 def late(poses: Poses) -> Poses:
     """The crank 1e-5 rad behind throughout."""
-    crank = poses.links["crank"]
-    links = {**poses.links, "crank": replace(crank, theta=crank.theta - 1e-5)}
-    return replace(poses, links=links)
+    crank = poses.bodies["crank"]
+    bodies = {**poses.bodies, "crank": replace(crank, theta=crank.theta - 1e-5)}
+    return replace(poses, bodies=bodies)
 
 
 def slow(poses: Poses) -> Poses:
     """The crank slower by a part in 1e5."""
-    crank = poses.links["crank"]
+    crank = poses.bodies["crank"]
     theta = crank.theta - 1e-5 * (crank.theta - crank.theta[0])
-    return replace(poses, links={**poses.links, "crank": replace(crank, theta=theta)})
+    return replace(poses, bodies={**poses.bodies, "crank": replace(crank, theta=theta)})
 
 
 @pytest.mark.parametrize("fault", [late, slow])

@@ -53,9 +53,9 @@ def turned(name: str, angle: Callable[[np.ndarray], np.ndarray]) -> Callable[[Po
     """One rod turned on, about the pin that its frame is at."""
 
     def disturb(poses: Poses) -> Poses:
-        rod = poses.links[name]
+        rod = poses.bodies[name]
         theta = rod.theta + angle(poses.time_s)
-        return replace(poses, links={**poses.links, name: replace(rod, theta=theta)})
+        return replace(poses, bodies={**poses.bodies, name: replace(rod, theta=theta)})
 
     return disturb
 
@@ -89,7 +89,7 @@ def test_energy_that_is_lost_is_measured_over_what_a_turn_exchanges(
         def less(rod: Any) -> Any:
             return replace(rod, velocity=0.99 * rod.velocity, omega=0.99 * rod.omega)
 
-        return replace(poses, links={name: less(rod) for name, rod in poses.links.items()})
+        return replace(poses, bodies={name: less(rod) for name, rod in poses.bodies.items()})
 
     turning, found = ChainMotion(CHAIN), held(fake_engine, slowed)
     kinetic = 0.5 * turning.inertia * turning.at(found.time_s)[1] ** 2
@@ -102,10 +102,10 @@ def test_the_error_of_b0_is_the_largest_so_far_and_none_after_the_end(
     fake_engine: ModuleType,
 ) -> None:
     def shifted(poses: Poses) -> Poses:
-        rod = poses.links["rocker0"]
+        rod = poses.bodies["rocker0"]
         aside = np.stack([1e-3 * poses.time_s, np.zeros_like(poses.time_s)], axis=-1)
         moved = replace(rod, origin=rod.origin + aside)
-        return replace(poses, links={**poses.links, "rocker0": moved})
+        return replace(poses, bodies={**poses.bodies, "rocker0": moved})
 
     found = held(fake_engine, shifted, diverges_after=1500)
     assert found.run.status == "diverged"

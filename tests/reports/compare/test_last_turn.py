@@ -20,8 +20,8 @@ Disturbed = Callable[..., Run]
 
 def off_by(link: str, angle_rad: float) -> Callable[[Poses], Poses]:
     def disturb(poses: Poses) -> Poses:
-        moved = replace(poses.links[link], theta=poses.links[link].theta + angle_rad)
-        return replace(poses, links={**poses.links, link: moved})
+        moved = replace(poses.bodies[link], theta=poses.bodies[link].theta + angle_rad)
+        return replace(poses, bodies={**poses.bodies, link: moved})
 
     return disturb
 

@@ -125,24 +125,20 @@ def exact_poses(scene: Scene, engine: FakeEngine, time_s: Array, dt_s: float) ->
     there = _poses(scene, engine.exact(scene, time_s + engine.velocity_shift * dt_s))
 
     def mixed(name: str, body: BodyPose) -> BodyPose:
-        other = {**there.links, **there.blocks}[name]
+        other = there.bodies[name]
         return replace(body, velocity=other.velocity, omega=other.omega)
 
-    return Poses(
-        time_s,
-        {name: mixed(name, body) for name, body in here.links.items()},
-        {name: mixed(name, body) for name, body in here.blocks.items()},
-    )
+    return Poses(time_s, {name: mixed(name, body) for name, body in here.bodies.items()})
 
 
 def _poses(scene: Scene, motion: Motion) -> Poses:
     """Frames of the bodies from the motion of their points."""
-    links = {}
+    frames = {}
     for link in scene.links.values():
         point, local = next(iter(link.points.items()))
         turn, track = motion.links[link.name], motion.points[point]
         arm = complex(*local) * np.exp(1j * turn.theta)
-        links[link.name] = BodyPose(
+        frames[link.name] = BodyPose(
             track.position - _pair(arm),
             turn.theta,
             track.velocity - _pair(1j * turn.omega * arm),
@@ -150,11 +146,10 @@ def _poses(scene: Scene, motion: Motion) -> Poses:
             track.acceleration - _pair((1j * turn.alpha - turn.omega**2) * arm),
             turn.alpha,
         )
-    held = {}
-    for slider in blocks(scene).values():
+    for name, slider in blocks(scene).items():
         track, zero = motion.points[slider.point], np.zeros(len(motion.time_s))
         guide = None if slider.on == GROUND else motion.links[slider.on]
-        held[slider.name] = BodyPose(
+        frames[name] = BodyPose(
             track.position,
             (guide.theta if guide else zero) + sliding_angle(slider),
             track.velocity,
@@ -162,7 +157,7 @@ def _poses(scene: Scene, motion: Motion) -> Poses:
             track.acceleration,
             guide.alpha if guide else zero,
         )
-    return Poses(motion.time_s, links, held)
+    return Poses(motion.time_s, frames)
 
 
 def _pair(number: NDArray[np.complex128]) -> Array:
@@ -174,8 +169,8 @@ def turned_link(link: str, error_rad: Callable[[Array], Array]) -> Callable[[Pos
     """An error of one link's angle, as a function of time [s] -> [rad]."""
 
     def disturb(poses: Poses) -> Poses:
-        body = poses.links[link]
+        body = poses.bodies[link]
         wrong = replace(body, theta=body.theta + error_rad(poses.time_s))
-        return replace(poses, links={**poses.links, link: wrong})
+        return replace(poses, bodies={**poses.bodies, link: wrong})
 
     return disturb
