@@ -130,33 +130,22 @@ class Session(Protocol):
         ...
 
 
-class Engine(Protocol):
-    """A physics engine with its profiles."""
+@dataclass(frozen=True)
+class Engine:
+    """A physics engine with its profiles, and what is asked of it.
 
-    @property
-    def name(self) -> str: ...
+    ``version`` gives the installed one. ``check`` raises SettingError for a value, of a complete
+    set of settings, that it does not take. ``open`` gives a session at a state, with settings, step
+    [s] and drive; EngineError where the engine cannot hold the scene. An engine that does not
+    report accelerations gives NaN for all.
+    """
 
-    @property
-    def profiles(self) -> Mapping[str, Profile]: ...
-
-    @property
-    def reports_accelerations(self) -> bool:
-        """Whether it gives numbers for all accelerations; one that does not gives NaN for all."""
-        ...
-
-    def version(self) -> str:
-        """The installed version; EngineError with the command that installs it if it is missing."""
-        ...
-
-    def check(self, settings: Settings) -> None:
-        """Raise SettingError for a value, of a complete set of settings, that it does not take."""
-        ...
-
-    def open(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        """A session at ``state``; EngineError where the engine cannot hold the scene."""
-        ...
+    name: str
+    profiles: Mapping[str, Profile]
+    version: Callable[[], str]
+    check: Callable[[Settings], None]
+    open: Callable[[Scene, State, Settings, float, Drive], Session]
+    reports_accelerations: bool = True
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import numpy as np
 from models.array import Array
 from models.motion import State
 from models.scene import Point, Scene
-from sim.engine import Drive, Engine, Facts, Log, Poses, Profile, Session, Settings
+from sim.engine import Drive, Engine, Facts, Log, Poses, Session, Settings
 from sim.registry import capability
 from sim.run import joined, stretch
 
@@ -99,44 +99,20 @@ def spoiler(engine: str) -> Spoiler:
     return cast(Spoiler, capability(engine, "spoiler"))
 
 
-@dataclass(frozen=True)
-class SpoiltEngine:
-    """An engine whose sessions are spoilt after the steps ``at``, in rising order.
+def spoilt(engine: Engine, at: tuple[int, ...], spoil: Spoil) -> Engine:
+    """The engine with sessions that are spoilt after the steps ``at``, in rising order.
 
     What is done after 0 steps the look at the model before the run (`sim.check`) can see.
     """
 
-    engine: Engine
-    at: tuple[int, ...]
-    spoil: Spoil
-
-    @property
-    def name(self) -> str:
-        return self.engine.name
-
-    @property
-    def profiles(self) -> Mapping[str, Profile]:
-        return self.engine.profiles
-
-    @property
-    def reports_accelerations(self) -> bool:
-        return self.engine.reports_accelerations
-
-    def version(self) -> str:
-        """The version of the engine."""
-        return self.engine.version()
-
-    def check(self, settings: Settings) -> None:
-        """Raise SettingError as the engine does."""
-        self.engine.check(settings)
-
-    def open(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> SpoiltSession:
-        """A session of the engine, spoilt already where that is to be after no step."""
-        session = self.engine.open(scene, state, settings, dt_s, drive)
+        session = engine.open(scene, state, settings, dt_s, drive)
         opening = Opening(scene, state, settings, dt_s, drive)
-        return SpoiltSession(session, opening, self.at, self.spoil, spoiler(self.engine.name))
+        return SpoiltSession(session, opening, at, spoil, spoiler(engine.name))
+
+    return replace(engine, open=opened)
 
 
 class SpoiltSession:

@@ -18,7 +18,7 @@ from reports.judge.cell import CellRunner
 from sim.engine import Run, Session
 from sim.registry import available, engine, offering
 from sim.run import run
-from sim.spoil import Opening, Spoiler, SpoiltEngine, WrongSetting, spoiler
+from sim.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
 
 FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
 REFUSED = "the engine does not hold"
@@ -127,8 +127,8 @@ def in_engine(
             def act(tools: Spoiler, session: Session, opening: Opening, done: int) -> None:
                 spoil(tools, session, opening, size, done / steps)
 
-            spoilt = SpoiltEngine(engine(name), tuple(at(steps)), act)
-            return run(scene, state, spoilt, *args, **options)
+            broken = spoilt(engine(name), tuple(at(steps)), act)
+            return run(scene, state, broken, *args, **options)
 
         return runner
 

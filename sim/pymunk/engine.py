@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
 
 import numpy as np
 import pymunk
@@ -15,7 +14,7 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Settings
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines
 from sim.pymunk.space import SpaceModel, build
 
@@ -29,33 +28,9 @@ WIDTH = 6
 """Numbers per body: x, y, angle, vx, vy, omega."""
 ROOM = 64
 """Numbers of memory to spare: the buffer may not grow memory that is not its own."""
+VERSION = str(pymunk.version)
 VELOCITY_SHIFT = 0.5
 """Chipmunk moves positions with the velocity of the step before: it belongs half a step later."""
-
-
-class PymunkEngine:
-    """The adapter."""
-
-    name = "pymunk"
-    reports_accelerations = False
-    profiles: Mapping[str, Profile] = {"as-shipped": AS_SHIPPED, "tuned": TUNED}
-
-    def version(self) -> str:
-        """The version of pymunk."""
-        return str(pymunk.version)
-
-    def check(self, settings: Settings) -> None:
-        """Raise SettingError for a value that Chipmunk does not take."""
-        checked(settings)
-
-    def open(
-        self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> PymunkSession:
-        """A session at ``state``; EngineError where pymunk cannot hold the scene."""
-        return PymunkSession(scene, state, settings, dt_s, drive)
-
-
-ENGINE = PymunkEngine()
 
 
 class PymunkSession:
@@ -99,7 +74,7 @@ class PymunkSession:
         space = self._space
         biases = {float(constraint.error_bias) for constraint in space.constraints}
         return Facts(
-            version=ENGINE.version(),
+            version=VERSION,
             mass_kg={n: b.mass for n, b in free.items()},
             inertia_kg_m2={n: b.moment for n, b in free.items() if math.isfinite(b.moment)},
             centre_m={n: _sum(self._model.centre[n], b.center_of_gravity) for n, b in free.items()},
@@ -243,3 +218,13 @@ def _arm(theta: Array, local: Point) -> Array:
     """A vector of a body's frame in the plane (T, 2)."""
     c, s = np.cos(theta), np.sin(theta)
     return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
+
+
+ENGINE = Engine(
+    "pymunk",
+    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    version=lambda: VERSION,
+    check=checked,
+    open=PymunkSession,
+    reports_accelerations=False,
+)

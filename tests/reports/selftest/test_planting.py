@@ -17,7 +17,7 @@ from reports.selftest.registry import FAULTS
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run
-from sim.spoil import Post, SpoiltEngine, rounded
+from sim.spoil import Post, rounded, spoilt
 
 STEPS = 360
 ENGINES = ("mujoco", "pymunk")
@@ -59,14 +59,12 @@ def test_a_session_cut_into_stretches_gives_the_same_bits(
 def test_a_session_is_spoilt_once_at_each_step_whether_it_logs_or_not(engine_name: str) -> None:
     scene = load_scene(FOURBAR)
     heard: list[int] = []
-    spoilt = SpoiltEngine(
-        engine(engine_name), (0, 5, 7), lambda _t, _s, _o, done: heard.append(done)
-    )
+    broken = spoilt(engine(engine_name), (0, 5, 7), lambda _t, _s, _o, done: heard.append(done))
     settings = {
         name: one.value for name, one in engine(engine_name).profiles["tuned"].settings.items()
     }
     state = solve(scene, np.zeros(1)).state()
-    session = spoilt.open(scene, state, settings, 1e-3, "prescribed")
+    session = broken.open(scene, state, settings, 1e-3, "prescribed")
     session.step(6)
     session.record(4, 2)
     assert heard == [0, 5, 8]  # samples are logged at 6, 8 and 10

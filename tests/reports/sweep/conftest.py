@@ -14,33 +14,35 @@ from tests.worlds.programs import Start
 BAD_ENGINE = '''
 """MuJoCo, with a fault that a setting chooses."""
 import os, time
+from dataclasses import replace
 import numpy as np
 from sim.engine import Profile, Setting
-from sim.mujoco.engine import MujocoEngine
+from sim.mujoco import engine as mujoco
 
-class BadEngine(MujocoEngine):
-    name = "bad"
-    profiles = {
+def opened(scene, state, settings, dt_s, drive):
+    fault = settings["fault"]
+    if fault == "abort":
+        os.abort()
+    elif fault == "hang":
+        time.sleep(1000)
+    elif fault == "fill":
+        np.ones(10**12)
+    elif fault == "leave":
+        os._exit(5)
+    elif fault == "throw":
+        raise RuntimeError("no luck")
+    held = {name: value for name, value in settings.items() if name != "fault"}
+    return mujoco.ENGINE.open(scene, state, held, dt_s, drive)
+
+ENGINE = replace(
+    mujoco.ENGINE,
+    name="bad",
+    profiles={
         name: Profile(name, "bad", "", dict(profile.settings) | {"fault": Setting("none", "")})
-        for name, profile in MujocoEngine.profiles.items()
-    }
-
-    def open(self, scene, state, settings, dt_s, drive):
-        fault = settings["fault"]
-        if fault == "abort":
-            os.abort()
-        elif fault == "hang":
-            time.sleep(1000)
-        elif fault == "fill":
-            np.ones(10**12)
-        elif fault == "leave":
-            os._exit(5)
-        elif fault == "throw":
-            raise RuntimeError("no luck")
-        held = {name: value for name, value in settings.items() if name != "fault"}
-        return super().open(scene, state, held, dt_s, drive)
-
-ENGINE = BadEngine()
+        for name, profile in mujoco.ENGINE.profiles.items()
+    },
+    open=opened,
+)
 '''
 DECLARATION = """
 from sim.registry import Declaration
