@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from models.joints import blocks, sliding_angle, turned
 from models.motion import State
-from models.scene import GROUND, Point, Scene, Slider
+from models.scene import GROUND, Link, Point, Scene, Slider
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ def frames(scene: Scene, state: State, delay_s: float = 0.0) -> dict[str, Frame]
     Velocities are those of ``delay_s`` later, as engines want them that step positions and
     velocities by turns; accurate to the second order of the delay.
     """
-    found = {GROUND: FIXED}
+    placed = {GROUND: FIXED}
     for link in scene.links.values():
         point = next(iter(link.points))
         theta, alpha = state.theta[link.name], state.alpha[link.name]
@@ -56,7 +55,7 @@ def frames(scene: Scene, state: State, delay_s: float = 0.0) -> dict[str, Frame]
         ahead = delay_s * (state.omega[link.name] + 0.5 * delay_s * alpha)
         arm, later = turned(link.points[point], theta), turned(link.points[point], theta + ahead)
         place, velocity = state.position[point], _later(state, point, delay_s)
-        found[link.name] = Frame(
+        placed[link.name] = Frame(
             (place[0] - arm[0], place[1] - arm[1]),
             theta,
             (velocity[0] + omega * later[1], velocity[1] - omega * later[0]),
@@ -64,11 +63,11 @@ def frames(scene: Scene, state: State, delay_s: float = 0.0) -> dict[str, Frame]
             ahead,
         )
     for name, slider in blocks(scene).items():
-        guide = found[slider.on]
+        guide = placed[slider.on]
         theta = guide.theta + sliding_angle(slider)
         place, velocity = state.position[slider.point], _later(state, slider.point, delay_s)
-        found[name] = Frame(place, theta, velocity, guide.omega, guide.ahead_rad)
-    return found
+        placed[name] = Frame(place, theta, velocity, guide.omega, guide.ahead_rad)
+    return placed
 
 
 def _later(state: State, point: str, delay_s: float) -> Point:
@@ -90,11 +89,10 @@ def along(slider: Slider, guide: Frame, place: Point, velocity: Point) -> tuple[
 
 def inertia_scale(scene: Scene) -> float:
     """Sum of m L^2 + I over the bodies [kg m^2]: what a drive has to be heavy against."""
-    total = 0.0
-    for link in scene.links.values():
-        total += link.mass_kg * scene.longest_m**2 + link.inertia_kg_m2
-    for slider in scene.sliders.values():
-        total += slider.mass_kg * scene.longest_m**2 + slider.inertia_kg_m2
+    total = 0.0  # not `sum`, which adds otherwise from Python 3.12 on
+    bodies: list[Link | Slider] = [*scene.links.values(), *scene.sliders.values()]
+    for body in bodies:
+        total += body.mass_kg * scene.longest_m**2 + body.inertia_kg_m2
     return total
 
 
@@ -105,8 +103,5 @@ def centre_of(scene: Scene, body: str) -> Point:
 
 def mass_of(scene: Scene, body: str) -> tuple[float, float]:
     """Mass [kg] and inertia about the centre of mass [kg m^2] of a link or a block with mass."""
-    holder: Mapping[str, Slider] = blocks(scene)
-    if body in scene.links:
-        link = scene.links[body]
-        return link.mass_kg, link.inertia_kg_m2
-    return holder[body].mass_kg, holder[body].inertia_kg_m2
+    holder = scene.links[body] if body in scene.links else blocks(scene)[body]
+    return holder.mass_kg, holder.inertia_kg_m2

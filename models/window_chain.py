@@ -95,8 +95,3 @@ class Chain:
         length, mass = self.length_m, self.mass_kg
         ends: dict[str, Point] = {start: (0.0, 0.0), end: (length, 0.0)}
         return Link(name, ends, mass, (0.5 * length, 0.0), mass * length**2 / 12)
-
-
-def windows(count: int) -> Scene:
-    """The benchmark with N = ``count`` windows, upright, as it is given: 1 m, 1 kg, 1 m/s."""
-    return Chain(count).scene()

@@ -8,7 +8,7 @@ from models.joints import bodies
 from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.engine import Energy, Poses
-from sim.measure import at_velocities
+from sim.measure import BodyPath, PointPath, at_velocities
 
 
 def energy(scene: Scene, poses: Poses) -> Energy:
@@ -23,12 +23,9 @@ def energy(scene: Scene, poses: Poses) -> Energy:
     gravity = np.array(scene.gravity_m_s2)
     with np.errstate(all="ignore"):  # what has come apart may overflow
         for body in bodies(scene):
-            pose, (x, y) = then.bodies[body], centre_of(scene, body)
-            mass, inertia = mass_of(scene, body)
-            c, s = np.cos(pose.theta), np.sin(pose.theta)
-            arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
-            across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-            speed = pose.velocity + pose.omega[:, None] * across
-            kinetic += 0.5 * mass * (speed**2).sum(axis=1) + 0.5 * inertia * pose.omega**2
-            potential -= mass * (pose.origin + arm) @ gravity
+            pose, (mass, inertia) = then.bodies[body], mass_of(scene, body)
+            centre = PointPath(BodyPath(pose), centre_of(scene, body))
+            square = (centre.velocity**2).sum(axis=1)
+            kinetic += 0.5 * mass * square + 0.5 * inertia * pose.omega**2
+            potential -= mass * centre.position @ gravity
     return Energy(kinetic, potential)

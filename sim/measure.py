@@ -16,7 +16,7 @@ from sim.engine import BodyPose, Poses
 
 
 @dataclass(frozen=True)
-class _Body:
+class BodyPath:
     """A body over time."""
 
     pose: BodyPose
@@ -28,10 +28,10 @@ class _Body:
 
 
 @dataclass(frozen=True)
-class _PointPath:
+class PointPath:
     """A point fixed to a body, over time in the plane, (T, 2); worked out where it is asked for."""
 
-    body: _Body
+    body: BodyPath
     local: Point
 
     @cached_property
@@ -64,7 +64,7 @@ class _Seen:
 
     slider: Slider
     guide: BodyPose
-    track: _PointPath
+    track: PointPath
 
     @cached_property
     def _place(self) -> Array:
@@ -120,6 +120,7 @@ def _pairs(x: Array, y: Array) -> Array:
     return pairs
 
 
+@np.errstate(all="ignore")  # what has come apart may overflow; it is judged, not warned of
 def motion(scene: Scene, poses: Poses) -> Motion:
     """The motion that the poses show.
 
@@ -128,12 +129,7 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     velocities lag, each level is worked out at its own instant: velocities with the positions of
     then, accelerations with the velocities of now.
     """
-    with np.errstate(all="ignore"):  # what has come apart may overflow; it is judged, not warned of
-        return _motion(scene, poses, _at_now(poses), at_velocities(poses))
-
-
-def _motion(scene: Scene, poses: Poses, now: Poses, then: Poses) -> Motion:
-    """The motion from the poses at their own instants."""
+    now, then = _at_now(poses), at_velocities(poses)
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
     points, sliders = {}, {}
     for name, held in carriers(scene).items():
@@ -177,6 +173,7 @@ def at_velocities(poses: Poses) -> Poses:
     return poses if lag == 0.0 else poses.changed(on)
 
 
+@np.errstate(all="ignore")
 def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     """How far the bodies that share a joint have come apart (T,) [m], by pin and by slider.
 
@@ -184,12 +181,6 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     distance of its point from the line, plus, for a body that must not turn against the line, the
     fault of its angle times the longest length of the scene.
     """
-    with np.errstate(all="ignore"):
-        return _gaps(scene, poses)
-
-
-def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
-    """The gaps by pin and by slider."""
     tracks = _tracks(scene, poses)
     found = {}
     for point, copies in tracks.items():
@@ -209,12 +200,12 @@ def _gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     return found
 
 
-def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, _PointPath]]:
+def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
     """Every point as each of the bodies that list it carries it."""
     frames = {GROUND: _still(len(poses.time_s)), **poses.bodies}
-    bodies = {name: _Body(pose) for name, pose in frames.items()}
+    bodies = {name: BodyPath(pose) for name, pose in frames.items()}
     return {
-        point: {body: _PointPath(bodies[body], local_point(scene, body, point)) for body in names}
+        point: {body: PointPath(bodies[body], local_point(scene, body, point)) for body in names}
         for point, names in carriers(scene).items()
     }
 

@@ -5,18 +5,17 @@ A mechanism does not know where it stands, so errors as pure numbers must not ch
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
+from models.joints import turned
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
     """The scene turned about the origin, its gravity with it."""
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
 
-    def turn(p: Point) -> Point:
-        return (c * p[0] - s * p[1], s * p[0] + c * p[1])
+    def turn(place: Point) -> Point:
+        return turned(place, angle_rad)
 
     def on_ground(slider: Slider) -> Slider:
         return replace(

@@ -75,8 +75,8 @@ def build(
     """
     space = pymunk.Space()
     space.gravity = scene.gravity_m_s2
-    held = joints(scene)
-    fixed_angle = {p.body for p in held.prisms if p.slider.on == GROUND}
+    ties = joints(scene)
+    fixed_angle = {p.body for p in ties.prisms if p.slider.on == GROUND}
     where = frames(scene, state, delay_s)
     made: dict[str, pymunk.Body] = {GROUND: space.static_body}
     centre: dict[str, Point] = {GROUND: (0.0, 0.0)}
@@ -96,10 +96,10 @@ def build(
     if servo:
         motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
         space.add(_plain(motor))
-    found = _pins(scene, held, made, centre, pinned=servo or free)
-    for slide in held.slides:
-        found += _slide(scene, state, slide, made, centre, exact_lines)
-    for constraint in found:
+    constraints = _pins(scene, ties, made, centre, pinned=servo or free)
+    for slide in ties.slides:
+        constraints += _slide(scene, state, slide, made, centre, exact_lines)
+    for constraint in constraints:
         space.add(_plain(constraint))
     del made[GROUND]
     return SpaceModel(space, made, centre, crank, motor)
@@ -126,23 +126,23 @@ def _plain(constraint: pymunk.Constraint) -> pymunk.Constraint:
 
 def _pins(
     scene: Scene,
-    held: Joints,
+    ties: Joints,
     made: Mapping[str, pymunk.Body],
     centre: Mapping[str, Point],
     *,
     pinned: bool,
 ) -> list[pymunk.Constraint]:
     """All pins; a kinematic crank needs none to the ground and is not ``pinned``."""
-    found: list[pymunk.Constraint] = []
-    for joint in held.pins:
+    constraints: list[pymunk.Constraint] = []
+    for joint in ties.pins:
         first, *others = _pinned_bodies(scene, joint.bodies)
         for other in others:
             driven = {first, other} == {GROUND, scene.driver.link} and not pinned
             if not (driven and joint.point == scene.driver_pivot):
                 a = _anchor(scene, centre, first, joint.point)
                 b = _anchor(scene, centre, other, joint.point)
-                found.append(pymunk.PivotJoint(made[first], made[other], a, b))
-    return found
+                constraints.append(pymunk.PivotJoint(made[first], made[other], a, b))
+    return constraints
 
 
 def _slide(
@@ -162,16 +162,16 @@ def _slide(
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
-    found: list[pymunk.Constraint] = []
+    constraints: list[pymunk.Constraint] = []
     if sound or not exact_lines:
         ends = [less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
-        found.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
+        constraints.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
     else:
         rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
-        found.append(rail.joint())
+        constraints.append(rail.joint())
     if isinstance(slide, Prism) and slider.on != GROUND:
-        found.append(pymunk.GearJoint(guide, body, sliding_angle(slider), 1.0))
-    return found
+        constraints.append(pymunk.GearJoint(guide, body, sliding_angle(slider), 1.0))
+    return constraints
 
 
 def _firm(body: pymunk.Body) -> bool:
@@ -207,13 +207,8 @@ def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Poi
     where = frames(scene, state)
     place = where[rider].at(local_point(scene, rider, slider.point))
     now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
-    reach = FAR * sum(_reach(scene, name) for name in (GROUND, *scene.links))
+    reach = FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
     u = turned((1.0, 0.0), slider.direction_rad)
     a, b = now - reach, now + reach
     x, y = slider.through_m
     return (x + a * u[0], y + a * u[1]), (x + b * u[0], y + b * u[1])
-
-
-def _reach(scene: Scene, body: str) -> float:
-    """The largest distance between two points of a body [m]."""
-    return span(scene.ground if body == GROUND else scene.links[body].points)

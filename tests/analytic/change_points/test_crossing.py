@@ -21,7 +21,7 @@ from models.files import parse_scene
 from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.motion import Motion
 from models.scene import Scene
-from models.window_chain import windows
+from models.window_chain import Chain
 from tests.analytic import oracle
 from tests.analytic.chain import law_at
 from tests.analytic.change_points import jets
@@ -337,11 +337,11 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
     """As `models.window_chain` says; longer ones are refused at any angle."""
     theta = np.array([1.5, 0.5, -0.5])
-    motion = driven(windows(6), theta)
+    motion = driven(Chain(6).scene(), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
     for count in (7, 8, 40):
         with pytest.raises(CrankcheckError, match=r"B7 is singular .*: change a length$"):
-            driven(windows(count), theta[:1])
+            driven(Chain(count).scene(), theta[:1])
 
 
 @pytest.mark.parametrize("power", range(2, 13))

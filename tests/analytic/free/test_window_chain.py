@@ -16,14 +16,14 @@ from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError
 from models.poses import centre_of, mass_of
 from models.scene import Scene
-from models.window_chain import UPRIGHT, Chain, windows
+from models.window_chain import UPRIGHT, Chain
 
 CHAINS = [Chain(1), Chain(40), Chain(3, 0.5, 2.0, 3.0, -0.7), Chain(2, gravity_m_s2=0.0)]
 
 
 @pytest.mark.parametrize("count", [1, 2, 7, 40, 200])
 def test_a_chain_has_as_many_rods_and_dyads_as_windows_want(count: int) -> None:
-    scene = windows(count)
+    scene = Chain(count).scene()
     assert len(scene.links) == 2 * count + 1
     assert {"A0", f"B{count}", "B0"} <= scene.pins.keys()
     assert {len(bodies) for bodies in scene.pins.values()} == ({2, 3} if count > 1 else {2})
@@ -149,7 +149,7 @@ def test_the_motion_of_the_pins_is_that_of_the_closed_form_of_the_linkage() -> N
     turning, times = ChainMotion(Chain(2)), np.linspace(0.0, 0.5, 11)
     found = turning.motion(times)
     rocker = found.links["rocker0"]
-    other = solve_driven(windows(2), rocker.theta, rocker.omega, rocker.alpha)
+    other = solve_driven(Chain(2).scene(), rocker.theta, rocker.omega, rocker.alpha)
     for name, point in found.points.items():
         for quantity, array in vars(point).items():
             assert np.allclose(array, getattr(other.points[name], quantity), rtol=0, atol=1e-11)
