@@ -24,7 +24,7 @@ from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import EPS, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
-from analytic.result import Result, Selection
+from analytic.result import MotionArrays, Selection
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
@@ -182,7 +182,7 @@ class _Prepared:
         self, wanted: Selection, time_s: Array, driver: Callable[[slice], Driven], *, bound: bool
     ) -> Motion:
         """The motion, chunk by chunk, with the change points on the way from time 0 through it."""
-        result = Result(wanted, time_s, self.steps, bound=bound)
+        result = MotionArrays(wanted, time_s, self.steps, bound=bound)
         low = high = self.start
         for first in range(0, len(time_s), CHUNK):
             span = slice(first, first + CHUNK)

@@ -23,13 +23,13 @@ def nearness(scene: Scene, motion: Motion) -> dict[str, Array]:
     pins over the largest in the motion. The motion is one by `analytic.kinematics`, of ``scene``,
     with all its points.
     """
-    found = dict(motion.conditioning)
+    distances = dict(motion.conditioning)
     for group in analyse(scene).groups:
         if group.kind == "RPR":
             ends = (_place(scene, motion, pin) for pin in (group.outer1, group.outer2))
             apart = np.hypot(*np.subtract(*ends).T)
-            found[group.branch_key] = found[group.branch_key] * apart / np.max(apart)
-    return found
+            distances[group.branch_key] = distances[group.branch_key] * apart / np.max(apart)
+    return distances
 
 
 def _place(scene: Scene, motion: Motion, pin: str) -> Array:

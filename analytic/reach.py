@@ -46,9 +46,9 @@ def ranges(stretched: Stretched) -> list[Range]:
     edges = np.flatnonzero(closes[1:] != closes[:-1])
     if not len(edges):
         return []
-    found = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges])
-    opens = [float(a) for a, was in zip(found, closes[edges], strict=True) if not was]
-    ends = [float(a) for a, was in zip(found, closes[edges], strict=True) if was]
+    borders = _bisect(stretched, grid[edges], grid[edges + 1], closes[edges])
+    opens = [float(a) for a, was in zip(borders, closes[edges], strict=True) if not was]
+    ends = [float(a) for a, was in zip(borders, closes[edges], strict=True) if was]
     if closes[0]:  # the range that holds the angle pi: its end is a turn after the first
         ends = [*ends[1:], ends[0] + math.tau]
     return list(zip(opens, ends, strict=True))
@@ -65,8 +65,8 @@ def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: NDArray[n
 
 def describe_reach(scene: Scene, stretched: Stretched) -> str:
     """The reachable range in words, for a message."""
-    found = ranges(stretched)
-    if not found:
+    reachable = ranges(stretched)
+    if not reachable:
         grid = np.linspace(-math.pi, math.pi, SCAN + 1)
         short = shortage(stretched, grid)
         best = int(np.argmin(short))
@@ -74,5 +74,7 @@ def describe_reach(scene: Scene, stretched: Stretched) -> str:
             f"It cannot be assembled at any angle of {scene.driver.link}: it comes nearest at "
             f"{math.degrees(grid[best]):.4g} deg, open by {short[best]:.3g} m; change a length."
         )
-    spans = " and ".join(f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in found)
+    spans = " and ".join(
+        f"{math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in reachable
+    )
     return f"{scene.driver.link} can stand at {spans} (and whole turns from there)."

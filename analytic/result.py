@@ -97,7 +97,7 @@ class _Block:
         return Derivatives(self.pair(), self.pair(), self.pair())
 
 
-class Result:
+class MotionArrays:
     """The arrays of a motion while they are filled."""
 
     def __init__(
@@ -126,10 +126,10 @@ class Result:
         for name, body in self.wanted.points.items():
             self._write_point(span, name, chunk.point(body, name))
         for name, track in self.sliders.items():
-            found = chunk.sliders[name]
-            track.put(span, found.s, found.speed, found.acceleration)
-            if self.certified and found.error is not None:
-                e = found.error
+            sliding = chunk.sliders[name]
+            track.put(span, sliding.s, sliding.speed, sliding.acceleration)
+            if self.certified and sliding.error is not None:
+                e = sliding.error
                 self.slider_bounds[name].put_bounds(span, e.displacement, e.speed, e.acceleration)
 
     def _write_link(self, span: slice, name: str, body: BodyKinematics) -> None:

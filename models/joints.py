@@ -71,12 +71,12 @@ def bodies(scene: Scene) -> tuple[str, ...]:
 
 def carriers(scene: Scene) -> dict[str, tuple[str, ...]]:
     """Every named point with the bodies that carry it, blocks with mass included."""
-    found = {point: list(names) for point, names in scene.pins.items()}
+    names_by_point = {point: list(names) for point, names in scene.pins.items()}
     for name, slider in blocks(scene).items():
-        found.setdefault(slider.point, []).append(name)
+        names_by_point.setdefault(slider.point, []).append(name)
     for slider in scene.sliders.values():
-        found.setdefault(slider.point, [])
-    return {point: tuple(names) for point, names in found.items()}
+        names_by_point.setdefault(slider.point, [])
+    return {point: tuple(names) for point, names in names_by_point.items()}
 
 
 def joints(scene: Scene) -> Joints:

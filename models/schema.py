@@ -43,7 +43,7 @@ def _not_tiny(value: float) -> float:
     return value
 
 
-Rate = Annotated[Number, AfterValidator(_not_tiny)]
+RateNumber = Annotated[Number, AfterValidator(_not_tiny)]
 
 
 class Table(BaseModel):
@@ -101,7 +101,7 @@ class SliderTable(Table):
 class ConstantDriver(Table):
     link: Name
     law: Literal["constant"] = "constant"
-    speed_rad_s: Rate
+    speed_rad_s: RateNumber
     start_deg: Degrees = 0.0
 
 
@@ -110,14 +110,14 @@ class OscillatingDriver(Table):
     law: Literal["oscillating"]
     centre_deg: Degrees
     amplitude_deg: Annotated[Degrees, AfterValidator(_not_tiny)]
-    frequency_rad_s: Rate
+    frequency_rad_s: RateNumber
     phase_deg: Degrees = 0.0
 
 
 class FromRestDriver(Table):
     link: Name
     law: Literal["from-rest"]
-    speed_rad_s: Rate
+    speed_rad_s: RateNumber
     rise_s: Positive
     start_deg: Degrees = 0.0
 

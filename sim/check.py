@@ -52,9 +52,9 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
         centre, wanted = facts.centre_m.get(body), centre_of(scene, body)
         if centre is not None and math.dist(centre, wanted) > SAME * scene.longest_m:
             yield f"{body} has centre_m {centre}, not {wanted}"
-        held = facts.inertia_kg_m2.get(body, inertia)
-        if not math.isclose(held, inertia, rel_tol=SAME):
-            yield f"{body} has inertia_kg_m2 {held:g}, not {inertia:g}"
+        own = facts.inertia_kg_m2.get(body, inertia)
+        if not math.isclose(own, inertia, rel_tol=SAME):
+            yield f"{body} has inertia_kg_m2 {own:g}, not {inertia:g}"
     if math.dist(facts.gravity_m_s2, scene.gravity_m_s2) > SAME * math.hypot(*scene.gravity_m_s2):
         yield f"gravity is {facts.gravity_m_s2}, not {scene.gravity_m_s2} m/s^2"
 

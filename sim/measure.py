@@ -132,10 +132,10 @@ def motion(scene: Scene, poses: Poses) -> Motion:
     now, then = _at_now(poses), at_velocities(poses)
     tracks, later = _tracks(scene, now), _tracks(scene, then) if then is not now else None
     points, sliders = {}, {}
-    for name, held in carriers(scene).items():
-        if held:
-            track = tracks[name][held[0]]
-            velocity = (later or tracks)[name][held[0]].velocity
+    for name, names in carriers(scene).items():
+        if names:
+            track = tracks[name][names[0]]
+            velocity = (later or tracks)[name][names[0]].velocity
             points[name] = PointMotion(track.position, velocity, track.acceleration)
     for name, slider in scene.sliders.items():
         rider = _rider(scene, slider)
@@ -182,12 +182,12 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
     fault of its angle times the longest length of the scene.
     """
     tracks = _tracks(scene, poses)
-    found = {}
+    openings = {}
     for point, copies in tracks.items():
         places = [t.position for t in copies.values()]
         apart = [np.hypot(*(a - b).T) for i, a in enumerate(places) for b in places[i + 1 :]]
         if apart:
-            found[point] = np.max(apart, axis=0)
+            openings[point] = np.max(apart, axis=0)
     for name, slider in scene.sliders.items():
         guide = _guide(slider, poses)
         seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])
@@ -196,8 +196,8 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
         if body is not None:  # else it is a point, which keeps no angle to the line
             turn = body.theta - guide.theta - sliding_angle(slider)
             off = off + np.abs(np.remainder(turn + np.pi, 2 * np.pi) - np.pi) * scene.longest_m
-        found[name] = np.maximum(off, found[name]) if name in found else off
-    return found
+        openings[name] = np.maximum(off, openings[name]) if name in openings else off
+    return openings
 
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:

@@ -99,11 +99,11 @@ def install_command(name: str) -> str:
 
 def available() -> tuple[Availability, ...]:
     """All engines, installed or not."""
-    found = []
+    engines = []
     for name in ENGINES:
         try:
             version: str | None = engine(name).version()
         except EngineError:
             version = None
-        found.append(Availability(name, version, install_command(name)))
-    return tuple(found)
+        engines.append(Availability(name, version, install_command(name)))
+    return tuple(engines)

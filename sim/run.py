@@ -73,7 +73,7 @@ def run(
         not the scene.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
-    held = resolved(profile_of(chosen, profile), settings)
+    asked = resolved(profile_of(chosen, profile), settings)
     _check_steps(scene, period(scene, state, drive), dt_s, steps, every)
     blank = Run(
         scene.name,
@@ -84,15 +84,15 @@ def run(
         dt_s,
         "ok",
         "",
-        settings=held,
-        asked=held,
+        settings=asked,
+        asked=asked,
         start_s=state.time_s,
         steps=steps,
         every=every,
         reports_accelerations=chosen.reports_accelerations,
     )
     try:
-        session = chosen.open(scene, state, held, dt_s, drive)
+        session = chosen.open(scene, state, asked, dt_s, drive)
     except SettingError:
         raise
     except EngineError as error:
@@ -141,14 +141,14 @@ def time_run(
     Raises EngineError as `run` does, and for a scene that the engine cannot hold.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
-    held = resolved(profile_of(chosen, profile), settings)
+    asked = resolved(profile_of(chosen, profile), settings)
     _check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
     walls = []
     collecting = gc.isenabled()
     gc.disable()
     try:
         for _ in range(repeats):
-            session = chosen.open(scene, state, held, dt_s, drive)
+            session = chosen.open(scene, state, asked, dt_s, drive)
             session.step(max(steps // 10, 1))
             walls.append(_wall(session, steps, every))
     finally:

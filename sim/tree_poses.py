@@ -17,7 +17,7 @@ Plane = NDArray[np.complex128]
 
 
 @dataclass
-class _Moving:
+class _MovingFrame:
     """A frame over time while the joints of its body are applied; complex numbers for the plane."""
 
     place: Plane
@@ -27,10 +27,10 @@ class _Moving:
     push: Plane
     alpha: Array
 
-    def shifted(self, arm: Plane) -> _Moving:
+    def shifted(self, arm: Plane) -> _MovingFrame:
         """The same body seen from a point ``arm`` away, an arm that turns with the body."""
         turn = 1j * self.omega
-        return _Moving(
+        return _MovingFrame(
             self.place + arm,
             self.theta,
             self.speed + turn * arm,
@@ -66,11 +66,11 @@ def body_poses(
 
 def _bodies(
     limbs: Sequence[Limb], q: Array, rate: Array, acceleration: Array
-) -> dict[str, _Moving]:
+) -> dict[str, _MovingFrame]:
     """All bodies, every level at one instant."""
     still = np.zeros(len(q))
     ground = still.astype(np.complex128)
-    moving = {GROUND: _Moving(ground, still, ground, still, ground, still)}
+    moving = {GROUND: _MovingFrame(ground, still, ground, still, ground, still)}
     column = 0
     for limb in limbs:
         base = moving[limb.parent]
@@ -84,7 +84,9 @@ def _bodies(
     return {limb.body: moving[limb.body] for limb in limbs}
 
 
-def _moved(body: _Moving, freedom: Freedom, shift: Array, rate: Array, push: Array) -> _Moving:
+def _moved(
+    body: _MovingFrame, freedom: Freedom, shift: Array, rate: Array, push: Array
+) -> _MovingFrame:
     """The frame after one more joint coordinate."""
     if freedom.kind == "hinge":
         pivot = body.shifted(_arm(body.theta, freedom.anchor))
@@ -104,7 +106,7 @@ def _arm(theta: Array, local: Point) -> Plane:
     return np.asarray(np.exp(1j * theta) * complex(*local))
 
 
-def _pose(now: _Moving, then: _Moving) -> BodyPose:
+def _pose(now: _MovingFrame, then: _MovingFrame) -> BodyPose:
     """The frame as real arrays: velocities from ``then``, the rest from ``now``."""
 
     def pair(number: Plane) -> Array:

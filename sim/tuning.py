@@ -76,10 +76,10 @@ class SearchSpace:
 
     def settings(self, profile: Settings, values: Values) -> dict[str, SettingValue]:
         """The complete settings: those of the profile with the knobs' values in their place."""
-        found = dict(profile)
+        complete = dict(profile)
         for knob in self.knobs:
-            found |= dict.fromkeys(knob.targets, values[knob.name])
-        return found
+            complete |= dict.fromkeys(knob.targets, values[knob.name])
+        return complete
 
 
 def rungs(low: float, high: float, ratio: float, digits: int = 2) -> tuple[float, ...]:

@@ -59,7 +59,7 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
         A dyad is as good as in a change point where one before it goes through its own.
     """
     start = _start(scene.driver.law)
-    found: dict[str, ChangePoints] = {}
+    passing: dict[str, ChangePoints] = {}
     period = math.tau
     theta = _grid(start, period)
     chunk = stretched(scene, steps, theta)
@@ -70,24 +70,26 @@ def passages(scene: Scene, steps: Sequence[Step]) -> dict[str, ChangePoints]:
         valleys = theta[_valleys(closure.root)]
         if not valleys.size:
             continue
-        look = _ValleySearch(scene, steps[: k + 1], found)
+        look = _ValleySearch(scene, steps[: k + 1], passing)
         angles = np.sort(start + np.remainder(look.touches(valleys) - start, period))
         angles = angles[np.diff(angles, prepend=-np.inf) > AT_START]  # two valleys, one tip
         if not angles.size:
             continue
         if angles.size % 2:  # as many again, with the other sign
             angles, period = np.concatenate([angles, angles + period]), 2.0 * period
-        found[step.key] = ChangePoints(scene, steps[: k + 1], dict(found), start, period, angles)
+        passing[step.key] = ChangePoints(
+            scene, steps[: k + 1], dict(passing), start, period, angles
+        )
         # What hangs on this dyad stands differently where the sign is another.
         theta = _grid(start, period)
-        chunk = stretched(scene, steps, theta, found)
-    return found
+        chunk = stretched(scene, steps, theta, passing)
+    return passing
 
 
-def passed(found: Mapping[str, ChangePoints], low: float, high: float) -> tuple[Crossing, ...]:
+def passed(passing: Mapping[str, ChangePoints], low: float, high: float) -> tuple[Crossing, ...]:
     """The change points, each once, that a driver passes from angle ``low`` to ``high``."""
     crossings = []
-    for key, passage in found.items():
+    for key, passage in passing.items():
         first = np.ceil((low - AT_START - passage.angles) / passage.period)
         met = passage.angles[passage.angles + first * passage.period <= high + AT_START]
         places = sorted(whole_turns_off(float(angle)) for angle in met)

@@ -32,8 +32,8 @@ def jolts(scene: Scene, motion: Motion) -> Array:
     A pure number: angles over the square of the driver's peak speed, places over the longest link
     too. Samples at which it is not finite (singular ones) are 0.
     """
-    found = np.maximum.reduce(list(_pushes(scene, motion)))
-    half = 0.5 * found / scene.driver.law.peak_speed_rad_s**2
+    largest = np.maximum.reduce(list(_pushes(scene, motion)))
+    half = 0.5 * largest / scene.driver.law.peak_speed_rad_s**2
     return np.where(np.isfinite(half), half, 0.0)
 
 

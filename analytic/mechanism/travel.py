@@ -89,7 +89,7 @@ def travels(scene: Scene, outputs: Sequence[str]) -> dict[str, Travel | Crankche
     grid: Array = (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
     looked = _driven(scene, outputs, grid)
     _refuse_singular(scene, grid, looked)
-    found: dict[str, Travel | CrankcheckError] = {}
+    results: dict[str, Travel | CrankcheckError] = {}
     between: dict[str, tuple[Array, Array, Array]] = {}
     for output, (theta, rate) in _closer(scene, outputs, grid, looked).items():
         sign = np.sign(rate)
@@ -98,11 +98,11 @@ def travels(scene: Scene, outputs: Sequence[str]) -> dict[str, Travel | Crankche
             after = np.append(theta[1:], theta[0] + period)
             between[output] = theta[turns], after[turns], sign[turns]
         else:
-            found[output] = _not_two(scene, output, len(turns))
+            results[output] = _not_two(scene, output, len(turns))
     if between:
         limits = dict(zip(between, _refined(scene, between), strict=True))
-        found |= _extremes(scene, grid, limits, period)
-    return {output: found[output] for output in outputs}
+        results |= _extremes(scene, grid, limits, period)
+    return {output: results[output] for output in outputs}
 
 
 def _closer(
@@ -189,20 +189,20 @@ def _extremes(
     theta = np.concatenate([grid, *limits.values()])
     order = np.argsort(theta)
     motion = _driven(scene, list(limits), theta[order])
-    found = {}
+    travelled = {}
     for k, (output, low) in enumerate(limits.items()):
         first = len(grid) + 2 * k
         places = _place(motion, output)[np.argsort(order)[first : first + 2]]
         small = 0 if places[0] < places[1] else 1
         at = low % period
-        found[output] = Travel(
+        travelled[output] = Travel(
             float(places[small]),
             float(places[1 - small]),
             float(at[small]),
             float(at[1 - small]),
             period,
         )
-    return found
+    return travelled
 
 
 def _refuse_singular(scene: Scene, grid: Array, motion: Motion) -> None:

@@ -75,7 +75,7 @@ class MujocoSession:
         names = [limb.body for limb in self._limbs]
         opt = model.opt
         unused = OF_DRIVES if self._free else ()
-        held: dict[str, SettingValue] = {
+        settings: dict[str, SettingValue] = {
             name: value for name, value in self._settings.items() if name not in unused
         } | {
             "close": self._closed,
@@ -85,10 +85,10 @@ class MujocoSession:
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:
-            held["solref_timeconst_s"] = float(model.eq_solref[0, 0])
-            held["solref_dampratio"] = float(model.eq_solref[0, 1])
+            settings["solref_timeconst_s"] = float(model.eq_solref[0, 0])
+            settings["solref_dampratio"] = float(model.eq_solref[0, 1])
             impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
-            held |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
+            settings |= zip(impedance, map(float, model.eq_solimp[0, :3]), strict=True)
         return Facts(
             version=VERSION,
             mass_kg={n: float(model.body(n).mass[0]) for n in names},
@@ -96,7 +96,7 @@ class MujocoSession:
             centre_m={n: _pair(model.body(n).ipos) for n in names},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
             start=self.read(),
-            settings=held,
+            settings=settings,
             velocity_shift=self._shift,
             acceleration_shift=0.0,
         )
@@ -190,16 +190,16 @@ class MujocoSession:
     def _accelerations(self, states: Array, at: Array) -> Array:
         """Joint accelerations of the states (T, nv), computed on a copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
-        found = np.empty((len(states), model.nv))
+        rows = np.empty((len(states), model.nv))
         control = self._control_at(at)
         for row, state in enumerate(states):
             mujoco.mj_setState(model, data, state, FULL)
             if control is not None:
                 data.ctrl[0] = control[row]
             mujoco.mj_forward(model, data)
-            found[row] = data.qacc
+            rows[row] = data.qacc
             data.qacc_warmstart[:] = data.qacc
-        return found
+        return rows
 
     def _control_at(self, at: Array) -> Array | None:
         """The law's own speed or acceleration at the steps, for the actuator."""

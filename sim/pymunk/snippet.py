@@ -21,45 +21,45 @@ def pymunk_snippet(
     Only what differs from pymunk's defaults; see `sim.snippets.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    held = defaults | dict(settings)
+    complete = defaults | dict(settings)
     speed = 2.0 * math.pi / period_s
-    chosen = [name for name in ("iterations", "damping") if held[name] != defaults[name]]
-    lines = [*_comment(head), *(f"space.{name} = {held[name]!r}" for name in chosen)]
-    if held["error_bias"] != defaults["error_bias"]:
+    chosen = [name for name in ("iterations", "damping") if complete[name] != defaults[name]]
+    lines = [*_comment(head), *(f"space.{name} = {complete[name]!r}" for name in chosen)]
+    if complete["error_bias"] != defaults["error_bias"]:
         lines += [
             "for joint in space.constraints:  # once all joints have been added",
-            f"    joint.error_bias = {float(held['error_bias'])!r}",
+            f"    joint.error_bias = {float(complete['error_bias'])!r}",
         ]
     lines += [
         f"dt = {period_s / steps_per_turn!r}  # 2 pi / ({steps_per_turn:g} speed), here for a "
         f"crank at {speed:.6g} rad/s",
         f"space.step(dt)  # {steps_per_turn:g} times a turn",
     ]
-    return "\n".join([*lines, *_comment(_notes(held, defaults, drive))]) + "\n"
+    return "\n".join([*lines, *_comment(_notes(complete, defaults, drive))]) + "\n"
 
 
-def _notes(held: Settings, defaults: Settings, drive: Drive) -> list[str]:
+def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     """How the crank is driven, how lines are held, and what limits the promise."""
     if drive == "servo":
-        found = ["Drive: a SimpleMotor between the crank and the ground, rate = speed."]
+        notes = ["Drive: a SimpleMotor between the crank and the ground, rate = speed."]
     else:
-        found = [
+        notes = [
             "Drive: the crank is a kinematic body with its origin on its pivot and a constant "
             "angular_velocity; the others start with the velocities that go with it."
         ]
-    if held["lines"] == "exact":
-        found.append(
+    if complete["lines"] == "exact":
+        notes.append(
             "Points on lines: where a push turns the sliding body or its guide, not GrooveJoint "
             "but a PinJoint whose far end moves along with the point (crankcheck, "
             "sim/pymunk/rail.py). "
             "Loops of pins need nothing of the kind."
         )
-    if held["error_bias"] == defaults["error_bias"]:
-        found.append(
+    if complete["error_bias"] == defaults["error_bias"]:
+        notes.append(
             "error_bias is a loss in a second, whatever the speed: errors are those of the speeds "
             "at which they were measured."
         )
-    return found
+    return notes
 
 
 def _comment(paragraphs: Sequence[str]) -> list[str]:
