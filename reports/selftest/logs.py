@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
-from models.motion import LinkMotion, Motion
+from models.motion import LinkMotion, Motion, PointMotion
 from models.scene import Scene
 from sim.engine import Run
 
@@ -44,7 +44,8 @@ def with_link(done: Run, name: str, **changed: Array) -> Run:
 def with_points(done: Run, change: Callable[[Array], Array]) -> Run:
     """The run with the positions, velocities and accelerations of all points changed."""
     motion = moved(done)
-    return replace(done, motion=replace(motion, points=motion.each_series(change).points))
+    points = {n: PointMotion(*map(change, vars(p).values())) for n, p in motion.points.items()}
+    return replace(done, motion=replace(motion, points=points))
 
 
 def spoilt(series: Array, at: int | slice, value: float) -> Array:
