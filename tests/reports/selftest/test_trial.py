@@ -12,6 +12,7 @@ from reports.judge.rules.base import Evidence, Finding
 from reports.selftest import trial
 from reports.selftest.fault import FOURBAR, Fault
 from reports.selftest.registry import FAULTS
+from reports.workers.isolated import Lost
 
 SPIKE = FAULTS["spike"]
 WHOLE = FAULTS["log-cut"]
@@ -130,6 +131,7 @@ def test_a_fault_that_is_there_at_size_0_is_not_caught(monkeypatch: pytest.Monke
 
 
 def test_a_fault_that_ends_the_process_is_not_caught() -> None:
-    verdict = trial._lost("spike")
+    verdict = trial._lost("spike", Lost("crashed", "the process ended with signal 11"))
     assert not verdict.caught
+    assert verdict.lost == "the process ended with signal 11"
     assert verdict.least("mujoco") is None
