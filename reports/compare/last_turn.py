@@ -24,11 +24,13 @@ from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run
 
+Trace = Mapping[str, Array]
+"""Series by name."""
 SAMPLES_PER_TURN = 90
 """Divides the usual numbers of steps in a turn, so that cells of a line share their instants."""
 
 
-def trace(scene: Scene, run: Run) -> dict[str, Array]:
+def trace(scene: Scene, run: Run) -> Trace:
     """The series of a run that logged something; empty where it logged nothing that is finite."""
     if run.motion is None or run.motion.time_s.size < 2:
         return {}

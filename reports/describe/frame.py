@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 import pandas as pd
 
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-
-BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
+from models.motion import BodyMotion, Motion
 
 
 def motion_frame(motion: Motion) -> pd.DataFrame:

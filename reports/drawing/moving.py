@@ -9,7 +9,7 @@ any motion of a scene can be drawn with it. The drawing itself is ``assets/mecha
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -18,10 +18,10 @@ from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene
+from reports.compare.last_turn import Trace
 from reports.compare.series import angle_error
 from reports.drawing.packed import packed
 
-Trace = Mapping[str, Array]
 INSTANTS = 91
 """Over one period, both ends included, where no trace says which."""
 FARTHEST = 20.0

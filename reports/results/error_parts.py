@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.array import Array
+from reports.compare.last_turn import Trace
 from reports.results.fits.line import LineFit
 from reports.results.lines import Line
 
-Trace = Mapping[str, Array]
 SHARED = 12
 """Instants that two steps must have in common: fewer make no curve."""
 SAME = 1e-9

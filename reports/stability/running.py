@@ -20,7 +20,7 @@ MEMORY_GB = 4.0
 
 
 @dataclass(frozen=True)
-class Line:
+class CaseLine:
     """A case in one engine with one profile."""
 
     case: str
@@ -32,14 +32,14 @@ class Line:
 class Held:
     """What came of a line: its runs, how far it holds, and pictures of what failed."""
 
-    line: Line
+    line: CaseLine
     runs: tuple[Graded, ...]
     critical: Critical
     pictures: tuple[Picture, ...]
 
 
 def run_lines(
-    lines: Sequence[Line], jobs: int, limits: Limits, done: Callable[[Held], None]
+    lines: Sequence[CaseLine], jobs: int, limits: Limits, done: Callable[[Held], None]
 ) -> list[Held]:
     """Run the lines, several at a time, the longest first; gives them in the order of ``lines``.
 
@@ -54,7 +54,7 @@ def run_lines(
     return [results[index] for index in range(len(lines))]
 
 
-def run_one(given: Line, value: float, limits: Limits) -> Graded:
+def run_one(given: CaseLine, value: float, limits: Limits) -> Graded:
     """One run in a process apart. Raises CrankcheckError where it cannot be asked for."""
     with closing(Isolated[GradedPicture](limits)) as child:
         return _graded(given, value, child, grid=False)[0]
@@ -65,7 +65,7 @@ def _work(case: Case) -> int:
     return sum(case.trial(value).steps for value in case.values)
 
 
-def _line(child: Isolated[GradedPicture], given: Line) -> Held:
+def _line(child: Isolated[GradedPicture], given: CaseLine) -> Held:
     """One line, run by run in a child process."""
     case = CATALOGUE[given.case]
     pictures: list[Picture] = []
@@ -81,7 +81,7 @@ def _line(child: Isolated[GradedPicture], given: Line) -> Held:
 
 
 def _graded(
-    given: Line, value: float, child: Isolated[GradedPicture], *, grid: bool
+    given: CaseLine, value: float, child: Isolated[GradedPicture], *, grid: bool
 ) -> GradedPicture:
     """A run in the child process, with its picture where it is of the grid.
 
@@ -102,7 +102,7 @@ def graded_by_name(case: str, engine: str, profile: str, value: float, draw: boo
     return graded(CATALOGUE[case], engine, profile, value, draw=draw)
 
 
-def _lost(given: Line, value: float, lost: Lost, grid: bool) -> Graded:
+def _lost(given: CaseLine, value: float, lost: Lost, grid: bool) -> Graded:
     """A run that its process did not survive."""
     trial = CATALOGUE[given.case].trial(value)
     return Graded(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
 from reports.judge.cell import Cell
-from reports.sweep.measured import Outcome, measured
+from reports.sweep.measured import MeasuredCell, measured
 from reports.workers.isolated import Isolated, Limits, Lost
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def connected(address: str) -> Client:
 
 def on_cluster(
     client: Client, cells: Sequence[Cell], limits: Limits, keep_motion: bool
-) -> Generator[tuple[int, Outcome | Lost]]:
+) -> Generator[tuple[int, MeasuredCell | Lost]]:
     """As `measured` of every cell, each in a child process of the Dask worker that has it; yields
     index and outcome of each as it ends. The client is closed when this is."""
     from distributed import as_completed
@@ -65,9 +65,9 @@ def on_cluster(
         client.close()  # type: ignore[no-untyped-call]  # not annotated
 
 
-def _there(cell: Cell, limits: Limits, keep_motion: bool) -> Outcome | Lost:
+def _there(cell: Cell, limits: Limits, keep_motion: bool) -> MeasuredCell | Lost:
     """One cell in the child process of this thread of a Dask worker."""
-    child: Isolated[Outcome] | None = getattr(_own, "child", None)
+    child: Isolated[MeasuredCell] | None = getattr(_own, "child", None)
     if child is not None and child.limits != limits:
         child.close()
         child = None

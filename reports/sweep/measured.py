@@ -31,7 +31,7 @@ Repeats = tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class MeasuredCell:
     """A cell that was run: its row, the rows of its errors, its last turn, and the whole motion
     where that was asked for. ``crankcheck`` is the version that ran it."""
 
@@ -43,7 +43,7 @@ class Outcome:
     gaps: Mapping[str, Array] = field(default_factory=dict)
 
 
-def measured(cell: Cell, keep_motion: bool) -> Outcome:
+def measured(cell: Cell, keep_motion: bool) -> MeasuredCell:
     """Run a cell, compare it and judge it."""
     checked, run = examined(cell)
     motion = None if run is None else run.motion
@@ -53,7 +53,7 @@ def measured(cell: Cell, keep_motion: bool) -> Outcome:
         "logged_us_per_step": cost.us_per_step if cost and cost.steps else None,
         "wall_s": checked.wall_s,
     }
-    return Outcome(
+    return MeasuredCell(
         row=row,
         errors=tuple(error_rows(checked)),
         trace=trace(cell.scene, run) if run and checked.errors else {},

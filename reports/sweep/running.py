@@ -20,7 +20,7 @@ from reports.store.writer import Writer
 from reports.sweep.cluster import on_cluster
 from reports.sweep.measured import (
     UNMEASURED,
-    Outcome,
+    MeasuredCell,
     Repeats,
     measured,
     timed_in_turns,
@@ -81,7 +81,7 @@ class Running:
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
             for index, how in ends:
                 task = missing[index]
-                outcome = how if isinstance(how, Outcome) else _lost(task, how)
+                outcome = how if isinstance(how, MeasuredCell) else _lost(task, how)
                 self._keep(task, outcome, "cluster" if client else "local")
                 status, reason = str(outcome.row["status"]), str(outcome.row["reason"])
                 if status != "ok":
@@ -113,7 +113,7 @@ class Running:
                 self.writer.flush()
         return replace(done, timed=count)
 
-    def _keep(self, task: Task, outcome: Outcome, run_on: str) -> None:
+    def _keep(self, task: Task, outcome: MeasuredCell, run_on: str) -> None:
         """Add a cell to the store, with the names that it has in the study."""
         self._refuse_other_versions(task, outcome)
         names = {
@@ -136,7 +136,7 @@ class Running:
         """Whether a cell that was ended would have more time or memory now."""
         return ended.time_s < self.limits.time_s or ended.memory_gb < self.limits.memory_gb
 
-    def _refuse_other_versions(self, task: Task, outcome: Outcome) -> None:
+    def _refuse_other_versions(self, task: Task, outcome: MeasuredCell) -> None:
         """A worker elsewhere may have other packages than the key of the cell says.
 
         Raises
@@ -161,12 +161,12 @@ class Running:
             )
 
 
-def _measured(keep_motion: bool, child: Isolated[Outcome], cell: Cell) -> Outcome | Lost:
+def _measured(keep_motion: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
     """A cell in a child process."""
     return child.call(measured, cell, keep_motion)
 
 
-def _lost(task: Task, lost: Lost) -> Outcome:
+def _lost(task: Task, lost: Lost) -> MeasuredCell:
     """A cell that came to no end of its own, as a row with its reason."""
     row = cell_row(unfinished(task.cell, lost.status, lost.reason))
-    return Outcome({**row, **UNMEASURED})
+    return MeasuredCell({**row, **UNMEASURED})

@@ -10,7 +10,7 @@ from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, counted
-from reports.sweep.measured import Outcome, measured
+from reports.sweep.measured import MeasuredCell, measured
 from reports.tune.coarsest import coarsest
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Settings
@@ -106,7 +106,7 @@ class Bench:
     def __init__(self, goal: Goal, works: Sequence[Work], limits: Limits) -> None:
         self.goal = goal
         self.works = works
-        self._isolated: Isolated[Outcome] = Isolated(limits)
+        self._isolated: Isolated[MeasuredCell] = Isolated(limits)
 
     def close(self) -> None:
         """End the process at once."""
@@ -137,7 +137,7 @@ class Bench:
         for scene in self.goal.scenes:
             cell = self.goal.cell(scene, settings, self.goal.least)
             outcome = self._isolated.call(measured, cell, False)
-            if isinstance(outcome, Outcome) and outcome.row["status"] == "unsupported":
+            if isinstance(outcome, MeasuredCell) and outcome.row["status"] == "unsupported":
                 raise CrankcheckError(f"{cell.label}: {outcome.row['reason']}")
 
     def attempt(self, settings: Settings, best: Attempt | None) -> Attempt:

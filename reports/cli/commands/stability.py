@@ -19,7 +19,7 @@ from reports.stability.case import Case
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import command
 from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
-from reports.stability.running import Line, run_lines, run_one
+from reports.stability.running import CaseLine, run_lines, run_one
 from reports.stability.table import show, show_run
 from reports.workers.isolated import Limits, checked_limits
 from reports.workers.progress import progress_bar
@@ -47,7 +47,7 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
         check_folder(request.folder, "-o", (FILE, TABLE, PAGE))
         _keep_others(request.folder, {case.name for case in cases})
     lines = [
-        Line(case.name, engine_, profile)
+        CaseLine(case.name, engine_, profile)
         for case, engine_, profile in itertools.product(cases, engines, profiles)
     ]
     with progress_bar(progress, "lines", len(lines)) as advance:
@@ -109,7 +109,7 @@ def _single(
     case, code = cases[0], 0
     case.refuse(value)
     for name, profile in itertools.product(engines, profiles):
-        run = run_one(Line(case.name, name, profile), value, limits)
+        run = run_one(CaseLine(case.name, name, profile), value, limits)
         show_run(console, case.facts(), run)
         code = max(code, int(run.outcome not in case.good))
     return code

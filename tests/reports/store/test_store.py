@@ -18,13 +18,13 @@ from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.reader import read_store, stored_costs, stored_keys
 from reports.store.schema import NESTED, table
 from reports.store.writer import Writer
-from reports.sweep.measured import Outcome, measured
+from reports.sweep.measured import MeasuredCell, measured
 
 TEXT = 'name = "a"\nsize = 1.0\n'
 
 
 @pytest.fixture(scope="module")
-def outcome(fourbar: Scene) -> Outcome:
+def outcome(fourbar: Scene) -> MeasuredCell:
     cell = Cell(fourbar, "pymunk", "tuned", fourbar.driver.law.period_s / 90, 180, converge=False)
     return measured(cell, keep_motion=True)
 
@@ -33,13 +33,13 @@ def names(key: str) -> dict[str, object]:
     return {"key": key, "line": "l", "variant": "v", "scene_digest": "d", "asked": {"a": 1}}
 
 
-def filled(folder: Path, outcome: Outcome, *keys: str) -> None:
+def filled(folder: Path, outcome: MeasuredCell, *keys: str) -> None:
     with Writer(folder, Manifest({"a": TEXT}, ({"command": list(keys)},))) as writer:
         for key in keys:
             writer.cell({**names(key), **outcome.row}, outcome.errors, outcome.trace)
 
 
-def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: Outcome) -> None:
+def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: MeasuredCell) -> None:
     folder = tmp_path / "s"
     with Writer(folder, Manifest({}, ({"lines": {"l1": ["old", "tuned", False]}},))) as writer:
         for key, line in (("k1", "l1"), ("k2", "l2")):
@@ -56,7 +56,7 @@ def test_the_last_run_says_what_cells_are_called(tmp_path: Path, outcome: Outcom
     assert list(cells.gated) == [False, True]
 
 
-def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: Outcome) -> None:
+def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: MeasuredCell) -> None:
     folder = tmp_path / "s"
     filled(folder, outcome, "k1", "k2")
     filled(folder, outcome, "k3")
@@ -69,7 +69,7 @@ def test_cells_are_forgotten_part_by_part(tmp_path: Path, outcome: Outcome) -> N
     assert found.trace("k2")
 
 
-def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None:
+def test_what_is_written_is_read_again(tmp_path: Path, outcome: MeasuredCell) -> None:
     filled(tmp_path / "s", outcome, "k1", "k2")
     found = read_store(tmp_path / "s")
     assert list(found.cells.key) == ["k1", "k2"]
@@ -90,7 +90,7 @@ def test_what_is_written_is_read_again(tmp_path: Path, outcome: Outcome) -> None
     )
 
 
-def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: Outcome) -> None:
+def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: MeasuredCell) -> None:
     folder = tmp_path / "s"
     filled(folder, outcome, "k1")
     first = {path: path.read_bytes() for path in folder.glob("*/*.parquet")}
@@ -100,7 +100,7 @@ def test_a_second_run_adds_and_replaces_nothing(tmp_path: Path, outcome: Outcome
     assert [run["command"] for run in read_manifest(folder).runs] == [["k1"], ["k2"]]
 
 
-def test_a_cell_keeps_all_that_is_said_of_its_errors(outcome: Outcome) -> None:
+def test_a_cell_keeps_all_that_is_said_of_its_errors(outcome: MeasuredCell) -> None:
     of_the_cell = outcome.row.keys()
     assert {name for row in outcome.errors for name in row} - of_the_cell == {*NESTED["errors"]}
 
@@ -112,7 +112,7 @@ def test_types_of_columns_do_not_depend_on_what_is_missing() -> None:
     assert table([full]).schema == table([empty]).schema
 
 
-def test_all_parts_have_one_schema(tmp_path: Path, outcome: Outcome) -> None:
+def test_all_parts_have_one_schema(tmp_path: Path, outcome: MeasuredCell) -> None:
     folder = tmp_path / "s"
     filled(folder, outcome, "k1")
     lost = dict.fromkeys(outcome.row) | {"status": "crashed"}
@@ -123,7 +123,7 @@ def test_all_parts_have_one_schema(tmp_path: Path, outcome: Outcome) -> None:
     assert schemas[0] == schemas[1]
 
 
-def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: Outcome) -> None:
+def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: MeasuredCell) -> None:
     assert outcome.motion is not None
     with Writer(tmp_path / "s", Manifest()) as writer:
         writer.trajectory("k1", outcome.motion, outcome.gaps)
@@ -133,7 +133,7 @@ def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: Outcome)
     np.testing.assert_array_equal(found.C_gap_m, outcome.gaps["C"])
 
 
-def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: Outcome) -> None:
+def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: MeasuredCell) -> None:
     name = str(outcome.row["scene"])
     with Writer(tmp_path / "s", Manifest({name: TEXT})) as writer:
         row = {**names("k1"), "scene_digest": digest(TEXT), **outcome.row}
