@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +11,7 @@ from analytic.check import newton
 from analytic.check.newton import Guess
 from analytic.kinematics import solve
 from analytic.structure import mobility as structure
-from analytic.structure.mobility import analyse
+from analytic.structure.mobility import Structure, analyse
 from models.errors import StructureError
 from models.files import load_scene, parse_scene, shipped
 from models.scene import Scene
@@ -156,15 +155,10 @@ def test_the_work_of_naming_a_group_does_not_grow_with_the_links(
     looks = 0
     whole = structure._pairs_of
 
-    def counting(
-        group: set[str],
-        left: list[str],
-        pins: Mapping[str, tuple[str, ...]],
-        prismatics: Mapping[str, tuple[str, str]],
-    ) -> tuple[int, int]:
+    def counting(group: set[str], counted: Structure, left: list[str]) -> tuple[int, int]:
         nonlocal looks
-        looks += len(left) + len(pins)
-        return whole(group, left, pins, prismatics)
+        looks += len(left) + len(counted.pins)
+        return whole(group, counted, left)
 
     monkeypatch.setattr(structure, "_pairs_of", counting)
     with pytest.raises(StructureError) as raised:
