@@ -92,7 +92,7 @@ class Scene:
     tolerance: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
 
-    @cached_property
+    @property
     def pins(self) -> Mapping[str, tuple[str, ...]]:
         """Every named point with the bodies that list it, ground first, then links in order."""
         bodies: dict[str, list[str]] = {point: [GROUND] for point in self.ground}
@@ -114,13 +114,24 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Same:
-    """A scene as itself, to keep under it what was worked out for it: scenes that are equal but for
-    the order of their links are not one, and one that is changed is another, as they are frozen."""
+    """A scene as itself and as it stands, to keep under it what was worked out for it: scenes that
+    are equal but for the order of their links are not one, and a scene that somebody changed is
+    another than it was."""
 
     scene: Scene
+    content: tuple[object, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        scene = self.scene
+        mappings = (scene.ground, scene.links, scene.sliders, scene.branch)
+        points = (link.points for link in scene.links.values())
+        content = tuple(tuple(each.items()) for each in (*mappings, *points))
+        object.__setattr__(self, "content", content)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.scene is self.scene
+        if not isinstance(other, Same):
+            return NotImplemented
+        return other.scene is self.scene and other.content == self.content
 
     def __hash__(self) -> int:
         return id(self.scene)

@@ -40,12 +40,13 @@ class Truth:
     def at(self, time_s: Array) -> Motion:
         """The reference at instants (T,). Raises CrankcheckError where there is none."""
         instants = time_s.tobytes()
-        if instants not in self._motions:
+        motion = self._motions.get(instants)
+        if motion is None:
             motion = solve(self.scene, time_s, bound=self.bound)
-            if len(self._motions) == SETS:
-                del self._motions[next(iter(self._motions))]
+            for oldest in list(self._motions)[: 1 - SETS]:
+                self._motions.pop(oldest, None)  # another thread may have done so
             self._motions[instants] = motion
-        return self._motions[instants]
+        return motion
 
 
 @dataclass(frozen=True)

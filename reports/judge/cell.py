@@ -102,6 +102,7 @@ def examined(cell: Cell, runner: CellRunner | None = None) -> tuple[Checked, Run
 
 def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
+    truth = truth_of(Same(cell.scene))  # before the run, whose memory that of another scene is not
     try:
         state = solve(cell.scene, np.zeros(1), bound=False).state()
         done = _run(cell, runner, state, 1)
@@ -110,7 +111,6 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
     try:
-        truth = truth_of(Same(cell.scene))
         errors = compare(Beside.of(truth, done))
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"

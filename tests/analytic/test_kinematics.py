@@ -174,3 +174,18 @@ def test_branch_of_a_pin_is_its_side_of_the_outer_pins(name: str) -> None:
     b, c, d = (motion.points[p].position for p in "BCD")
     left = (d - b)[:, 0] * (c - b)[:, 1] - (d - b)[:, 1] * (c - b)[:, 0]
     assert np.all(np.sign(left) == scene.branch["C"])
+
+
+def test_a_scene_that_somebody_changed_is_solved_as_it_stands() -> None:
+    """What a scene is prepared to is kept, and its mappings are dictionaries after all."""
+    scene, time_s = load_scene("fourbar-lecture-1"), np.linspace(0.0, 0.3, 4)
+    before = solve(scene, time_s).links["rocker"].theta
+    points = scene.links["rocker"].points
+    assert isinstance(points, dict)
+    name, (x, y) = list(points.items())[-1]
+    points[name] = (1.02 * x, 1.02 * y)
+    changed = solve(scene, time_s).links["rocker"].theta
+    again = load_scene("fourbar-lecture-1")
+    dict.update(again.links["rocker"].points, {name: (1.02 * x, 1.02 * y)})
+    assert np.array_equal(changed, solve(again, time_s).links["rocker"].theta)
+    assert not np.array_equal(changed, before)
