@@ -97,7 +97,7 @@ def test_a_third_run_finds_everything_there(start: Start, whole: Stored) -> None
 
 
 # While errors are found, and while cells are timed.
-@pytest.mark.parametrize("cells", [pytest.param(1, marks=pytest.mark.slow), 40])
+@pytest.mark.parametrize("cells", [1, 40])
 def test_ctrl_c_keeps_what_is_done(start: Start, tmp_path: Path, cells: int) -> None:
     folder = tmp_path / "store"
     arguments = ("sweep", *GRID, "-o", folder, "--engine", "pymunk")
