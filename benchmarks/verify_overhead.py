@@ -82,14 +82,14 @@ def child(checkout: str, arguments: list[str]) -> None:
     from sim import registry
 
     for name in registry.ENGINES:
-        adapter: Any = type(registry.engine(name))
+        adapter = registry.engine(name)
 
         def opened(*args: Any, open_: Callable[..., Any] = adapter.open, **options: Any) -> Any:
             session = open_(*args, **options)
             session.step, session.record = clock.on(session.step), clock.on(session.record)
             return session
 
-        adapter.open = opened
+        object.__setattr__(adapter, "open", opened)  # some are frozen, and some are not
     sys.argv = ["crankcheck", *arguments]
     with contextlib.suppress(SystemExit):
         main()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -187,7 +187,7 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
         places = [t.position for t in copies.values()]
         apart = [np.hypot(*(a - b).T) for i, a in enumerate(places) for b in places[i + 1 :]]
         if apart:
-            openings[point] = np.max(apart, axis=0)
+            openings[point] = reduce(np.maximum, apart)
     for name, slider in scene.sliders.items():
         guide = _guide(slider, poses)
         seen = _Seen(slider, guide, tracks[slider.point][_rider(scene, slider)])

@@ -236,10 +236,9 @@ def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float)
     ``runaway`` [rad/s], a million times the pace of the run, is not a mechanism any more.
     """
     poses = log.poses
-    open_by = np.max([np.nan_to_num(g, nan=np.inf) for g in apart_m.values()], axis=0)
-    spin = np.max([np.abs(poses.bodies[link].omega) for link in scene.links], axis=0)
-    bad = ~(open_by <= scene.longest_m)
-    bad |= ~(spin <= runaway)
+    joints_hold = [gap <= scene.longest_m for gap in apart_m.values()]  # not where it is NaN
+    links_hold = [np.abs(poses.bodies[link].omega) <= runaway for link in scene.links]
+    bad = ~np.logical_and.reduce([*joints_hold, *links_hold])
     count = int(np.argmax(bad)) if bad.any() else len(bad)
     if count == len(bad) and not log.diverged:
         return count, ""
@@ -258,6 +257,8 @@ def stretch(poses: Poses, kept: slice) -> Poses:
 
 def joined(logs: Sequence[Poses]) -> Poses:
     """Stretches of samples one after the other."""
+    if len(logs) == 1:
+        return logs[0]
 
     def join(bodies: Sequence[BodyPose]) -> BodyPose:
         return BodyPose(

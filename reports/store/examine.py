@@ -115,14 +115,14 @@ def _asked(manifest: Manifest) -> dict[str, int]:
 
 def _harmless(folder: Path, store: Examined) -> Iterator[Damage]:
     """What is not of the store, or of cells that nobody asked for."""
-    asked = store.manifest.lines
-    strange = [
-        f"cells/{name}"
-        for name, part in store.folders["cells"].parts.items()
-        if not asked.issuperset(part.rows.column("line").to_pylist())
-    ]
-    if asked and strange:
-        yield Damage(few(strange, 3), UNASKED, "nothing")
+    asked, parts = store.manifest.lines, store.folders["cells"].parts
+    unasked = {
+        f"cells/{name}": number
+        for name, part in parts.items()
+        if (number := sum(line not in asked for line in part.rows.column("line").to_pylist()))
+    }
+    if asked and unasked:  # a manifest made anew may know of less than was run: they are missed
+        yield Damage(few(list(unasked), 3), UNASKED, "nothing", lost=sum(unasked.values()))
     top = sorted(path.name for path in folder.iterdir() if path.name not in OWN)
     foreign = [name for name in top if not being_written(name)]
     foreign += [name for here in store.folders.values() for name in here.foreign]

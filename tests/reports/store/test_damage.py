@@ -202,6 +202,8 @@ def test_a_lost_manifest_is_made_again_and_no_whole_cell_is_run_again(
     assert set(found.cells.engine) == {"pymunk"}
     assert found.manifest.scenes == read_store(whole).manifest.scenes
     assert UNASKED in "".join(found.notice)  # of MuJoCo
+    code, message = ended(diff.run_diff, DiffRequest(whole, store), paper())
+    assert (code, "may be among what is missing there" in message) == (2, True)
     assert swept(store) == 0
     same(read_store(store), read_store(whole))
     assert read_store(store).notice == []
@@ -228,7 +230,7 @@ def test_cells_that_nobody_asks_for_again_stay_lost_and_pass_no_gate(
     assert swept(store, "pymunk") == 0
     assert "cut short; 2 cells missing" in capsys.readouterr().err
     assert "2 cells can be read, 2 missing" in read_store(store).notice[0]
-    code, message = ended(diff.run_diff, diff.DiffRequest(whole, store), paper())
+    code, message = ended(diff.run_diff, DiffRequest(whole, store), paper())
     assert (code, "may be among what is missing there" in message) == (2, True)
 
 
