@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -36,13 +36,8 @@ class Here(Generic[Answer]):
 
 
 @pytest.fixture(scope="session")
-def swept() -> Iterator[Sweep]:
+def swept() -> Sweep:
     """Sweeps two steps of both engines, or of one, into a folder."""
-    patch = pytest.MonkeyPatch()
-    patch.setattr("reports.workers.scheduler.Isolated", Here)
-    patch.setattr("reports.sweep.running.Isolated", Here)
-    patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
-    patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
     nowhere = Console(file=StringIO())
 
     def run(folder: Path, *engines: str, steps: str = "90,180", timing: bool = True) -> int:
@@ -55,10 +50,14 @@ def swept() -> Iterator[Sweep]:
             jobs=1,
             timing=timing,
         )
-        return sweep(asked, nowhere, nowhere)
+        with pytest.MonkeyPatch.context() as patch:  # other tests need children that may die
+            patch.setattr("reports.workers.scheduler.Isolated", Here)
+            patch.setattr("reports.sweep.running.Isolated", Here)
+            patch.setattr("reports.sweep.measured.REPEAT_S", 1e-5)  # nobody compares these times
+            patch.setattr("reports.sweep.measured.LEAST_TIMED", 5)
+            return sweep(asked, nowhere, nowhere)
 
-    yield run
-    patch.undo()
+    return run
 
 
 @pytest.fixture(scope="session")
