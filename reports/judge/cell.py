@@ -102,7 +102,7 @@ def examined(cell: Cell, runner: CellRunner | None = None) -> tuple[Checked, Run
 
 def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
-    truth = truth_of(Same(cell.scene))  # before the run, whose memory that of another scene is not
+    truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
         state = solve(cell.scene, np.zeros(1), bound=False).state()
         done = _run(cell, runner, state, 1)
