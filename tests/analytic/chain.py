@@ -77,18 +77,16 @@ class Chain:
         inverse = np.linalg.inv(self.floats.jacobian(np.array(start)))
         levels: list[list[Number]] = [[mpf(c) for c in start]]
         levels += [[mpf(0)] * len(start) for _ in range(2)]
-        for level, values in enumerate(levels):
-            for _ in range(40):
-                q = [Jet(*row) for row in zip(*levels, strict=True)]
-                wrong = [_level(e, level) for e in self._equations(q, drive)]
-                step = _times(inverse, wrong)
-                for i, s in enumerate(step):
-                    values[i] -= s
-                size = max(abs(v) for v in values) + 1
-                if max(abs(s) for s in step) < DONE * size:
-                    break
-            else:
-                raise AssertionError(f"no convergence at {time_s} s, level {level}")
+        for _ in range(40):
+            q = [Jet(*row) for row in zip(*levels, strict=True)]
+            wrong = self._equations(q, drive)
+            steps = [_times(inverse, [_level(e, level) for e in wrong]) for level in range(3)]
+            for values, step in zip(levels, steps, strict=True):
+                values[:] = [v - s for v, s in zip(values, step, strict=True)]
+            if all(map(_settled, levels, steps)):
+                break
+        else:
+            raise AssertionError(f"no convergence at {time_s} s")
         return self._solved([Jet(*row) for row in zip(*levels, strict=True)])
 
     def _frames(self, q: list[Jet]) -> dict[str, tuple[Place, Jet, Place]]:
@@ -165,6 +163,10 @@ def _point(frame: tuple[Place, Jet, Place], local: Point) -> Place:
 
 def _level(jet: Jet, level: int) -> Number:
     return (jet.value, jet.rate, jet.second)[level]
+
+
+def _settled(values: list[Number], step: list[Number]) -> bool:
+    return max(map(abs, step)) < DONE * (max(map(abs, values)) + 1)
 
 
 def _times(inverse: np.ndarray, wrong: list[Number]) -> list[Number]:

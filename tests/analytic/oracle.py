@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from mpmath import mp
 
-from tests.analytic.change_points.jets import Jet, Number, acos, atan2, cos, sin, sqrt
+from tests.analytic.change_points.jets import Jet, Number, acos, atan2, cos_sin, sin, sqrt
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Place:
 
 def toward(angle: Jet) -> Place:
     """The unit vector at an angle."""
-    return Place(cos(angle), sin(angle))
+    return Place(*cos_sin(angle))
 
 
 def at(x: Number, y: Number) -> Place:

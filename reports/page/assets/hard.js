@@ -161,6 +161,7 @@
     picture = opened(number);
     if (place.nextElementSibling !== row) place.after(row);
     row.hidden = false;
+    row.classList.remove("waiting");
     figure.hidden = !picture;
     mark(number);
     tell();

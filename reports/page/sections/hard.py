@@ -40,6 +40,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
             "columns": chart.columns,
             "engines": Counter(column.engine for column in chart.columns),
             "groups": chart.groups,
+            "opened": matrix.runs[shown[0]].case if shown else None,
             "legend": [
                 (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
                 for name, number in outcomes_seen(matrix).items()

@@ -26,13 +26,13 @@ class Jet:
 
     def __add__(self, other: Jet | Number) -> Jet:
         if not isinstance(other, Jet):
-            return Jet(self.value + other, self.rate, self.second)
-        return Jet(self.value + other.value, self.rate + other.rate, self.second + other.second)
+            return _made(self.value + other, self.rate, self.second)
+        return _made(self.value + other.value, self.rate + other.rate, self.second + other.second)
 
     __radd__ = __add__
 
     def __neg__(self) -> Jet:
-        return Jet(-self.value, -self.rate, -self.second)
+        return _made(-self.value, -self.rate, -self.second)
 
     def __sub__(self, other: Jet | Number) -> Jet:
         return self + (-other)
@@ -42,9 +42,9 @@ class Jet:
 
     def __mul__(self, other: Jet | Number) -> Jet:
         if not isinstance(other, Jet):
-            return Jet(self.value * other, self.rate * other, self.second * other)
+            return _made(self.value * other, self.rate * other, self.second * other)
         a, b = self, other
-        return Jet(
+        return _made(
             a.value * b.value,
             a.rate * b.value + a.value * b.rate,
             a.second * b.value + 2 * (a.rate * b.rate) + a.value * b.second,
@@ -54,15 +54,22 @@ class Jet:
 
     def __truediv__(self, other: Jet | Number) -> Jet:
         if not isinstance(other, Jet):
-            return Jet(self.value / other, self.rate / other, self.second / other)
+            return _made(self.value / other, self.rate / other, self.second / other)
         value = self.value / other.value
         rate = (self.rate - value * other.rate) / other.value
         second = (self.second - 2 * rate * other.rate - value * other.second) / other.value
-        return Jet(value, rate, second)
+        return _made(value, rate, second)
 
     def through(self, value: Number, slope: Number, bend: Number) -> Jet:
         """A function of this number, given with its first and second derivative by it."""
-        return Jet(value, slope * self.rate, slope * self.second + bend * self.rate**2)
+        return _made(value, slope * self.rate, slope * self.second + bend * self.rate**2)
+
+
+def _made(value: Number, rate: Number, second: Number) -> Jet:
+    """A jet of numbers of fifty digits, which are not rounded again."""
+    jet = Jet.__new__(Jet)
+    jet.value, jet.rate, jet.second = value, rate, second
+    return jet
 
 
 UNKNOWN = mpf("nan")
@@ -77,14 +84,17 @@ def sqrt(a: Jet) -> Jet:
     return a.through(root, 1 / (2 * root), -1 / (4 * root * a.value))
 
 
-def sin(a: Jet) -> Jet:
+def cos_sin(a: Jet) -> tuple[Jet, Jet]:
     c, s = mp.cos_sin(a.value)
-    return a.through(s, c, -s)
+    return a.through(c, -s, -c), a.through(s, c, -s)
 
 
 def cos(a: Jet) -> Jet:
-    c, s = mp.cos_sin(a.value)
-    return a.through(c, -s, -c)
+    return cos_sin(a)[0]
+
+
+def sin(a: Jet) -> Jet:
+    return cos_sin(a)[1]
 
 
 def acos(a: Jet) -> Jet:
