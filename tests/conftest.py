@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 from types import ModuleType
 
@@ -32,3 +33,8 @@ def fake_engine() -> ModuleType:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest test first, as at the end one process would wait for the other."""
     items.sort(key=lambda item: "readme" not in item.nodeid)
+
+
+def pytest_collection_finish() -> None:
+    gc.collect()
+    gc.freeze()
