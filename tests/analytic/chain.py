@@ -107,7 +107,9 @@ class Chain:
         for slider in self.scene.sliders.values():
             away, along = self._ride(frames, slider)
             turn = frames[_body(slider)][1] - frames[slider.on][1]
-            rows += [along.cross(away), turn - mpf(slider.direction_rad) - mpf(slider.angle_rad)]
+            turn -= mpf(slider.direction_rad) + mpf(slider.angle_rad)
+            whole = mp.nint(turn.value / (2 * mp.pi))  # angles of links are known but for turns
+            rows += [along.cross(away), turn - 2 * mp.pi * whole]
         return [*rows, frames[self.scene.driver.link][1] - drive]
 
     def _ride(
