@@ -6,6 +6,7 @@ import importlib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Literal, cast
 
 from models.errors import EngineError, suggestion
@@ -70,7 +71,9 @@ def capability(name: str, what: Capability) -> object:
         As `engine` does, and where the engine does not offer it: the message says which ones do.
     """
     if what not in declaration(name).offers:
-        raise EngineError(f"engine {name}: it has no {what}; use {' or '.join(offering(what))}")
+        others = " or ".join(offering(what))
+        cure = f"use {others}" if others else "no engine has one"
+        raise EngineError(f"engine {name}: it has no {what}; {cure}")
     return _loaded(name, what)
 
 
@@ -85,11 +88,19 @@ def _loaded(name: str, part: str) -> object:
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
     except (ImportError, AttributeError) as error:
-        # An AttributeError is what a half-removed package leaves of an engine.
-        if isinstance(error, ImportError) and (error.name or package).split(".")[0] != package:
+        # What a half-removed package leaves of an engine is a module that lacks attributes.
+        lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
+        if (lacking or package).split(".")[0] != package:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return getattr(module, part.upper())
+
+
+def _module_name(value: object) -> str:
+    """The name of a module, empty where nothing is known; of what is none, that of its type."""
+    if isinstance(value, ModuleType):
+        return value.__name__
+    return "" if value is None else type(value).__name__
 
 
 def install_command(name: str) -> str:

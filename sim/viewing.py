@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import cast
 
+from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from sim.registry import capability, offering
@@ -14,5 +15,12 @@ Viewer = Callable[[Scene, State], None]
 
 
 def viewer() -> Viewer:
-    """The viewer of the first engine that has one. Raises EngineError if it is not installed."""
-    return cast(Viewer, capability(offering("viewer")[0], "viewer"))
+    """The viewer of the first engine that has one and is installed. Raises EngineError where
+    there is none: the message is that of the last one."""
+    missing = EngineError("no engine has a window of its own")
+    for name in offering("viewer"):
+        try:
+            return cast(Viewer, capability(name, "viewer"))
+        except EngineError as error:
+            missing = error
+    raise missing

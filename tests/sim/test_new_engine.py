@@ -18,6 +18,7 @@ from sim.registry import engine
 from sim.snippets import snippet
 from sim.spoil import spoiler
 from sim.tuning import search_space
+from sim.viewing import viewer
 from tests.test_architecture import ARROWS, ROOT
 
 LINE = '    "fake": ".fake",\n'
@@ -155,6 +156,32 @@ def test_a_capability_that_is_lacking_is_named_with_who_has_it(
     assert engine("fake").version() == "1.0"
     with pytest.raises(EngineError, match=lacks):
         ask()
+
+
+def test_what_nobody_has_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "ENGINES", {"fake": "tests.worlds.fake"})
+    with pytest.raises(EngineError, match="it has no viewer; no engine has one"):
+        registry.capability("fake", "viewer")
+    with pytest.raises(EngineError, match="no engine has a window of its own"):
+        viewer()
+
+
+def test_a_fault_in_the_files_of_an_engine_is_not_taken_for_a_missing_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "wrong_engine"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(
+        "from sim.registry import Declaration\nDECLARATION = Declaration('math', 'math')\n"
+    )
+    (folder / "engine.py").write_text("import math, cmath\nmath.pi\ncmath.nothing\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setitem(registry.ENGINES, "wrong", "wrong_engine")
+    with pytest.raises(AttributeError, match="nothing"):
+        engine("wrong")
+    (folder / "engine.py").write_text("import math\nmath.nothing\n")
+    with pytest.raises(EngineError, match="engine wrong: not installed"):
+        engine("wrong")
 
 
 @pytest.mark.parametrize("name", registry.ENGINES)
