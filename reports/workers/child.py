@@ -18,8 +18,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-Ending = tuple[str, object, Exception | None]
-"""How a job ended (``done``, ``crashed``), its result or reason, and what it raised."""
+Ending = tuple[str, object, bytes]
+"""How a job ended (``done``, ``crashed``), its result or reason, and what it raised, pickled: who
+reads the ending need not know it."""
 Answer = tuple[*Ending, bool]
 """An ending, and whether another child should do the next job, as this one has much memory that it
 did not give back."""
@@ -38,7 +39,7 @@ def main(memory_bytes: int) -> None:
     pickle.loads(jobs.get())  # what it imports is no part of any cell's time or memory
     at_first = _taken()
     _limit(at_first + memory_bytes)
-    send(answers, ("ready", None, None, False))
+    send(answers, ("ready", None, b"", False))
     while True:
         function, arguments = pickle.loads(jobs.get())
         ending = _done(function, arguments, memory_bytes)
@@ -58,20 +59,19 @@ def _done(
 ) -> Ending:
     """How one job ended."""
     try:
-        return "done", function(*arguments), None
+        return "done", function(*arguments), b""
     except MemoryError:
-        return "crashed", f"out of memory: a cell has {memory_bytes / 1e9:.3g} GB", None
+        return "crashed", f"out of memory: a cell has {memory_bytes / 1e9:.3g} GB", b""
     except Exception as error:  # whatever an engine throws costs its own cell alone
         return "crashed", f"{type(error).__name__}: {error}", _portable(error)
 
 
-def _portable(error: Exception) -> Exception | None:
-    """The error, which tells where it was raised; None where it cannot travel."""
+def _portable(error: Exception) -> bytes:
+    """The error, which tells where it was raised; empty where it cannot travel."""
     error.add_note("".join(traceback.format_exception(error)))
     with contextlib.suppress(Exception):
-        pickle.loads(pickle.dumps(error))
-        return error
-    return None
+        return pickle.dumps(error)
+    return b""
 
 
 def _taken() -> int:

@@ -85,19 +85,22 @@ class Isolated(Generic[Result]):
         child = self._child or self._started(function)
         if self.closed:  # while it started
             return Lost("crashed", "the sweep was ended")
+        if isinstance(child, Lost):
+            return child
         jobs, answers = _pipes(child)
-        with _watched(child, self.limits.time_s) as late:
+        limit_s = self.limits.time_s
+        with _watched(child, limit_s) as late:
             try:
                 send(jobs, (function, arguments))
                 raw = receive(answers)
             except OSError:
                 raw = b""
         if not raw:
-            return self._lost(child, late.is_set())
-        how, value, error, worn = pickle.loads(raw)
+            return self._lost(child, f"no end within {limit_s:g} s" if late.is_set() else "")
+        how, value, raised, worn = pickle.loads(raw)
         if worn or late.is_set():  # an answer in the last moment stands; the child is gone
             self._end(child)
-        return cast(Result, value) if how == "done" else Lost(how, str(value), error)
+        return cast(Result, value) if how == "done" else Lost(how, str(value), _unpacked(raised))
 
     def close(self) -> None:
         """End the child, also in the middle of a job that another thread waits for."""
@@ -108,9 +111,9 @@ class Isolated(Generic[Result]):
             if self._child is not None:
                 self._end(self._child)
 
-    def _started(self, function: Callable[..., Result]) -> subprocess.Popen[bytes]:
+    def _started(self, function: Callable[..., Result]) -> subprocess.Popen[bytes] | Lost:
         """A new child that has imported what ``function`` needs, in a session of its own: Ctrl-C at
-        the terminal is not for it."""
+        the terminal is not for it. Lost where it did not come so far."""
         child = self._child = subprocess.Popen(
             # The packages of this process, whatever stands in the folder that it works in.
             [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
@@ -122,18 +125,21 @@ class Isolated(Generic[Result]):
         if self.closed:  # meanwhile
             child.kill()
         jobs, answers = _pipes(child)
-        with _watched(child, START_S), contextlib.suppress(OSError):
+        ready = b""
+        with _watched(child, START_S) as late, contextlib.suppress(OSError):
             send(jobs, function)
-            receive(answers)  # it is ready, or has ended: the first job will tell
-        return child
+            ready = receive(answers)
+        if ready and not late.is_set():
+            return child
+        return self._lost(child, f"no start within {START_S:g} s" if late.is_set() else "")
 
-    def _lost(self, child: subprocess.Popen[bytes], late: bool) -> Lost:
-        """Why a child gave no answer."""
+    def _lost(self, child: subprocess.Popen[bytes], late: str) -> Lost:
+        """Why a child gave no answer; ``late`` says what it took too long for."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             child.wait(1.0)  # it is about to end by itself, which tells more than being killed
         code = self._end(child)
         if late:
-            return Lost("timeout", f"no end within {self.limits.time_s:g} s")
+            return Lost("timeout", late)
         return Lost("crashed", f"the engine ended its process ({_ending(code)})")
 
     def _end(self, child: subprocess.Popen[bytes]) -> int:
@@ -164,6 +170,13 @@ def _watched(child: subprocess.Popen[bytes], limit_s: float) -> Iterator[threadi
     finally:
         clock.cancel()
         clock.join()  # it may be at it: the next job must not be what it kills
+
+
+def _unpacked(raised: bytes) -> Exception | None:
+    """What a job raised; None where that could not travel, or is not known here."""
+    with contextlib.suppress(Exception):
+        return cast(Exception, pickle.loads(raised))
+    return None
 
 
 def _pipes(child: subprocess.Popen[bytes]) -> tuple[IO[bytes], IO[bytes]]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -87,6 +89,7 @@ def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
         lost = isolated.call(fail)
         refused = isolated.call(refuse, "scene.toml", ["one", "two"])
         odd = isolated.call(be_odd)
+        strange = isolated.call(be_strange)
     assert isinstance(lost, Lost)
     assert isinstance(lost.error, ZeroDivisionError)
     assert "in fail" in lost.error.__notes__[0]
@@ -96,6 +99,17 @@ def test_what_was_raised_comes_with_the_place_where_it_was() -> None:
     assert odd == Lost("crashed", "OddError: 1 and 2")
     assert isinstance(odd, Lost)
     assert odd.error is None, "it cannot travel"
+    assert strange == Lost("crashed", "StrangeError: of a module that is there alone")
+    assert isinstance(strange, Lost)
+    assert strange.error is None
+
+
+def test_a_child_that_does_not_start_in_time_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    with closing(Isolated[int](Limits())) as isolated:
+        monkeypatch.setattr("reports.workers.isolated.START_S", 0.01)
+        assert isolated.call(os.getpid) == Lost("timeout", "no start within 0.01 s")
+        monkeypatch.setattr("reports.workers.isolated.START_S", 60.0)
+        assert isinstance(isolated.call(os.getpid), int)
 
 
 _held: list[bytearray] = []
@@ -124,6 +138,13 @@ class OddError(Exception):
 
 def be_odd() -> None:
     raise OddError(1, 2)
+
+
+def be_strange() -> None:
+    module = ModuleType("there_alone")
+    exec("class StrangeError(Exception):\n    pass", vars(module))
+    sys.modules[module.__name__] = module
+    raise module.StrangeError("of a module that is there alone")
 
 
 @pytest.fixture(autouse=True)
