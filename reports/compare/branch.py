@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
+from models.array import Mask
 from models.errors import CrankcheckError
-from models.motion import Motion
+from models.motion import LinkMotion, Motion
 from reports.compare.beside import Beside
 from reports.compare.errors import Departure
 
@@ -53,32 +55,43 @@ def departure(beside: Beside) -> Departure | None:
     return Departure(link, float(beside.motion.time_s[index]), float(driver_rad[index]))
 
 
-def _elsewhere(beside: Beside, far: np.ndarray) -> bool:
-    """Whether the mechanism stands in another assembly at one of the samples ``far``."""
-    motion = beside.motion
-    for other in _assemblies(beside):
-        off = np.zeros(len(motion.time_s))
-        for name, link in other.links.items():
-            turn = motion.links[name].theta - link.theta if name in motion.links else np.nan
-            off = np.maximum(off, np.abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi))
-        if np.any(far & (off < THERE_RAD)):
-            return True
-    return False
+def _elsewhere(beside: Beside, far: Mask) -> bool:
+    """Whether the mechanism stands in another assembly at one of the samples ``far``.
 
-
-def _assemblies(beside: Beside) -> Iterator[Motion]:
-    """The motions of the other assemblies, as far as they can be had at all of the samples.
-
-    One that cannot is passed over: a run that went over to it is off its place all the same.
+    Assemblies are the choices of their dyads, in solving order. What cannot be had at all of the
+    samples is passed over: a run that went over to it is off its place all the same. So are those
+    which share their first choices with one that is ruled out by the links of these alone.
     """
-    scene = beside.scene
+    scene, times = beside.scene, beside.motion.time_s
     keys = list(beside.reference.conditioning)[:MOST_CHOICES]
+    bodies = {group.branch_key: group.bodies for group in analyse(scene).groups}
+    placed = [bodies.get(key, ()) for key in keys]
+    ruled_out: set[tuple[int, ...]] = set()
     for signs in itertools.product((1, -1), repeat=len(keys)):
-        if -1 not in signs:
+        if -1 not in signs or any(signs[:n] in ruled_out for n in range(1, len(signs) + 1)):
             continue
         branch = {k: s * scene.branch.get(k, 1) for k, s in zip(keys, signs, strict=True)}
         other = replace(scene, branch={**scene.branch, **branch})
         try:
-            yield solve(other, beside.motion.time_s, points=(), sliders=(), bound=False)
+            motion = solve(other, times, points=(), sliders=(), bound=False)
         except CrankcheckError:
             continue
+        there = far.copy()
+        rest = dict(motion.links)
+        for n, names in enumerate(placed, start=1):
+            _stay(there, beside.motion, {name: rest.pop(name) for name in names if name in rest})
+            if not there.any():
+                ruled_out.add(signs[:n])
+                break
+        else:
+            _stay(there, beside.motion, rest)
+            if there.any():
+                return True
+    return False
+
+
+def _stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
+    """Take out the samples at which one of the links is not where it is logged."""
+    for name, link in links.items():
+        turn = logged.links[name].theta - link.theta if name in logged.links else np.nan
+        there &= np.abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < THERE_RAD
