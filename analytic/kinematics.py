@@ -30,12 +30,10 @@ from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
-from models.scene import Same, Scene
+from models.scene import KEPT, Same, Scene
 
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
-KEPT = 64
-"""Scenes whose preparation is kept: more than are shipped."""
 Driven = tuple[Array, Real, Real, AngleError | None]
 """Angles, rates and accelerations of the driver, and what they may be wrong by."""
 

@@ -11,9 +11,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
-from models.scene import GROUND, Point, Scene, Slider
+from models.fixed import FixedMapping
+from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
 
 
 @dataclass(frozen=True)
@@ -69,18 +72,30 @@ def bodies(scene: Scene) -> tuple[str, ...]:
     return (*scene.links, *blocks(scene))
 
 
-def carriers(scene: Scene) -> dict[str, tuple[str, ...]]:
+def carriers(scene: Scene) -> Mapping[str, tuple[str, ...]]:
     """Every named point with the bodies that carry it, blocks with mass included."""
+    return _carriers(Same(scene))
+
+
+@lru_cache(maxsize=KEPT)
+def _carriers(same: Same) -> Mapping[str, tuple[str, ...]]:
+    scene = same.scene
     names_by_point = {point: list(names) for point, names in scene.pins.items()}
     for name, slider in blocks(scene).items():
         names_by_point.setdefault(slider.point, []).append(name)
     for slider in scene.sliders.values():
         names_by_point.setdefault(slider.point, [])
-    return {point: tuple(names) for point, names in names_by_point.items()}
+    return FixedMapping({point: tuple(names) for point, names in names_by_point.items()})
 
 
 def joints(scene: Scene) -> Joints:
     """The joints of the scene; a slot has no bodies where none but its guide carries the point."""
+    return _joints(Same(scene))
+
+
+@lru_cache(maxsize=KEPT)
+def _joints(same: Same) -> Joints:
+    scene = same.scene
     points = carriers(scene)
     pins = tuple(Pin(point, names) for point, names in points.items() if len(names) > 1)
     prisms, slots = [], []

@@ -19,10 +19,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from models.fixed import FixedMapping
 from models.laws import Law
 
 Point = tuple[float, float]
 GROUND = "ground"
+KEPT = 64
+"""Scenes for which is kept what was worked out: more than are shipped."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,9 @@ class Link:
     mass_kg: float
     centre_m: Point
     inertia_kg_m2: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", FixedMapping(self.points))
 
 
 @dataclass(frozen=True)
@@ -92,14 +98,18 @@ class Scene:
     tolerance: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
 
-    @property
+    def __post_init__(self) -> None:
+        for name in ("ground", "links", "sliders", "branch", "tolerance"):
+            object.__setattr__(self, name, FixedMapping(getattr(self, name)))
+
+    @cached_property
     def pins(self) -> Mapping[str, tuple[str, ...]]:
         """Every named point with the bodies that list it, ground first, then links in order."""
         bodies: dict[str, list[str]] = {point: [GROUND] for point in self.ground}
         for link in self.links.values():
             for point in link.points:
                 bodies.setdefault(point, []).append(link.name)
-        return {point: tuple(names) for point, names in bodies.items()}
+        return FixedMapping({point: tuple(names) for point, names in bodies.items()})
 
     @cached_property  # asked for at every step of a search
     def longest_m(self) -> float:
@@ -112,26 +122,15 @@ class Scene:
         return next(point for point in self.links[self.driver.link].points if point in self.ground)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Same:
-    """A scene as itself and as it stands, to keep under it what was worked out for it: scenes that
-    are equal but for the order of their links are not one, and a scene that somebody changed is
-    another than it was."""
+    """A scene as itself, to keep under it what was worked out for it: scenes that are equal but for
+    the order of their links are not one."""
 
     scene: Scene
-    content: tuple[object, ...] = field(init=False)
-
-    def __post_init__(self) -> None:
-        scene = self.scene
-        mappings = (scene.ground, scene.links, scene.sliders, scene.branch)
-        points = (link.points for link in scene.links.values())
-        content = tuple(tuple(each.items()) for each in (*mappings, *points))
-        object.__setattr__(self, "content", content)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Same):
-            return NotImplemented
-        return other.scene is self.scene and other.content == self.content
+        return isinstance(other, Same) and other.scene is self.scene
 
     def __hash__(self) -> int:
         return id(self.scene)

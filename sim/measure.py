@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 
 from models.array import Array
 from models.joints import block_name, blocks, carriers, local_point, sliding_angle
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
-from models.scene import GROUND, Point, Scene, Slider
+from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
 from sim.engine import BodyPose, Poses
 
 
@@ -202,10 +202,20 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
     """Every point as each of the bodies that list it carries it."""
-    frames = {GROUND: _still(len(poses.time_s)), **poses.bodies}
-    bodies = {name: BodyPath(pose) for name, pose in frames.items()}
+    bodies = {name: BodyPath(pose) for name, pose in poses.bodies.items()}
+    bodies[GROUND] = BodyPath(_still(len(poses.time_s)))
     return {
-        point: {body: PointPath(bodies[body], local_point(scene, body, point)) for body in names}
+        point: {body: PointPath(bodies[body], local) for body, local in copies.items()}
+        for point, copies in _copies(Same(scene)).items()
+    }
+
+
+@lru_cache(maxsize=KEPT)
+def _copies(same: Same) -> Mapping[str, Mapping[str, Point]]:
+    """Every point in the frames of the bodies that list it."""
+    scene = same.scene
+    return {
+        point: {body: local_point(scene, body, point) for body in names}
         for point, names in carriers(scene).items()
     }
 

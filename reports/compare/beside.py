@@ -10,7 +10,7 @@ import numpy as np
 
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.motion import Motion
+from models.motion import Motion, State
 from models.scene import Same, Scene
 from reports.compare.series import angle_error
 from reports.compare.tracks import Track, fitting, tracks
@@ -36,6 +36,11 @@ class Truth:
     scene: Scene
     bound: bool = True
     _motions: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def start(self) -> State:
+        """The state at time 0. Raises CrankcheckError where there is none."""
+        return solve(self.scene, np.zeros(1), bound=False).state()
 
     def at(self, time_s: Array) -> Motion:
         """The reference at instants (T,). Raises CrankcheckError where there is none."""

@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.forces.jolts import jolts, mass_ratio
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import ReachError
 from models.motion import Motion
 from models.scene import Scene
@@ -45,21 +44,23 @@ class _Instants:
 
     time_s: Array
     driver_rad: Array
-    passed: NDArray[np.bool_]
+    passed: Mask
 
-    def __getitem__(self, part: slice | NDArray[np.bool_]) -> _Instants:
+    def __getitem__(self, part: slice | Mask) -> _Instants:
         return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
 
     @cached_property
-    def parts(self) -> tuple[tuple[ErrorKind, NDArray[np.bool_], _Instants], ...]:
+    def parts(self) -> tuple[tuple[ErrorKind, slice | Mask, _Instants], ...]:
         """The first samples, those at change points and the rest, by kind, without empty ones."""
-        first = np.arange(self.time_s.size) < _settled(self)
-        kinds: tuple[tuple[ErrorKind, NDArray[np.bool_]], ...] = (
-            ("start", first),
-            ("total", ~first & ~self.passed),
-            ("passage", ~first & self.passed),
-        )
-        return tuple((kind, part, self[part]) for kind, part in kinds if np.any(part))
+        first, size = _settled(self), self.time_s.size
+        later = np.arange(size) >= first
+        kinds: list[tuple[ErrorKind, slice | Mask]] = [("start", slice(first))] if first else []
+        if np.any(self.passed):
+            kinds += [("total", later & ~self.passed), ("passage", later & self.passed)]
+        else:
+            kinds += [("total", slice(first, size))]
+        cut = ((kind, part, self[part]) for kind, part in kinds)
+        return tuple(each for each in cut if each[2].time_s.size)
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -132,7 +133,14 @@ def _row(
     track: Track, at: _Instants, source: Source = "reported", kind: ErrorKind = "total"
 ) -> Error:
     """A track as numbers."""
-    measured = size(length(track.error))
+    return _numbers(track, length(track.error), track.bound, at, source, kind)
+
+
+def _numbers(
+    track: Track, error: Array, bound: Array, at: _Instants, source: Source, kind: ErrorKind
+) -> Error:
+    """A series of lengths (T,) of a track's error as numbers, with what they may be wrong by."""
+    measured = size(error)
     return Error(
         quantity=track.quantity,
         body_kind=track.body_kind,
@@ -146,16 +154,16 @@ def _row(
         final=measured.final,
         time_of_maximum_s=float(at.time_s[measured.index]),
         driver_at_maximum_rad=float(at.driver_rad[measured.index]),
-        bound=float(np.max(track.bound, initial=0.0)),
-        samples=int(track.error.shape[0]),
+        bound=float(np.max(bound, initial=0.0)),
+        samples=int(error.shape[0]),
     )
 
 
 def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
     """A rate as rows of its parts: the first samples, those at change points, and the rest."""
+    error = length(track.error)
     for kind, part, instants in at.parts:
-        cut = replace(track, error=track.error[part], bound=track.bound[part])
-        yield _row(cut, instants, source, kind)
+        yield _numbers(track, error[part], track.bound[part], instants, source, kind)
 
 
 def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:

@@ -44,8 +44,9 @@ def angle_error(engine: Array, reference: Array) -> Array:
     one sample alone as well.
     """
     error = engine - reference
-    turns = np.round(error[:1] / math.tau)
-    return np.asarray(error - math.tau * np.nan_to_num(turns, nan=0.0, posinf=0.0, neginf=0.0))
+    first = float(error[0]) / math.tau if error.size else 0.0
+    turns = float(np.round(first)) if math.isfinite(first) else 0.0
+    return np.asarray(error - math.tau * turns)
 
 
 def length(vectors: Array) -> Array:

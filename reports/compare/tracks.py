@@ -21,8 +21,8 @@ class Track:
     """One quantity of one body over time.
 
     ``error`` is engine less reference [unit], (T,) or (T, 2); ``bound`` (T,) what the reference
-    may be wrong by; ``magnitude`` the largest number in the log, which rounding is relative to;
-    ``scale`` makes a pure number of the error.
+    may be wrong by; ``truth`` the reference itself, shaped as the error; ``scale`` makes a pure
+    number of the error.
     """
 
     quantity: str
@@ -30,9 +30,14 @@ class Track:
     body: str
     error: Array
     bound: Array
-    magnitude: float
+    truth: Array
     scale: float
     unit: str
+
+    @property
+    def magnitude(self) -> float:
+        """The largest number of the truth, which rounding is relative to."""
+        return float(np.max(np.abs(self.truth), initial=0.0))
 
 
 def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str]) -> Iterator[Track]:
@@ -44,16 +49,17 @@ def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str])
     for quantity in quantities:
         for measure in QUANTITIES[quantity].measures:
             logged, bounds = measure.logged(scene, run), measure.bound(scene, reference)
+            scale, turns = measure.scale(scene, reference), measure.unit == "rad"
             for body, right in measure.truth(scene, reference).items():
                 engine = fitting(logged.get(body), right)
                 yield Track(
                     quantity=quantity,
                     body_kind=measure.body_kind,
                     body=body,
-                    error=angle_error(engine, right) if measure.unit == "rad" else engine - right,
-                    bound=bounds.get(body, np.zeros(right.shape[0])),
-                    magnitude=float(np.max(np.abs(right), initial=0.0)),
-                    scale=measure.scale(scene, reference),
+                    error=angle_error(engine, right) if turns else engine - right,
+                    bound=bounds[body] if body in bounds else np.zeros(right.shape[0]),
+                    truth=right,
+                    scale=scale,
                     unit=measure.unit,
                 )
 

@@ -95,7 +95,7 @@ class MujocoSession:
             inertia_kg_m2={n: self._inertia(n) for n in names},
             centre_m={n: _pair(model.body(n).ipos) for n in names},
             gravity_m_s2=(float(opt.gravity[0]), float(opt.gravity[1])),
-            start=self.read(),
+            start=self._start(),
             settings=settings,
             velocity_shift=self._shift,
             acceleration_shift=0.0,
@@ -141,6 +141,12 @@ class MujocoSession:
         with self._quiet():
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
+    def _start(self) -> Poses:
+        """The state before the first step, whose accelerations are there from the opening."""
+        if self._controlled:  # by what the law asks for then, which the opening left out
+            return self.read()
+        return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
+
     def taken(self) -> tuple[str, ...]:
         """The warnings so far, each once."""
         return tuple(dict.fromkeys(self._warnings))
@@ -180,10 +186,13 @@ class MujocoSession:
 
     def _poses(self, states: Array, at: Array) -> Poses:
         """Poses of logged states; accelerations are those of `mj_forward` at each state."""
+        return self._placed(states, at, self._accelerations(states, at))
+
+    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
+        """Poses of states with their joint accelerations (T, nv)."""
         nq, nv = self._model.nq, self._model.nv
         q, rate = states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
         lag = self._shift * self._dt
-        push = self._accelerations(states, at)
         poses = body_poses(self._limbs, q, rate, push, lag)
         return Poses(self._start_s + self._dt * at, poses, lag)
 
