@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.base import Engines, Jobs, StepS, StepsPerTurn, Turns, command
+from reports.cli.application import Engines, Jobs, StepS, StepsPerTurn, Turns, command
 from reports.output.console import terminal
 
 

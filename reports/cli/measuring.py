@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.base import Engines, Jobs, app, command, guarded
+from reports.cli.application import Engines, Jobs, app, command, guarded
 from reports.output.console import terminal
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.base import app, command, guarded
+from reports.cli.application import app, command, guarded
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]

@@ -25,11 +25,11 @@ from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
+from reports.results.drawable import PLACE, around, ends, fitted, measured
 from reports.results.lines import Line, Named, named
 from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
-from reports.results.points import PLACE, around, ends, fitted, measured
 
 STEP = "time step [s]"
 PER_TURN = "steps per turn"

@@ -21,12 +21,12 @@ from reports.drawing.moving import first_turn
 from reports.figures.grids import grid
 from reports.figures.style import INK, TINY, power_of_ten
 from reports.output.numbers import short
+from reports.results.drawable import ends
 from reports.results.error_parts import Parts, Split, split, worst_body
 from reports.results.lines import Line, named
 from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
-from reports.results.points import ends
 
 STEPS = 720
 """Steps per turn of the cells that are shown, or the nearest that ended well: those of verify."""

@@ -19,12 +19,12 @@ from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
+from reports.results.drawable import PLACE, around, ends, timed
 from reports.results.lines import Line, Named, named
 from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 from reports.results.pareto import front, front_over_all
-from reports.results.points import PLACE, around, ends, timed
 
 COST = "time per simulated turn [s]"
 ALL = "all scenes: worst error, mean time"

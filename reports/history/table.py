@@ -8,7 +8,7 @@ from math import isinf
 from rich.console import Console
 from rich.text import Text
 
-from reports.history.changes import (
+from reports.history.version_changes import (
     FollowedChange,
     by_cell,
     headlines,
@@ -16,8 +16,8 @@ from reports.history.changes import (
     steps,
     times,
 )
-from reports.history.overview import overview, profiles_of
 from reports.history.version_result import VersionResult, errors_of
+from reports.history.version_rows import overview, profiles_of
 from reports.output.columns import hanging, plain_table
 from reports.quantities import QUANTITIES, named
 from reports.results.changes.runs import CellName, StoredCell

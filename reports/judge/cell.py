@@ -18,7 +18,7 @@ from reports.compare.compare import compare
 from reports.compare.errors import Departure
 from reports.judge.halving import followed
 from reports.judge.rules import judge
-from reports.judge.rules.base import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
 from sim.engine import Drive, Run, SettingValue
 from sim.run import run

@@ -14,9 +14,9 @@ from markupsafe import Markup
 from reports.drawing.packed import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text
 from reports.page.sections import SECTIONS
-from reports.page.sections.base import PageReport, Section
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
+from reports.page.sections.section import PageReport, Section
 from reports.page.thinning import BUDGET
 from reports.results.looks import Look
 from reports.results.overview import Report

@@ -12,8 +12,8 @@ from rich.text import Text
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.output.columns import plain_table
+from reports.selftest.all_faults import GROUPS
 from reports.selftest.fault import Fault
-from reports.selftest.registry import GROUPS
 from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Verdict, passes
 
 WIDE = 96

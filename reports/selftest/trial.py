@@ -14,9 +14,9 @@ from functools import cache, partial
 from models.files import load_scene
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
-from reports.judge.rules.base import Finding
+from reports.judge.rules.rule import Finding
+from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import Fault
-from reports.selftest.registry import FAULTS
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
 from sim.registry import ENGINES

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element
 
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
-from reports.judge.rules.base import Finding
+from reports.judge.rules.rule import Finding
 from reports.output.junit import case_of, say, suite_of
 
 

@@ -14,7 +14,7 @@ from rich.text import Text
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
 from reports.judge.rules import RULES
-from reports.judge.rules.base import Finding
+from reports.judge.rules.rule import Finding
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES

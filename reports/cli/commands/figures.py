@@ -13,7 +13,7 @@ from rich.progress import track
 
 from models.errors import CrankcheckError, suggestion
 from models.schema import NAME
-from reports.figures.registry import FIGURES
+from reports.figures.all_figures import FIGURES
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
 from reports.output.console import tell

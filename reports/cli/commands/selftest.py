@@ -14,7 +14,7 @@ from reports.judge.cell import Checked
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
-from reports.selftest.registry import chosen_faults
+from reports.selftest.all_faults import chosen_faults
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import PROFILE, STEPS, Verdict, healthy, passes, sites, tried_all
 from sim.registry import engine, offering

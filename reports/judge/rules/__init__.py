@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.judge.rules.base import Evidence, Finding, Rule
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.log import LogComplete, StatusOk, ValuesFinite
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
+from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.shrinking import ErrorShrinks
 from reports.judge.rules.start import StartWithin
 

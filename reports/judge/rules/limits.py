@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from reports.compare.errors import Error
-from reports.judge.rules.base import Evidence, Finding, Level, measure, place, share
+from reports.judge.rules.rule import Evidence, Finding, Level, measure, place, share
 from reports.judge.tolerance import Limit, in_passage
 from reports.quantities import QUANTITIES
 from reports.quantities.quantity import Criterion, tolerance_name

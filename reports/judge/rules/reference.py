@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from reports.compare.errors import Errors
-from reports.judge.rules.base import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding
 from reports.quantities import named
 
 LEAST_SAMPLES = 8

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.judge.rules.base import Evidence, Finding, Level
+from reports.judge.rules.rule import Evidence, Finding, Level
 
 FINE = ("shrinks", "at rounding")
 BAD = ("grows", "diverges")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from reports.compare.errors import Error, Errors
-from reports.judge.rules.base import Evidence, Finding, Level, place, share
+from reports.judge.rules.rule import Evidence, Finding, Level, place, share
 from reports.judge.start_allowance import allowance
 from reports.judge.tolerance import in_passage
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from reports.page.sections.base import PageReport, Section
 from reports.page.sections.convergence import build as convergence
 from reports.page.sections.fairness import build as fairness
 from reports.page.sections.hard import build as hard
@@ -16,6 +15,7 @@ from reports.page.sections.motion import build as motion
 from reports.page.sections.precision import build as precision
 from reports.page.sections.provenance import build as provenance
 from reports.page.sections.recommendation import build as recommendation
+from reports.page.sections.section import PageReport, Section
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from reports.output.numbers import error_text
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.quantities import QUANTITIES
 from reports.quantities.quantity import tolerance_name
 from reports.results.fits.line import LineFit

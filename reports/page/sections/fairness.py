@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.overview import Report
 
 RULES = (

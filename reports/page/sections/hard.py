@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from reports.drawing.packed import embedded
 from reports.output.numbers import count, error_text
 from reports.page.heat import SHADES, amount, heat, kind, outcomes_seen, same, shade, sign
-from reports.page.sections.base import PageReport, Section
+from reports.page.sections.section import PageReport, Section
 from reports.page.thinning import fitting
 from reports.stability.critical import command
 from reports.stability.grades import MEANINGS

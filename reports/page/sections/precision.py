@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from reports.output.numbers import count
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.candidates import Candidate
 from reports.results.cost import MEANS, Costs
 from reports.results.lines import Line

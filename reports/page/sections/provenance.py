@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 
 from reports.output.provenance import crankcheck_version
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.lines import Line
 from reports.results.looks import Look
 from reports.results.one_processor import left_out

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from reports.output.numbers import count
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.lines import called
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.overview import Report
 
 

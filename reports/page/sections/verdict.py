@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from reports.output.numbers import count, duration, error_text, listed
-from reports.page.sections.base import Section
+from reports.page.sections.section import Section
 from reports.results.lines import Line, named
 from reports.results.looks import Look
 from reports.results.overview import Report

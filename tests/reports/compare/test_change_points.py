@@ -17,7 +17,7 @@ from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.errors import Errors
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import judge
-from reports.judge.rules.base import Evidence
+from reports.judge.rules.rule import Evidence
 from reports.judge.tolerance import Limit, in_passage, limits
 
 LENGTHS = {"parallelogram": (0.1, 0.3, 0.1, 0.3), "kite": (0.1, 0.1, 0.3, 0.3)}

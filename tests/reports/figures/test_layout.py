@@ -14,8 +14,8 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from models.files import find_scene, load_scene, read_text
+from reports.figures.all_figures import FIGURES
 from reports.figures.mechanism import draw
-from reports.figures.registry import FIGURES
 from reports.figures.style import cut, styled, width_in
 from reports.results.overview import Report
 from reports.store.manifest import Manifest

@@ -11,7 +11,7 @@ import pytest
 from models.scene import Scene
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.rules import RULES, judge
-from reports.judge.rules.base import Evidence
+from reports.judge.rules.rule import Evidence
 from reports.judge.three_steps import Convergence, convergence
 from reports.judge.tolerance import DEFAULTS, Limit
 

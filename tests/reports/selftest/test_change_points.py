@@ -8,7 +8,7 @@ import pytest
 
 from models.hard import fourbar
 from reports.selftest import trial
-from reports.selftest.registry import FAULTS
+from reports.selftest.all_faults import FAULTS
 
 PARALLELOGRAM = replace(
     fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),

@@ -14,8 +14,8 @@ from typer.testing import CliRunner, Result
 
 from reports.cli import app
 from reports.judge.rules import RULES
-from reports.judge.rules.base import Evidence, Finding
-from reports.selftest.registry import FAULTS
+from reports.judge.rules.rule import Evidence, Finding
+from reports.selftest.all_faults import FAULTS
 from reports.selftest.table import show
 from reports.selftest.trial import FaultTrial, Verdict, healthy
 

@@ -7,8 +7,8 @@ from functools import cache
 import pytest
 
 from reports.judge.rules import RULES
+from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, SLIDER
-from reports.selftest.registry import FAULTS
 from reports.selftest.trial import Verdict, healthy, passes, tried
 
 ENGINES = ("mujoco", "pymunk")

@@ -11,9 +11,9 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.scene import Scene
+from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, SLIDER, in_engine
 from reports.selftest.logs import WHEN, moved, output, rows
-from reports.selftest.registry import FAULTS
 from sim.engine import Run
 from sim.registry import engine
 from sim.run import run

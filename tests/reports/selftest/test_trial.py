@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 from reports.judge.rules import RULES
-from reports.judge.rules.base import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding
 from reports.selftest import trial
+from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, Fault
-from reports.selftest.registry import FAULTS
 from reports.workers.isolated import Lost
 
 SPIKE = FAULTS["spike"]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim import registry
-from tests.worlds.command import COMMAND, script
+from tests.worlds.command import COMMAND
 from tests.worlds.programs import Start
 
 BAD_ENGINE = '''
@@ -59,13 +59,13 @@ def start(programs: Start) -> Start:
 
 @pytest.fixture
 def _bad_engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An engine `bad` is known here, and in processes that are started."""
+    """An engine `bad` is known here, and in the children of this process."""
     folder = tmp_path / "bad"
     folder.mkdir()
     (folder / "bad_engine").mkdir()
-    (folder / "bad_engine" / "__init__.py").write_text(script(DECLARATION))
-    (folder / "bad_engine" / "engine.py").write_text(script(BAD_ENGINE))
-    (folder / "sitecustomize.py").write_text(script(KNOWN))
+    (folder / "bad_engine" / "__init__.py").write_text(DECLARATION)
+    (folder / "bad_engine" / "engine.py").write_text(BAD_ENGINE)
+    (folder / "sitecustomize.py").write_text(KNOWN)
     monkeypatch.setenv("PYTHONPATH", str(folder))
     monkeypatch.syspath_prepend(folder)
     monkeypatch.setitem(registry.ENGINES, "bad", "bad_engine")
