@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
 
 from analytic.kinematics import solve
-from models.scene import Scene
+from models.scene import Same, Scene
 from reports.judge.cell import CellRunner
 from sim.engine import Run, Session
 from sim.registry import available, engine, offering
@@ -139,12 +140,30 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
     """The engine runs the scene as ever; what it has logged is changed afterwards."""
 
     def plant(size: float) -> CellRunner:
-        def runner(scene: Scene, *args: Any, **options: Any) -> Run:
-            return change(scene, run(scene, *args, **options), size)
+        def runner(
+            scene: Scene,
+            _: object,
+            name: str,
+            profile: str,
+            *,
+            settings: Any = None,
+            **options: Any,
+        ) -> Run:
+            assert not settings
+            done = _untouched(Same(scene), name, profile, tuple(sorted(options.items())))
+            return change(scene, done, size)
 
         return runner
 
     return plant
+
+
+@lru_cache(maxsize=3)
+def _untouched(same: Same, name: str, profile: str, options: tuple[tuple[str, Any], ...]) -> Run:
+    """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
+    quarter."""
+    state = solve(same.scene, np.zeros(1), bound=False).state()
+    return run(same.scene, state, name, profile, **dict(options))
 
 
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:
