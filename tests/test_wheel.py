@@ -21,7 +21,6 @@ PACKAGES = ("models", "analytic", "sim", "reports")
 COMMANDS = [
     "tests/test_face.py",
     "tests/reports/cli/test_ending.py::test_an_import_that_ctrl_c_cut_short_is_no_missing_engine",
-    "tests/reports/cli/test_ending.py::test_a_reader_that_leaves_is_no_verdict",
     "tests/reports/history/test_history.py::"
     "test_packages_of_our_names_in_the_working_folder_change_nothing",
     "tests/reports/sweep/test_faults.py::test_what_stands_in_the_working_folder_is_not_imported",

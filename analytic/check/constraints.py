@@ -92,16 +92,19 @@ class Constraints:
         rows = np.zeros((self.size, self.size))
         r = 0
         for a, at_a, b, at_b in self._pins:
-            self._add_point(rows[r : r + 2], a, self._point(q, a, at_a)[1], np.eye(2))
-            self._add_point(rows[r : r + 2], b, self._point(q, b, at_b)[1], -np.eye(2))
+            for body, local, sign in ((a, at_a, 1.0), (b, at_b, -1.0)):
+                if body != GROUND:
+                    i, (x, y) = self.at[body], self._point(q, body, local)[1].tolist()
+                    rows[r, i] = rows[r + 1, i + 1] = sign
+                    rows[r, i + 2], rows[r + 1, i + 2] = -sign * y, sign * x
             r += 2
         for slider in self.scene.sliders.values():
             body, tip = self.tip(slider)
             along, across = self._line(q, slider)
             p, arm = self._point(q, body, tip)
             g, guide = self._point(q, slider.on, slider.through_m)
-            self._add_point(rows[r : r + 1], body, arm, across[None, :])
-            self._add_point(rows[r : r + 1], slider.on, guide, -across[None, :])
+            self._add_point(rows[r], body, arm, across)
+            self._add_point(rows[r], slider.on, guide, -across)
             self._add_angle(rows[r], slider.on, -float(along @ (p - g)))
             self._add_angle(rows[r + 1], body, 1.0)
             self._add_angle(rows[r + 1], slider.on, -1.0)
@@ -109,12 +112,12 @@ class Constraints:
         self._add_angle(rows[r], self.scene.driver.link, 1.0)
         return rows
 
-    def _add_point(self, rows: Array, body: str, arm: Array, weight: Array) -> None:
+    def _add_point(self, row: Array, body: str, arm: Array, weight: Array) -> None:
         """Add weight times the derivative of a point of ``body`` by its coordinates."""
         if body != GROUND:
             i = self.at[body]
-            rows[:, i : i + 2] += weight
-            rows[:, i + 2] += weight @ np.array([-arm[1], arm[0]])
+            row[i : i + 2] += weight
+            row[i + 2] += weight[1] * arm[0] - weight[0] * arm[1]
 
     def _add_angle(self, row: Array, body: str, weight: float) -> None:
         if body != GROUND:

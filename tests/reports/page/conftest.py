@@ -60,7 +60,9 @@ def small_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     study = folder / "study.toml"
     study.write_text(STUDY)
     nowhere = Console(file=StringIO())
-    command.sweep(SweepRequest(folder / "out", study=study), nowhere, nowhere)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.sweep.running.ROUNDS", 2)  # the pages tell times, good or bad
+        command.sweep(SweepRequest(folder / "out", study=study), nowhere, nowhere)
     return folder / "out"
 
 
