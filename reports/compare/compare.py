@@ -237,10 +237,15 @@ def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
 
 def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:
     """The largest bound of the reference per quantity and body, as a pure number."""
-    return {
-        (track.quantity, track.body): float(np.max(track.bound, initial=0.0)) / track.scale
-        for track in beside.tracks(named("place", "derived"), beside.reference)
-    }
+    scene, reference = beside.scene, beside.reference
+    shares = {}
+    for name in named("place", "derived"):
+        for measure in QUANTITIES[name].measures:
+            bounds, scale = measure.bound(scene, reference), measure.scale(scene, reference)
+            for body in measure.truth(scene, reference):
+                bound = np.max(bounds[body], initial=0.0) if body in bounds else 0.0
+                shares[name, body] = float(bound) / scale
+    return shares
 
 
 def curvature(scene: Scene, reference: Motion) -> float:
