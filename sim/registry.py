@@ -97,10 +97,11 @@ def _loaded(name: str, part: str) -> object:
 
 
 def _module_name(value: object) -> str:
-    """The name of a module, empty where nothing is known; of what is none, that of its type."""
+    """The name of a module, or of that of a class or value; empty where nothing is known."""
     if isinstance(value, ModuleType):
         return value.__name__
-    return "" if value is None else type(value).__name__
+    home = getattr(value, "__module__", None) or type(value).__module__
+    return "" if value is None else str(home)
 
 
 def install_command(name: str) -> str:

@@ -63,9 +63,8 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
     which share their first choices with one that is ruled out by the links of these alone.
     """
     scene, times = beside.scene, beside.motion.time_s
-    keys = list(beside.reference.conditioning)[:MOST_CHOICES]
-    bodies = {group.branch_key: group.bodies for group in analyse(scene).groups}
-    placed = [bodies.get(key, ()) for key in keys]
+    dyads = [group for group in analyse(scene).groups if group.assemblies == 2][:MOST_CHOICES]
+    keys = [dyad.branch_key for dyad in dyads]
     ruled_out: set[tuple[int, ...]] = set()
     for signs in itertools.product((1, -1), repeat=len(keys)):
         if -1 not in signs or any(signs[:n] in ruled_out for n in range(1, len(signs) + 1)):
@@ -78,8 +77,9 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
             continue
         there = far.copy()
         rest = dict(motion.links)
-        for n, names in enumerate(placed, start=1):
-            _stay(there, beside.motion, {name: rest.pop(name) for name in names if name in rest})
+        for n, dyad in enumerate(dyads, start=1):
+            own = {name: rest.pop(name) for name in dyad.bodies if name in rest}
+            _stay(there, beside.motion, own)
             if not there.any():
                 ruled_out.add(signs[:n])
                 break

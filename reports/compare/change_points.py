@@ -22,16 +22,15 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from models.array import Array
+from models.array import Array, Mask
 from models.motion import Crossing, Motion
 
 WINDOW_RAD = 0.5
 """Of the driver, on both sides of a change point."""
 
 
-def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) -> NDArray[np.bool_]:
+def near(crossings: Iterable[Crossing], driver_rad: Array, within_rad: float) -> Mask:
     """Whether driver angles (T,) are nearer than this to one of some change points."""
     nearby = np.zeros(driver_rad.shape, dtype=bool)
     for crossing in crossings:

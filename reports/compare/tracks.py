@@ -21,8 +21,8 @@ class Track:
     """One quantity of one body over time.
 
     ``error`` is engine less reference [unit], (T,) or (T, 2); ``bound`` (T,) what the reference
-    may be wrong by; ``truth`` the reference itself, shaped as the error; ``scale`` makes a pure
-    number of the error.
+    may be wrong by; ``truth`` the reference of the place or rate that was logged; ``scale`` makes
+    a pure number of the error.
     """
 
     quantity: str

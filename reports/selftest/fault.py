@@ -25,6 +25,7 @@ FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
 REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
+Items = tuple[tuple[str, Any], ...]
 FaultGroup = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
 
 
@@ -149,9 +150,8 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
             settings: Any = None,
             **options: Any,
         ) -> Run:
-            assert not settings
-            done = _untouched(Same(scene), name, profile, tuple(sorted(options.items())))
-            return change(scene, done, size)
+            asked = (tuple(sorted(each.items())) for each in (settings or {}, options))
+            return change(scene, _healthy(Same(scene), name, profile, *asked), size)
 
         return runner
 
@@ -159,11 +159,11 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 
 
 @lru_cache(maxsize=3)
-def _untouched(same: Same, name: str, profile: str, options: tuple[tuple[str, Any], ...]) -> Run:
+def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
     """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
     quarter."""
     state = solve(same.scene, np.zeros(1), bound=False).state()
-    return run(same.scene, state, name, profile, **dict(options))
+    return run(same.scene, state, name, profile, settings=dict(settings), **dict(options))
 
 
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:

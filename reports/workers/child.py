@@ -67,7 +67,7 @@ def _done(
 
 
 def _portable(error: Exception) -> bytes:
-    """The error, which tells where it was raised; empty where it cannot travel."""
+    """The error, which tells where it was raised; empty where it cannot be packed."""
     error.add_note("".join(traceback.format_exception(error)))
     with contextlib.suppress(Exception):
         return pickle.dumps(error)

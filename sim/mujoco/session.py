@@ -142,8 +142,8 @@ class MujocoSession:
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
     def _start(self) -> Poses:
-        """The state before the first step, whose accelerations are there from the opening."""
-        if self._controlled:  # by what the law asks for then, which the opening left out
+        """The current state; the accelerations of the first are there from the opening."""
+        if self._done or self._controlled:  # by what the law asks for, which the opening left out
             return self.read()
         return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
 from models.errors import ReachError
-from models.files import load_scene, shipped
+from models.files import load_scene, parse_scene, shipped
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.branch import departure
@@ -65,16 +66,30 @@ def test_an_uncertain_reference_fails_every_engine_alike(tmp_path: Path, engine:
     assert "acceleration of rocker" in finding.text  # pymunk reports none, and is judged by it
 
 
-@pytest.mark.parametrize("name", ["sixbar-watt", "sixbar-stephenson"])
+def yoke_and_rocker() -> Scene:
+    """A Scotch yoke, which has one assembly alone, with a coupler and a rocker on its crank."""
+    text = shipped()["scotch-yoke"].read_text(encoding="utf-8")
+    more = """
+[links]
+coupler = { bar = ["B", "C"], length_m = 0.25 }
+rocker = { bar = ["D", "C"], length_m = 0.3 }"""
+    text = text.replace("A = [0.0, 0.0]", "A = [0.0, 0.0], D = [0.2, 0.0]")
+    return parse_scene(text.replace("\n[links]", more), "yoke and rocker")
+
+
+@pytest.mark.parametrize("name", ["sixbar-watt", "sixbar-stephenson", "yoke and rocker"])
 def test_a_run_is_found_in_each_of_the_other_assemblies(name: str) -> None:
     """Not all of them are looked at: what their first dyads rule out is left out."""
-    scene, truth = load_scene(name), Truth(load_scene(name))
+    scene = load_scene(name) if name in shipped() else yoke_and_rocker()
+    truth = Truth(scene)
     time_s = np.linspace(0.0, scene.driver.law.period_s, 90)
-    keys, seen = list(solve(scene, time_s).conditioning), 0
+    keys, seen = [dyad.branch_key for dyad in analyse(scene).groups if dyad.assemblies == 2], 0
     dt_s = float(time_s[1])
     shipped_run = run(scene, truth.start, "mujoco", dt_s=dt_s, steps=len(time_s) - 1)
     for signs in itertools.product((1, -1), repeat=len(keys)):
-        branch = {key: sign * scene.branch[key] for key, sign in zip(keys, signs, strict=True)}
+        branch = {
+            key: sign * scene.branch.get(key, 1) for key, sign in zip(keys, signs, strict=True)
+        }
         try:
             motion = solve(replace(scene, branch=branch), time_s)
         except ReachError:
@@ -84,4 +99,4 @@ def test_a_run_is_found_in_each_of_the_other_assemblies(name: str) -> None:
         assert stands is not None
         assert (departure(stands) is not None) == (-1 in signs), signs
         seen += 1
-    assert seen > 2
+    assert seen >= 2
