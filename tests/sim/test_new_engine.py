@@ -172,16 +172,17 @@ def test_a_fault_in_the_files_of_an_engine_is_not_taken_for_a_missing_package(
     folder = tmp_path / "wrong_engine"
     folder.mkdir()
     (folder / "__init__.py").write_text(
-        "from sim.registry import Declaration\nDECLARATION = Declaration('math', 'math')\n"
+        "from sim.registry import Declaration\nDECLARATION = Declaration('json', 'json')\n"
     )
-    (folder / "engine.py").write_text("import math, cmath\nmath.pi\ncmath.nothing\n")
+    (folder / "engine.py").write_text("import math\nmath.nothing_there\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(registry.ENGINES, "wrong", "wrong_engine")
     with pytest.raises(AttributeError, match="nothing"):
         engine("wrong")
-    (folder / "engine.py").write_text("import math\nmath.nothing\n")
-    with pytest.raises(EngineError, match="engine wrong: not installed"):
-        engine("wrong")
+    for lacking in ("json.nothing", "json.JSONDecoder.nothing", "json.JSONDecoder().nothing"):
+        (folder / "engine.py").write_text(f"import json\n{lacking}\n")
+        with pytest.raises(EngineError, match="engine wrong: not installed"):
+            engine("wrong")
 
 
 @pytest.mark.parametrize("name", registry.ENGINES)
