@@ -24,7 +24,7 @@ in."""
 GRID = ("slider-crank-offset", "--steps-per-turn", STEPS, "--turns", "2")
 NUMBER = 8 * 10
 FEW = 4 * 5
-LONG = ("--turns", "10", "--no-timing")
+LONG = ("--turns", "30", "--no-timing")
 """Cells that take longer than the writer waits until it keeps some."""
 BY_CHANCE = {"wall_s", "logged_us_per_step", "run_on", "us_per_step"}
 SLOW_KILLS = [pytest.param(kill, marks=pytest.mark.slow) for kill in range(2, 5)]
