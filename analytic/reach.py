@@ -11,10 +11,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from analytic.dyads.chunk import Chunk
-from models.array import Array
+from models.array import Array, Mask
 from models.scene import Scene
 
 SCAN = 1440
@@ -54,7 +53,7 @@ def ranges(stretched: Stretched) -> list[Range]:
     return list(zip(opens, ends, strict=True))
 
 
-def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: NDArray[np.bool_]) -> Array:
+def _bisect(stretched: Stretched, low: Array, high: Array, closes_low: Mask) -> Array:
     """The angles at which closing begins or ends, each on the side that closes."""
     for _ in range(60):
         middle = 0.5 * (low + high)

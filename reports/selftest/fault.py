@@ -15,6 +15,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.scene import Same, Scene
+from reports.compare.beside import truth_of
 from reports.judge.cell import CellRunner
 from sim.engine import Run, Session
 from sim.registry import available, engine, offering
@@ -162,8 +163,8 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
     """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
     quarter."""
-    state = solve(same.scene, np.zeros(1), bound=False).state()
-    return run(same.scene, state, name, profile, settings=dict(settings), **dict(options))
+    start = truth_of(same).start  # the cell that is run has asked for it
+    return run(same.scene, start, name, profile, settings=dict(settings), **dict(options))
 
 
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:
