@@ -21,6 +21,9 @@ motor of limited gain keeps its speed. Free: nothing drives it, it is a link lik
 all velocities at the start are those of the state; the law plays no part."""
 SettingValue = float | int | str
 Settings = Mapping[str, SettingValue]
+Placing = Literal["integrated", "solved"]
+"""Integrated: places come of velocities, step by step, and are off by what a step leaves out.
+Solved: the joints are solved for in each step, so places may be exact to rounding."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +140,9 @@ class Engine:
     ``version`` gives the installed one. ``check`` raises SettingError for a value, of a complete
     set of settings, that it does not take. ``open`` gives a session at a state, with settings, step
     [s] and drive; EngineError where the engine cannot hold the scene. An engine that does not
-    report accelerations gives NaN for all.
+    report accelerations gives NaN for all. ``holds`` is what the facts of a session say of a
+    complete set of settings, step and drive. How the engine comes by places is its ``placing``;
+    where they are integrated their errors shrink as the step to the power ``order`` at most.
     """
 
     name: str
@@ -146,6 +151,9 @@ class Engine:
     check: Callable[[Settings], None]
     open: Callable[[Scene, State, Settings, float, Drive], Session]
     reports_accelerations: bool = True
+    holds: Callable[[Settings, float, Drive], Settings] = lambda settings, dt_s, drive: settings
+    placing: Placing = "integrated"
+    order: int = 2
 
 
 @dataclass(frozen=True)
@@ -171,6 +179,22 @@ class Cost:
     @property
     def us_per_step(self) -> float:
         return 1e6 * self.wall_s / self.steps if self.steps else float("nan")
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a run is asked for: see `Run`, whose own words for the same are held to these."""
+
+    scene: str
+    engine: str
+    version: str
+    profile: str
+    drive: Drive
+    dt_s: float
+    steps: int
+    every: int
+    start_s: float
+    asked: Settings
 
 
 @dataclass(frozen=True)

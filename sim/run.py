@@ -29,6 +29,7 @@ from sim.engine import (
     Run,
     Session,
     Settings,
+    Setup,
     Status,
 )
 from sim.measure import gaps, motion
@@ -73,26 +74,27 @@ def run(
         not the scene.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
-    asked = resolved(profile_of(chosen, profile), settings)
-    _check_steps(scene, period(scene, state, drive), dt_s, steps, every)
-    blank = Run(
-        scene.name,
-        chosen.name,
-        chosen.version(),
+    told = setup(
+        scene,
+        state,
+        chosen,
         profile,
-        drive,
-        dt_s,
-        "ok",
-        "",
-        settings=asked,
-        asked=asked,
-        start_s=state.time_s,
+        dt_s=dt_s,
         steps=steps,
         every=every,
+        drive=drive,
+        settings=settings,
+    )
+    _check_steps(scene, period(scene, state, drive), dt_s, steps, every)
+    blank = Run(
+        **vars(told),
+        status="ok",
+        reason="",
+        settings=told.asked,
         reports_accelerations=chosen.reports_accelerations,
     )
     try:
-        session = chosen.open(scene, state, asked, dt_s, drive)
+        session = chosen.open(scene, state, told.asked, dt_s, drive)
     except SettingError:
         raise
     except EngineError as error:
@@ -101,6 +103,40 @@ def run(
     refuse_other_model(scene, state, facts, dt_s, drive, open_m)
     runaway = RUNAWAY * (pace(scene, state, drive) or math.inf)
     return _recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
+
+
+def setup(
+    scene: Scene,
+    state: State,
+    engine: str | Engine,
+    profile: str = "tuned",
+    *,
+    dt_s: float,
+    steps: int,
+    every: int = 1,
+    drive: Drive = "prescribed",
+    settings: Settings | None = None,
+) -> Setup:
+    """What `run` is asked for with these.
+
+    Raises
+    ------
+    EngineError
+        An unknown engine, profile or setting, or a missing package.
+    """
+    chosen = engine_of(engine) if isinstance(engine, str) else engine
+    return Setup(
+        scene=scene.name,
+        engine=chosen.name,
+        version=chosen.version(),
+        profile=profile,
+        drive=drive,
+        dt_s=dt_s,
+        steps=steps,
+        every=every,
+        start_s=state.time_s,
+        asked=resolved(profile_of(chosen, profile), settings),
+    )
 
 
 @dataclass(frozen=True)

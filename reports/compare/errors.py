@@ -83,7 +83,8 @@ class Errors:
     (`reports.compare.drive_rounding`). ``jolt`` is how much an engine may make up for at its start,
     over a step, as a pure number, ``worst_jolt`` the most of it over the run, and ``mass_ratio``
     the mass of the heaviest body over that of the lightest (`analytic.forces.jolts`).
-    ``starts_in_passage`` says that one of the first samples is near a change point.
+    ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
+    how far bodies depart from moving evenly with the driver (`reports.compare.uneven`).
     """
 
     rows: tuple[Error, ...]
@@ -101,6 +102,7 @@ class Errors:
     worst_jolt: float = 0.0
     mass_ratio: float = 1.0
     starts_in_passage: bool = False
+    uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -6,13 +6,13 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Literal
+from typing import Any, Literal
 
 from analytic.forces.jolts import mass_ratio
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
+from reports.compare.asked import not_asked_for
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
@@ -21,7 +21,8 @@ from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
 from sim.engine import Drive, Run, SettingValue
-from sim.run import run
+from sim.registry import engine
+from sim.run import run, setup
 
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
@@ -54,6 +55,21 @@ class Cell:
     @property
     def label(self) -> str:
         return f"{self.scene.name}, {self.engine}, {self.profile}"
+
+    @property
+    def named(self) -> tuple[str, str]:
+        """Engine and profile."""
+        return self.engine, self.profile
+
+    def options(self, finer: int) -> dict[str, Any]:
+        """What a run takes, with the step cut into ``finer`` parts, logged at the same instants."""
+        return {
+            "dt_s": self.dt_s / finer,
+            "steps": self.steps * finer,
+            "every": finer,
+            "drive": self.drive,
+            "settings": self.settings,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +118,8 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
         state = truth.start
-        done = _run(cell, runner, state, 1)
+        adapter = engine(cell.engine)
+        done = runner(cell.scene, state, *cell.named, **cell.options(1))
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
@@ -116,10 +133,18 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", _left(errors.departure)
     in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
+    unasked = _unasked(cell, state, 1, done)
     seen = None
     if cell.converge and errors:
-        rerun = partial(_run, cell, runner, state)
-        seen = followed(truth, cell.dt_s, errors, cell.tolerance, rerun)
+
+        def rerun(finer: int) -> Run:
+            again = runner(cell.scene, state, *cell.named, **cell.options(finer))
+            unasked.extend(_unasked(cell, state, finer, again))
+            return again
+
+        seen = followed(
+            truth, cell.dt_s, errors, cell.tolerance, rerun, adapter.placing, adapter.order
+        )
     evidence = Evidence(
         status=status,
         reason=reason,
@@ -130,6 +155,9 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         gated=cell.gated,
         profile=cell.profile,
         mass_ratio=mass_ratio(cell.scene),
+        placing=adapter.placing,
+        order=adapter.order,
+        unasked=tuple(unasked),
     )
     checked = Checked(
         **vars(evidence),
@@ -140,6 +168,14 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         warnings=done.warnings,
     )
     return checked, done
+
+
+def _unasked(cell: Cell, state: State, finer: int, done: Run) -> list[str]:
+    """What a run, with the step cut into ``finer`` parts, says of itself that was not asked for."""
+    asked = setup(cell.scene, state, *cell.named, **cell.options(finer))
+    held = engine(cell.engine).holds(asked.asked, asked.dt_s, asked.drive)
+    at = f"finer run, dt / {finer}: " if finer > 1 else ""
+    return [at + text for text in not_asked_for(done, asked, held)]
 
 
 def _left(departure: Departure) -> str:
@@ -154,18 +190,3 @@ def unfinished(cell: Cell, status: str, reason: str) -> Checked:
     """A cell that has no run: a row with a reason."""
     evidence = Evidence(status, reason, 0.0, None, {})
     return Checked(**vars(evidence), cell=cell, findings=judge(evidence))
-
-
-def _run(cell: Cell, runner: CellRunner, state: State, finer: int) -> Run:
-    """The cell with its step cut into ``finer`` parts, logged at the same instants."""
-    return runner(
-        cell.scene,
-        state,
-        cell.engine,
-        cell.profile,
-        dt_s=cell.dt_s / finer,
-        steps=cell.steps * finer,
-        every=finer,
-        drive=cell.drive,
-        settings=cell.settings,
-    )

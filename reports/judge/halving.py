@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from models.errors import CrankcheckError
@@ -14,8 +14,9 @@ from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import limits
+from reports.judge.too_good import too_good
 from reports.quantities import named
-from sim.engine import Run
+from sim.engine import Placing, Run
 
 PLACES, CLOSED = named("place"), named("place", "closure")
 HALVINGS = 2
@@ -32,6 +33,8 @@ def followed(
     errors: Errors,
     tolerance: Mapping[str, float],
     rerun: Callable[[int], Run],
+    placing: Placing = "integrated",
+    order: int = 2,
 ) -> Convergence | None:
     """The largest error of place at ``dt_s``, its half and its quarter.
 
@@ -43,6 +46,8 @@ def followed(
         Of the run at the full step: what was solved for it serves the finer ones.
     rerun : Callable[[int], Run]
         The run with its step cut into so many parts, logged at the instants of the full step.
+    placing, order : Placing, int
+        The engine's, see `sim.engine.Engine`.
     """
     worst = worst_place(errors)
     if worst is None:
@@ -64,6 +69,9 @@ def followed(
             for p, (rows, _) in zip(parts[1:], finer, strict=True)
             if (text := _over(truth.scene, dt_s, errors, tolerance, p, rows, rounding))
         ],
+        copied=_copied(errors, dt_s, parts, [errors.rows, *(rows for rows, _ in finer)], order)
+        if placing == "integrated"
+        else (),
     )
 
 
@@ -108,6 +116,37 @@ def _over(
         if not fine.pure <= max(limit, rounding):
             texts.append(f"{name} of {fine.body} {fine.pure:.2g}, limit {limit:.2g}")
     return f"at dt {dt_s / parts:.3g} s {'; '.join(texts)}" if texts else ""
+
+
+def _copied(
+    errors: Errors,
+    dt_s: float,
+    parts: Sequence[int],
+    runs: Sequence[Sequence[Error]],
+    order: int,
+) -> list[str]:
+    """Which of the finer runs are none of their own: one before them, or the reference.
+
+    A shorter step rounds otherwise, if nothing else: the errors of bodies that do not move evenly
+    with the driver are never the same to the last bit.
+    """
+    texts = []
+    seen: dict[tuple[float, ...], str] = {}
+    for number, rows in zip(parts, runs, strict=True):
+        at = f"dt {dt_s / number:.3g} s"
+        own = [row for row in rows if (row.body_kind, row.body) in errors.uneven]
+        own = [row for row in own if row.quantity in PLACES and row.kind == "total"]
+        places = tuple(size for row in own for size in (row.maximum, row.rms, row.final))
+        if places and places in seen:
+            texts.append(f"finer run: asked for {at}, the places are those of {seen[places]}")
+        seen.setdefault(places, at)
+        near = too_good(own, errors.uneven, errors.step_rad / number, "integrated", order)
+        if near and number > 1:
+            texts.append(
+                f"finer run: at {at} {near[0].quantity} of {near[0].body} is off by "
+                f"{near[0].maximum:.2g} {near[0].unit}, which no step of that size allows"
+            )
+    return texts
 
 
 def _rounding(drive: Error | None, exact: float) -> float:

@@ -26,7 +26,8 @@ class Convergence:
 
     ``order`` is the mean slope over the steps, NaN where there is none; ``floor`` the error that
     remains for dt to 0, NaN where none is seen. Of the finer runs ``faults`` says how they did not
-    end well, and ``over`` which of their errors are over the limit of that step.
+    end well, ``over`` which of their errors are over the limit of that step, and ``copied`` which
+    of their numbers come from another run, or from the reference.
     """
 
     dt_s: tuple[float, ...]
@@ -37,6 +38,7 @@ class Convergence:
     floor: float
     faults: tuple[str, ...] = ()
     over: tuple[str, ...] = ()
+    copied: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -60,6 +62,7 @@ def convergence(
     *,
     faults: Sequence[str] = (),
     over: Sequence[str] = (),
+    copied: Sequence[str] = (),
 ) -> Convergence:
     """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
 
@@ -72,9 +75,8 @@ def convergence(
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
-    return Convergence(
-        tuple(dt_s), tuple(error), unit, trend, order, floor, tuple(faults), tuple(over)
-    )
+    told = (tuple(texts) for texts in (faults, over, copied))
+    return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor, *told)
 
 
 def _read(e1: float, e2: float, e3: float, rounding: float) -> tuple[Trend, float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sim.engine import Engine
 from sim.mujoco.session import VERSION, MujocoSession
-from sim.mujoco.settings import AS_SHIPPED, TUNED, checked
+from sim.mujoco.settings import AS_SHIPPED, TUNED, checked, holds
 
 ENGINE = Engine(
     "mujoco",
@@ -12,4 +12,5 @@ ENGINE = Engine(
     version=lambda: VERSION,
     check=checked,
     open=MujocoSession,
+    holds=holds,
 )

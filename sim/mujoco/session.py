@@ -26,7 +26,7 @@ from models.scene import Point, Scene
 from models.tree import Tree, plan
 from sim import drive as drives
 from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue
-from sim.mujoco.settings import INTEGRATORS, OF_DRIVES, velocity_shift, writing
+from sim.mujoco.settings import INTEGRATORS, OF_DRIVES, holds, velocity_shift, writing
 from sim.settings import SettingError
 from sim.tree_poses import body_poses
 
@@ -46,7 +46,7 @@ class MujocoSession:
     def __init__(
         self, scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
     ) -> None:
-        self._scene, self._dt, self._settings = scene, dt_s, settings
+        self._scene, self._dt, self._settings, self._drive = scene, dt_s, settings, drive
         self._start_s, self._done = state.time_s, 0
         self._shift = velocity_shift(settings, drive)
         chosen = writing(scene, settings, dt_s, drive)
@@ -78,6 +78,7 @@ class MujocoSession:
         settings: dict[str, SettingValue] = {
             name: value for name, value in self._settings.items() if name not in unused
         } | {
+            **holds(self._settings, self._dt, self._drive),
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),

@@ -108,33 +108,44 @@ def checked(settings: Settings) -> None:
 def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf_options.Writing:
     """The choices of the MJCF text that the settings amount to."""
     checked(settings)
-    ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
+    held = holds(settings, dt_s, drive)
     servo = None
     if drive == "servo":
         scale = inertia_scale(scene) * scene.driver.law.peak_speed_rad_s
         servo = float(settings["servo_gain"]) * scale
-    steps = float(settings["solref_timeconst_steps"])
-    timeconst = steps * dt_s if steps else float(settings["solref_timeconst_s"])
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     return mjcf_options.Writing(
         close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
         option={
             "timestep": dt_s,
-            "integrator": integrator(settings, drive),
+            "integrator": str(held["integrator"]),
             "solver": str(settings["solver"]),
             "iterations": int(settings["iterations"]),
-            "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
+            "tolerance": float(held["tolerance"]),
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
         connect={
-            "solref": (timeconst, float(settings["solref_dampratio"])),
+            "solref": (float(held["solref_timeconst_s"]), float(settings["solref_dampratio"])),
             "solimp": (dmin, dmax, float(settings["solimp_width"]), 0.5, 2.0),
         },
-        flywheel_ratio=ratio,
+        flywheel_ratio=float(settings["flywheel_ratio"]),
         servo_gain=servo,
         delay_s=velocity_shift(settings, drive) * dt_s,
         free=drive == "free",
     )
+
+
+def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
+    """The settings as MuJoCo is given them: what depends on step and drive worked out; without the
+    pins that close the loops, which depend on the scene."""
+    ratio, tolerance = float(settings["flywheel_ratio"]), float(settings["tolerance"])
+    steps = float(settings["solref_timeconst_steps"])
+    unused = ("close", *(OF_DRIVES if drive == "free" else ()))
+    return {name: value for name, value in settings.items() if name not in unused} | {
+        "integrator": integrator(settings, drive),
+        "tolerance": tolerance / ratio if drive == "prescribed" else tolerance,
+        "solref_timeconst_s": steps * dt_s if steps else float(settings["solref_timeconst_s"]),
+    }
 
 
 def velocity_shift(settings: Settings, drive: Drive) -> float:

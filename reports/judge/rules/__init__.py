@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from reports.judge.rules.limits import LIMITS
-from reports.judge.rules.log import LogComplete, StatusOk, ValuesFinite
+from reports.judge.rules.log import AsAsked, LogComplete, StatusOk, ValuesFinite
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.shrinking import ErrorShrinks
@@ -20,6 +20,7 @@ _ALL: tuple[Rule, ...] = (
     ReferenceCertain(),
     LogComplete(),
     StartWithin(),
+    AsAsked(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 TUNABLE = ("CC101", "CC103", "CC104", "CC105", "CC110", "CC113")

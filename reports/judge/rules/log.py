@@ -1,4 +1,5 @@
-"""CC101, CC109, CC115: the run came to its end, and its log is whole and made of numbers."""
+"""CC101, CC109, CC115, CC117: the run is the one asked for, came to its end, and its log is whole
+and made of numbers."""
 
 from __future__ import annotations
 
@@ -67,3 +68,22 @@ class LogComplete:
         if fault:
             return Finding(self.id, "fail", fault)
         return Finding(self.id, "pass", "every commanded sample was logged at its time")
+
+
+class AsAsked:
+    id = "CC117"
+    title = "as asked"
+    explanation = (
+        "The numbers are those of the engine, settings, drive, step and samples that were asked "
+        "for, and a finer run is a run of its own: else the verdict is that of another cell."
+    )
+    cure = "Look at what runs the cells: a stored, renamed or thinned run is no answer."
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.unasked is None:
+            return None
+        copied = evidence.convergence.copied if evidence.convergence else ()
+        faults = [*evidence.unasked, *copied]
+        if faults:
+            return Finding(self.id, "fail", "; ".join(faults), float(len(faults)), 0.0)
+        return Finding(self.id, "pass", "the runs are those that were asked for")

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from reports.compare.errors import Errors
-from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding, measure
+from reports.judge.too_good import too_good
 from reports.quantities import named
 
 LEAST_SAMPLES = 8
@@ -19,26 +20,46 @@ class TwoComputations:
     id = "CC111"
     title = "two computations"
     explanation = (
-        "Two independent computations never agree to the last bit over a whole run; "
-        "where they do, the reference has been compared with itself."
+        "Two independent computations never agree over a whole run: an engine that integrates is "
+        "off by what its step leaves out, one that solves its joints rounds its rates in another "
+        "way. Where a body agrees better, the reference has been compared with itself."
     )
-    cure = "Look where the adapter takes its numbers from; it must read the engine."
+    cure = (
+        "Look where the adapter takes its numbers from; it must read the engine. One that solves "
+        "its joints in each step declares placing solved."
+    )
 
     def check(self, evidence: Evidence) -> Finding | None:
-        if evidence.errors is None:
+        errors = evidence.errors
+        if errors is None:
             return None
+        placing, order = evidence.placing, evidence.order
+        found = too_good(errors.rows, errors.uneven, errors.step_rad, placing, order)
         rows = [
             row
-            for row in evidence.errors.rows
+            for row in errors.rows
             if row.quantity in PLACES and row.kind == "total" and row.samples >= LEAST_SAMPLES
         ]
-        if not rows:
+        if not found and not rows:
             return None
-        largest = max(row.pure for row in rows)
-        if largest == 0.0:
+        if rows and max(row.pure for row in rows) == 0.0:
             text = "every position equals the reference to the last bit"
             return Finding(self.id, "fail", text, 0.0, 0.0)
-        return Finding(self.id, "pass", "engine and reference differ in rounding at least", largest)
+        if not found:
+            text = "engine and reference differ by what tells them apart"
+            return Finding(self.id, "pass", text, max(row.pure for row in rows))
+        first = found[0]
+        bodies = ", ".join(dict.fromkeys(f"{row.body_kind} {row.body}" for row in found))
+        why = (
+            f"places that are integrated are off by step^{order}"
+            if placing == "integrated"
+            else "rates are rounded in another way where they are worked out apart"
+        )
+        text = (
+            f"{bodies}: {first.quantity} is off by {measure(first)} at most"
+            f"{' at the logged crank angle' if first.kind == 'geometric' else ''}; {why}"
+        )
+        return Finding(self.id, "fail", text, first.pure)
 
 
 class ReferenceCertain:

@@ -11,6 +11,7 @@ from reports.compare.errors import Error, Errors
 from reports.judge.three_steps import Convergence
 from reports.judge.tolerance import Limit
 from reports.quantities import QUANTITIES
+from sim.engine import Placing
 
 Level = Literal["pass", "advice", "fail"]
 
@@ -21,6 +22,8 @@ class Evidence:
 
     ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
     cell that is not ``gated`` is shown only. ``mass_ratio`` is the heaviest body over the lightest.
+    ``placing`` and ``order`` are the engine's (`sim.engine.Engine`); ``unasked`` says what of the
+    run, and of the finer ones, is not as it was asked for, None where there is no run.
     """
 
     status: str
@@ -32,6 +35,9 @@ class Evidence:
     gated: bool = True
     profile: str = ""
     mass_ratio: float = 1.0
+    placing: Placing = "integrated"
+    order: int = 2
+    unasked: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -64,6 +64,7 @@ HEALTHY = Evidence(
     errors=Errors((*ROWS, *START), (), (), 1.0, 0.8, 0.01, jolt=0.5),
     limits=LIMITS,
     convergence=convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad"),
+    unasked=(),
 )
 
 

@@ -12,10 +12,11 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
 from models.joints import blocks, bodies, sliding_angle
-from models.motion import Motion, State
+from models.motion import LinkMotion, Motion, State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Profile, Setting, Settings
+from sim.engine import BodyPose, Drive, Facts, Log, Placing, Poses, Profile, Setting, Settings
+from sim.spoil import rounded
 
 TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there has to be one")})
 
@@ -39,6 +40,8 @@ class FakeEngine:
     changes: Callable[[Facts], Facts] = lambda facts: facts
     name: str = "fake"
     reports_accelerations: bool = True
+    placing: Placing = "solved"
+    order: int = 2
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )
@@ -48,6 +51,10 @@ class FakeEngine:
 
     def check(self, settings: Settings) -> None:
         """It takes everything."""
+
+    def holds(self, settings: Settings, dt_s: float, drive: Drive) -> Settings:
+        """And keeps it as it is."""
+        return settings
 
     def open(
         self,
@@ -132,7 +139,9 @@ def exact_poses(scene: Scene, engine: FakeEngine, time_s: Array, dt_s: float) ->
 
 
 def _poses(scene: Scene, motion: Motion) -> Poses:
-    """Frames of the bodies from the motion of their points."""
+    """Frames of the bodies from the motion of their points; rates are rounded in a way of its own,
+    as a solver's are."""
+    motion = replace(motion, links={n: _rounded(link) for n, link in motion.links.items()})
     frames = {}
     for link in scene.links.values():
         point, local = next(iter(link.points.items()))
@@ -158,6 +167,11 @@ def _poses(scene: Scene, motion: Motion) -> Poses:
             guide.alpha if guide else zero,
         )
     return Poses(motion.time_s, frames)
+
+
+def _rounded(link: LinkMotion) -> LinkMotion:
+    omega, alpha = (rounded(series, 2.0**-47) for series in (link.omega, link.alpha))
+    return replace(link, omega=omega, alpha=alpha)
 
 
 def _pair(number: NDArray[np.complex128]) -> Array:

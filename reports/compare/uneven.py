@@ -1,0 +1,56 @@
+"""The bodies whose motion no integrator follows exactly.
+
+What moves evenly with the driver comes out right to rounding however an engine steps: a link that
+turns with it, a link of a parallelogram, a point on either. All else is off by what a step leaves
+out, and the more, the further it is from moving evenly: from the driver's angle times a number for
+links and sliders, from the ellipse that its pin could draw for points.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+from reports.quantities.quantity import BodyKind
+
+Series = dict[tuple[BodyKind, str], Array]
+LEAST_SAMPLES = 8
+LEAST_TURN_RAD = 1.0
+"""Over less of a turn of the driver no error comes to its size."""
+EVEN = 1e-3
+"""A departure that is none: rounding is far below it, and errors that belong to it below those of
+rounding."""
+
+
+def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[BodyKind, str], float]:
+    """How far each body departs from moving evenly with the driver, without those that do not:
+    links in radians, sliders and points in longest links, 1 at most.
+
+    ``driver_rad`` is the commanded angle of the driver at the samples of the reference, (T,).
+    """
+    if driver_rad.size < LEAST_SAMPLES or np.ptp(driver_rad) < LEAST_TURN_RAD:
+        return {}
+    ones, turn = np.ones_like(driver_rad), np.exp(1j * driver_rad)
+    straight: Series = {("link", name): link.theta for name, link in reference.links.items()} | {
+        ("slider", name): slider.displacement / scene.longest_m
+        for name, slider in reference.sliders.items()
+    }
+    round_: Series = {
+        ("point", name): (point.position @ np.array([1.0, 1j])) / scene.longest_m
+        for name, point in reference.points.items()
+    }
+    far = {
+        **_departures(straight, np.stack([ones, driver_rad], axis=-1)),
+        **_departures(round_, np.stack([ones, turn, turn.conj()], axis=-1)),
+    }
+    return {body: min(size, 1.0) for body, size in far.items() if size > EVEN}
+
+
+def _departures(series: Series, even: NDArray[np.inexact]) -> dict[tuple[BodyKind, str], float]:
+    """The largest distance of each series (T,) from what the columns ``even`` (T, n) add up to."""
+    moved = np.stack(list(series.values()), axis=-1)
+    weights, *_ = np.linalg.lstsq(even, moved, rcond=None)
+    return dict(zip(series, np.max(np.abs(moved - even @ weights), axis=0).tolist(), strict=True))
