@@ -27,9 +27,9 @@ def not_asked_for(run: Run, setup: Setup, holds: Settings) -> list[str]:
         if name not in setup.asked or name not in run.asked or setup.asked[name] != run.asked[name]
     ]
     held = [
-        _words(f"setting {name}, as the engine holds it,", value, run.settings[name])
+        _words(f"setting {name}, as the engine holds it", value, run.settings.get(name))
         for name, value in holds.items()
-        if name in run.settings and not _equal(run.settings[name], value)
+        if run.motion is not None and not _equal(run.settings.get(name), value)
     ]
     return [*texts, *(told or held)]
 
@@ -42,7 +42,7 @@ def _short(value: object) -> str:
     return "none" if value is None else f"{value:.9g}" if isinstance(value, float) else repr(value)
 
 
-def _equal(one: SettingValue, other: SettingValue) -> bool:
-    if isinstance(one, str) or isinstance(other, str):
-        return one == other
-    return math.isclose(one, other, rel_tol=SAME)
+def _equal(found: SettingValue | None, asked: SettingValue) -> bool:
+    if found is None or isinstance(found, str) or isinstance(asked, str):
+        return found == asked
+    return math.isclose(found, asked, rel_tol=SAME)

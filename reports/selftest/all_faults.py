@@ -5,16 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from models.errors import CrankcheckError, suggestion
-from reports.selftest import clock, engines, mechanism, misplaced, missing, values
+from reports.selftest import (
+    clock,
+    engines,
+    handed_back,
+    mechanism,
+    misplaced,
+    missing,
+    requests,
+    values,
+)
 from reports.selftest.fault import Fault
 
 FAULTS: dict[str, Fault] = {
     fault.name: fault
-    for module in (mechanism, engines, clock, values, misplaced, missing)
+    for module in (requests, handed_back, mechanism, engines, clock, values, misplaced, missing)
     for fault in module.FAULTS
 }
 """To add a fault, add it to the module of its group."""
 GROUPS = {
+    "request": "another run than was asked for",
+    "reference": "numbers that are the reference's",
     "scene": "another mechanism in the engine",
     "engine": "something wrong inside the engine",
     "clock": "another instant than the log says",

@@ -22,12 +22,14 @@ from sim.registry import available, engine, offering
 from sim.run import run
 from sim.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
 
-FOURBAR, SLIDER = "fourbar-lecture-1", "slider-crank-offset"
+FOURBAR, SLIDER, SHAPER = "fourbar-lecture-1", "slider-crank-offset", "shaper"
 REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
-FaultGroup = Literal["scene", "engine", "clock", "log", "misplaced", "missing"]
+FaultGroup = Literal[
+    "request", "reference", "scene", "engine", "clock", "log", "misplaced", "missing"
+]
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,8 @@ class Fault:
     ``what`` says what it is. ``size`` is how large it is planted, in ``unit``; None for a fault
     that is there or not; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail,
     with the words ``says`` in what it says. ``scenes`` are where it is planted; ``needs`` says
-    of an engine whether it can have it.
+    of an engine whether it can have it. A ``finer`` fault needs runs at half and a quarter of the
+    step to be seen.
     """
 
     group: FaultGroup
@@ -51,6 +54,7 @@ class Fault:
     scenes: tuple[str, ...] = (FOURBAR, SLIDER)
     needs: Callable[[str], bool] = lambda _: True
     whole: bool = False
+    finer: bool = False
     shown: Callable[[float], str] | None = None
 
     @property

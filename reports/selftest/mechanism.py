@@ -98,6 +98,7 @@ FAULTS = (
         in_scene(_moved_pin),
         1e-4,
         "L",
+        finer=True,
     ),
     _fault(
         "line-turned",

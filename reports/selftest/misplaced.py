@@ -1,4 +1,4 @@
-"""Faults of a log whose numbers are right, elsewhere: of another body, axis, unit or source."""
+"""Faults of a log whose numbers are right, elsewhere: of another body, axis or unit."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from analytic.kinematics import solve
 from models.array import Array
 from models.motion import PointMotion
 from models.scene import Scene
@@ -84,12 +83,6 @@ def _series(done: Run) -> list[Array]:
     return [series for body in bodies for series in vars(body).values()] + list(done.gaps.values())
 
 
-def _reference(scene: Scene, done: Run) -> Run:
-    """The closed form handed back."""
-    motion = solve(scene, moved(done).time_s)
-    return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
-
-
 _fault = partial(Fault, "misplaced")
 FAULTS = (
     _fault(
@@ -121,5 +114,4 @@ FAULTS = (
         _other_midway,
         says=("left its branch",),
     ),
-    _fault("too-good", "the reference, handed back", "CC111", switched(_reference)),
 )

@@ -29,8 +29,6 @@ CLOSE = 1.1
 """Sizes over each other that are near enough."""
 LIMITS = Limits(600.0, 4.0)
 """A fault takes some seconds, with the search for its smallest size."""
-NEEDS_FINER_RUNS = "CC110"
-"""The rule that looks at runs with half and a quarter of the step."""
 
 
 @dataclass(frozen=True)
@@ -123,8 +121,8 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     """A fault in one place."""
 
     def planted(size: float) -> Checked:
-        needs = fault.rule == NEEDS_FINER_RUNS
-        return examined(_cell(scene, engine, steps, converge=needs), fault.plant(size))[0]
+        cell = _cell(scene, engine, steps, converge=fault.finer)
+        return examined(cell, fault.plant(size))[0]
 
     full, none = planted(fault.planted), planted(0.0)
     finding = _named(fault, full)

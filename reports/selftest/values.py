@@ -113,7 +113,13 @@ FAULTS = (
     _fault("noise", "noise on an angle (normal)", "CC114", _angle(_noisy), 1e-5, "rad"),
     _fault("drift", "an angle drifts off", "CC103", _angle(_ramp), 1e-3, "rad"),
     _fault(
-        "slow-drift", "the same, within this step's limit", "CC110", _angle(_ramp), 1.5e-4, "rad"
+        "slow-drift",
+        "the same, within this step's limit",
+        "CC110",
+        _angle(_ramp),
+        1.5e-4,
+        "rad",
+        finer=True,
     ),
     _fault("spike", "an angle is off at one sample", "CC114", _angle(_at(WHEN)), 1e-5, "rad"),
     _fault("jump", "an angle jumps, and stays", "CC107", _angle(_at(AFTER)), 1e-4, "rad"),

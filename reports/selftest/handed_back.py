@@ -1,0 +1,124 @@
+"""Faults of a log that was taken from the reference, in whole or in part, as it is or rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from analytic.kinematics import solve, solve_driven
+from models.array import Array
+from models.motion import LinkMotion, Motion
+from models.scene import Scene
+from reports.judge.cell import CellRunner
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, switched
+from reports.selftest.logs import last, moved
+from sim.engine import Run
+from sim.run import run
+
+
+def _handed_back(scene: Scene, done: Run) -> Run:
+    """The closed form in the place of the log, at the instants of the places."""
+    motion = solve(scene, moved(done).time_s)
+    return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
+
+
+def _each(change: Callable[[Motion], Motion]) -> Plant:
+    """The closed form, changed a little."""
+
+    def changed(scene: Scene, done: Run) -> Run:
+        back = _handed_back(scene, done)
+        return replace(back, motion=change(moved(back)))
+
+    return switched(changed)
+
+
+def _through_degrees(motion: Motion) -> Motion:
+    def there_and_back(series: Array) -> Array:
+        return np.asarray(np.radians(np.degrees(series)))
+
+    links = {
+        name: LinkMotion(*map(there_and_back, vars(link).values()))
+        for name, link in motion.links.items()
+    }
+    return replace(motion, links=links)
+
+
+def _next_floats(motion: Motion) -> Motion:
+    return motion.each_series(lambda series: np.asarray(np.nextafter(series, np.inf)))
+
+
+def _one_link(scene: Scene, done: Run) -> Run:
+    """The last link has the numbers of the closed form, all else those of the engine."""
+    own, name = moved(done), last(scene)
+    true = solve(scene, own.time_s, bound=False).links[name]
+    return replace(done, motion=replace(own, links={**own.links, name: true}))
+
+
+def _one_point(scene: Scene, done: Run) -> Run:
+    """The pin at the end of the last link, likewise."""
+    own, name = moved(done), _moving_pin(scene)
+    true = solve(scene, own.time_s, bound=False).points[name]
+    return replace(done, motion=replace(own, points={**own.points, name: true}))
+
+
+def _one_slider(scene: Scene, done: Run) -> Run:
+    """The first slider, likewise."""
+    own, name = moved(done), next(iter(scene.sliders))
+    true = solve(scene, own.time_s, bound=False).sliders[name]
+    return replace(done, motion=replace(own, sliders={**own.sliders, name: true}))
+
+
+def _moving_pin(scene: Scene) -> str:
+    """A point at the end of the driven links."""
+    ends = scene.links[last(scene)].points
+    carried = scene.links[scene.driver.link].points
+    return next(name for name in ends if name not in scene.ground and name not in carried)
+
+
+def _at_the_crank(scene: Scene, done: Run) -> Run:
+    """The closed form at the logged angles of the crank, with the speeds of its law."""
+    own = moved(done)
+    crank = own.links[scene.driver.link].theta
+    _, omega, alpha = scene.driver.law.at(own.time_s)
+    motion = solve_driven(scene, crank, omega, alpha, own.time_s, bound=False)
+    return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
+
+
+def _finer_handed_back(size: float) -> CellRunner:
+    """The engine runs at the full step; the finer runs are the closed form."""
+
+    def runner(scene: Scene, *args: Any, **options: Any) -> Run:
+        done = run(scene, *args, **options)
+        return _handed_back(scene, done) if size and options["every"] > 1 else done
+
+    return runner
+
+
+_fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
+FAULTS = (
+    _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
+    _fault("too-good-degrees", "through degrees and back", "CC111", _each(_through_degrees)),
+    _fault("too-good-next", "every number the next float", "CC111", _each(_next_floats)),
+    _fault("too-good-link", "of one link only", "CC111", switched(_one_link)),
+    _fault("too-good-point", "of one point only", "CC111", switched(_one_point)),
+    _fault(
+        "too-good-slider",
+        "of one slider only",
+        "CC111",
+        switched(_one_slider),
+        scenes=(SLIDER, SHAPER),
+    ),
+    _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank)),
+    _fault(
+        "too-good-finer",
+        "in the finer runs only",
+        "CC117",
+        _finer_handed_back,
+        says=("which no step of that size allows",),
+        finer=True,
+    ),
+)

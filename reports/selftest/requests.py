@@ -1,0 +1,169 @@
+"""Faults of what is run: another engine, profile, setting, drive or step than was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.scene import Scene
+from reports.judge.cell import CellRunner
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant
+from sim.engine import Run
+from sim.registry import available, engine, offering
+from sim.run import run, setup
+from sim.spoil import WrongSetting, spoiler
+
+DEGREES = 10
+"""Of a turn, where that is all that is run."""
+THIN, LATER = 8, 10
+"""Every so many samples are logged; so many steps later the run starts."""
+
+
+def _others(name: str) -> list[str]:
+    """The other engines that can be run here."""
+    return [one.name for one in available() if one.version and one.name != name]
+
+
+def _profiles(name: str, profile: str) -> list[str]:
+    """The other profiles of an engine."""
+    return [other for other in engine(name).profiles if other != profile]
+
+
+def _wrong(name: str) -> list[WrongSetting]:
+    """The settings that an engine can be given by mistake."""
+    return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
+
+
+def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool = False) -> Plant:
+    """Another engine or profile is run; ``renamed``, it says of itself what was asked for."""
+
+    def plant(size: float) -> CellRunner:
+        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
+            if not size:
+                return run(scene, state, name, profile, **options)
+            asked = setup(scene, state, name, profile, **options)
+            done = run(scene, state, *other(name, profile), **{**options, "settings": None})
+            return replace(done, **vars(asked)) if renamed else done
+
+        return runner
+
+    return plant
+
+
+def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
+    """What a run takes is changed, and the run says so."""
+
+    def plant(size: float) -> CellRunner:
+        def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
+            changed = {**options, **(change(scene, name, options) if size else {})}
+            start = changed.pop("state", state)
+            return run(scene, start, name, profile, **changed)
+
+        return runner
+
+    return plant
+
+
+def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str, Any]:
+    first = _wrong(name)[0]
+    return {"settings": spoiler(name).wrong_settings[first](1.0)}
+
+
+def _ten_degrees(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    return {"steps": max(options["steps"] * DEGREES // 360, 1)}
+
+
+def _double_step(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    return {"dt_s": 2.0 * options["dt_s"], "steps": options["steps"] // 2}
+
+
+def _thinned(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    return {"every": THIN * options["every"]}
+
+
+def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    later = np.array([LATER * options["dt_s"]])
+    return {"state": solve(scene, later, bound=False).state()}
+
+
+def _of_another_version(size: float) -> CellRunner:
+    def runner(*args: Any, **options: Any) -> Run:
+        done = run(*args, **options)
+        return replace(done, version=f"{done.version}.1") if size else done
+
+    return runner
+
+
+def _the_first_again(size: float) -> CellRunner:
+    """The run at the full step stands in the place of the finer ones, with their words."""
+
+    def runner(*args: Any, dt_s: float, steps: int, every: int, **options: Any) -> Run:
+        if not size:
+            return run(*args, dt_s=dt_s, steps=steps, every=every, **options)
+        first = run(*args, dt_s=dt_s * every, steps=steps // every, every=1, **options)
+        held = engine(first.engine).holds(first.asked, dt_s, first.drive)
+        settings = {**first.settings, **held}
+        return replace(first, dt_s=dt_s, steps=steps, every=every, settings=settings)
+
+    return runner
+
+
+_fault = partial(Fault, "request", rule="CC117", scenes=(FOURBAR, SLIDER, SHAPER))
+FAULTS = (
+    _fault(
+        "engine-other",
+        "the other engine's run",
+        plant=_run_of(lambda name, profile: (_others(name)[0], profile)),
+        says=("engine: asked for",),
+        needs=lambda name: bool(_others(name)),
+    ),
+    _fault(
+        "engine-renamed",
+        "the same, under the asked engine's name",
+        plant=_run_of(lambda name, profile: (_others(name)[0], profile), renamed=True),
+        says=("as the engine holds it",),
+        needs=lambda name: bool(_others(name)),
+    ),
+    _fault(
+        "profile-other",
+        "the run of another profile",
+        plant=_run_of(lambda name, profile: (name, _profiles(name, profile)[0])),
+        says=("profile: asked for",),
+    ),
+    _fault(
+        "profile-renamed",
+        "the same, under the asked profile's name",
+        plant=_run_of(lambda name, profile: (name, _profiles(name, profile)[0]), renamed=True),
+        says=("as the engine holds it",),
+    ),
+    _fault(
+        "setting-other",
+        "a setting that was not asked for",
+        plant=_given(_other_setting),
+        says=("setting ",),
+        needs=lambda name: bool(_wrong(name)),
+    ),
+    _fault("version-other", "another version", plant=_of_another_version, says=("version: ",)),
+    _fault(
+        "drive-other",
+        "a servo drives, and says so",
+        plant=_given(lambda *_: {"drive": "servo"}),
+        says=("drive: asked for 'prescribed'",),
+    ),
+    _fault("turn-cut", "ten degrees for a turn", plant=_given(_ten_degrees), says=("steps: ",)),
+    _fault("step-double", "twice the step", plant=_given(_double_step), says=("dt_s: ",)),
+    _fault("log-thinned", "every eighth sample", plant=_given(_thinned), says=("every: ",)),
+    _fault("start-later", "a start ten steps later", plant=_given(_started_later), says=("start",)),
+    _fault(
+        "halved-again",
+        "the first run, for its own finer ones",
+        plant=_the_first_again,
+        says=("the places are those of dt",),
+        finer=True,
+    ),
+)
