@@ -5,16 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 
+from models.motion import State
+from models.scene import Scene
 from sim.engine import Run, Settings, SettingValue, Setup
 
+AT_START = 1e-9
+"""What a body may be off by at its start: what `sim.check` grants the model in an engine."""
 SAME = 1e-12
 """A relative difference that is rounding: of a number that is worked out in another order."""
 
 
-def not_asked_for(run: Run, setup: Setup, holds: Settings) -> list[str]:
+def not_asked_for(run: Run, setup: Setup, holds: Settings, scene: Scene, state: State) -> list[str]:
     """What the run says of itself that is not as asked for, field by field.
 
-    ``holds`` is what an engine that was given the settings says that it holds of them.
+    ``holds`` is what an engine that was given the settings says that it holds of them; ``state`` is
+    what the run was to start from.
     """
     texts = [
         _words(field.name, getattr(setup, field.name), getattr(run, field.name))
@@ -31,7 +36,42 @@ def not_asked_for(run: Run, setup: Setup, holds: Settings) -> list[str]:
         for name, value in holds.items()
         if run.motion is not None and not _equal(run.settings.get(name), value)
     ]
-    return [*texts, *(told or held)]
+    return [*texts, *(told or held), *_elsewhere(run, scene, state)]
+
+
+def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
+    """The bodies whose first logged place is not that of the state."""
+    motion = run.motion
+    if motion is None or not motion.time_s.size:
+        return []
+    first = motion.state()
+    size = max(scene.longest_m, *(math.hypot(*place) for place in state.position.values()))
+    turns = {
+        name: abs(math.remainder(first.theta[name] - angle, math.tau))
+        for name, angle in state.theta.items()
+        if name in first.theta
+    }
+    moves = {
+        name: math.dist(first.position[name], place) / size
+        for name, place in state.position.items()
+        if name in first.position
+    }
+    slides = {
+        name: abs(first.displacement[name] - place) / size
+        for name, place in state.displacement.items()
+        if name in first.displacement
+    }
+    far = {
+        f"{kind} {name}": (by, unit)
+        for kind, unit, each in (
+            ("link", "rad", turns),
+            ("point", "L", moves),
+            ("slider", "L", slides),
+        )
+        for name, by in each.items()
+        if by > AT_START
+    }
+    return [f"start: {body} begins {by:.2g} {unit} off" for body, (by, unit) in far.items()]
 
 
 def _words(name: str, asked: object, found: object) -> str:

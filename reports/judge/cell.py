@@ -175,7 +175,7 @@ def _unasked(cell: Cell, state: State, finer: int, done: Run) -> list[str]:
     asked = setup(cell.scene, state, *cell.named, **cell.options(finer))
     held = engine(cell.engine).holds(asked.asked, asked.dt_s, asked.drive)
     at = f"finer run, dt / {finer}: " if finer > 1 else ""
-    return [at + text for text in not_asked_for(done, asked, held)]
+    return [at + text for text in not_asked_for(done, asked, held, cell.scene, state)]
 
 
 def _left(departure: Departure) -> str:

@@ -31,9 +31,9 @@ def _done(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plan
     return in_engine(at, lambda tools, session, _o, size, _: act(tools, session, size))
 
 
-def _third(steps: int) -> Iterable[int]:
-    """In mid-run: after a third of it."""
-    return (steps // 3,)
+def after_a_third(act: Act) -> Plant:
+    """What is done to a session in mid-run."""
+    return _done(act, lambda steps: (steps // 3,))
 
 
 def _dropped(turns: float) -> CellRunner:
@@ -115,7 +115,7 @@ FAULTS = (
         "joint-slips",
         "a joint slips on its link in mid-turn",
         "CC105",
-        _done(lambda tools, session, size: tools.slip(session, size), _third),
+        after_a_third(lambda tools, session, size: tools.slip(session, size)),
         1e-3,
         "L",
         scenes=(FOURBAR,),
@@ -185,7 +185,7 @@ FAULTS = (
         "state-lost",
         "a velocity in the engine becomes NaN",
         "CC101",
-        _done(_lose, _third),
+        after_a_third(_lose),
         says=("diverged",),
     ),
     _fault(

@@ -14,7 +14,7 @@ from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, switched
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, in_log, switched
 from reports.selftest.logs import last, moved
 from sim.engine import Run
 from sim.run import run
@@ -49,6 +49,30 @@ def _through_degrees(motion: Motion) -> Motion:
 
 def _next_floats(motion: Motion) -> Motion:
     return motion.each_series(lambda series: np.asarray(np.nextafter(series, np.inf)))
+
+
+def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
+    """The closed form, with its places changed by a size, in radians and longest links."""
+
+    def changed(scene: Scene, done: Run, size: float) -> Run:
+        if not size:
+            return done
+        own, far = moved(_handed_back(scene, done)), size * scene.longest_m
+        links = {n: replace(m, theta=change(m.theta, size)) for n, m in own.links.items()}
+        links[scene.driver.link] = own.links[scene.driver.link]
+        points = {n: replace(m, position=change(m.position, far)) for n, m in own.points.items()}
+        motion = replace(own, links=links, points=points)
+        return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
+
+    return in_log(changed)
+
+
+def _to_digits(series: Array, size: float) -> Array:
+    return np.rint(series / size) * size
+
+
+def _noisy(series: Array, size: float) -> Array:
+    return series + size * np.random.default_rng(SEED).standard_normal(series.shape)
 
 
 def _one_link(scene: Scene, done: Run) -> Run:
@@ -98,6 +122,7 @@ def _finer_handed_back(size: float) -> CellRunner:
     return runner
 
 
+SEED = 20_261_122
 _fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
 FAULTS = (
     _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
@@ -112,6 +137,8 @@ FAULTS = (
         switched(_one_slider),
         scenes=(SLIDER, SHAPER),
     ),
+    _fault("too-good-rounded", "to few digits", "CC118", _spoilt(_to_digits), 1e-7, "rad, L"),
+    _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(_noisy), 1e-7, "rad, L"),
     _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank)),
     _fault(
         "too-good-finer",

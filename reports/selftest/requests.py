@@ -24,14 +24,9 @@ THIN, LATER = 8, 10
 """Every so many samples are logged; so many steps later the run starts."""
 
 
-def _others(name: str) -> list[str]:
-    """The other engines that can be run here."""
-    return [one.name for one in available() if one.version and one.name != name]
-
-
-def _profiles(name: str, profile: str) -> list[str]:
-    """The other profiles of an engine."""
-    return [other for other in engine(name).profiles if other != profile]
+def other_engine(name: str) -> str | None:
+    """Another engine that can be run here, if there is one."""
+    return next((one.name for one in available() if one.version and one.name != name), None)
 
 
 def _wrong(name: str) -> list[WrongSetting]:
@@ -39,7 +34,7 @@ def _wrong(name: str) -> list[WrongSetting]:
     return list(spoiler(name).wrong_settings) if name in offering("spoiler") else []
 
 
-def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool = False) -> Plant:
+def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool) -> Plant:
     """Another engine or profile is run; ``renamed``, it says of itself what was asked for."""
 
     def plant(size: float) -> CellRunner:
@@ -53,6 +48,14 @@ def _run_of(other: Callable[[str, str], tuple[str, str]], renamed: bool = False)
         return runner
 
     return plant
+
+
+def _engine_for(name: str, profile: str) -> tuple[str, str]:
+    return other_engine(name) or name, profile
+
+
+def _profile_for(name: str, profile: str) -> tuple[str, str]:
+    return name, next((other for other in engine(name).profiles if other != profile), profile)
 
 
 def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]]) -> Plant:
@@ -118,27 +121,27 @@ FAULTS = (
     _fault(
         "engine-other",
         "the other engine's run",
-        plant=_run_of(lambda name, profile: (_others(name)[0], profile)),
+        plant=_run_of(_engine_for, renamed=False),
         says=("engine: asked for",),
-        needs=lambda name: bool(_others(name)),
+        needs=lambda name: other_engine(name) is not None,
     ),
     _fault(
         "engine-renamed",
         "the same, under the asked engine's name",
-        plant=_run_of(lambda name, profile: (_others(name)[0], profile), renamed=True),
+        plant=_run_of(_engine_for, renamed=True),
         says=("as the engine holds it",),
-        needs=lambda name: bool(_others(name)),
+        needs=lambda name: other_engine(name) is not None,
     ),
     _fault(
         "profile-other",
         "the run of another profile",
-        plant=_run_of(lambda name, profile: (name, _profiles(name, profile)[0])),
+        plant=_run_of(_profile_for, renamed=False),
         says=("profile: asked for",),
     ),
     _fault(
         "profile-renamed",
         "the same, under the asked profile's name",
-        plant=_run_of(lambda name, profile: (name, _profiles(name, profile)[0]), renamed=True),
+        plant=_run_of(_profile_for, renamed=True),
         says=("as the engine holds it",),
     ),
     _fault(

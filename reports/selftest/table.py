@@ -14,7 +14,7 @@ from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
 from reports.selftest.fault import Fault
-from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Verdict, passes
+from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""
@@ -30,14 +30,17 @@ def show(
     verdicts: Sequence[Verdict],
     engines: Sequence[str],
     facts: Mapping[str, str],
+    passed: Sequence[Passed] = (),
 ) -> None:
-    """Print the whole selftest."""
+    """Print the whole selftest; what ``passed`` and need not be seen, with the reason."""
     for one in verdicts:
         if not one.caught or len(verdicts) <= FEW:
             _told(console, one)
     for run in healthy:
         console.print(_without(run))
     console.print("", _table(verdicts, engines, console.width), "")
+    if passed:
+        console.print(Text("not seen, and need not be", "bold"), _unseen(passed), "")
     console.print(total(verdicts))
     console.print(_footer(verdicts, facts), style="dim", highlight=False)
 
@@ -71,6 +74,8 @@ def _told(console: Console, verdict: Verdict) -> None:
         where = f"  {place.scene}, {place.engine}: "
         if place.finding is not None:
             console.print(Text(f"{where}{rule.id} {rule.title}: {place.finding.text}"))
+        elif place.nothing:
+            console.print(Text(f"{where}nothing was planted: every error is that of size 0"))
         else:
             others = ", ".join(place.failed) or "none"
             words = f" with {' and '.join(map(repr, fault.says))}" if fault.says else ""
@@ -99,6 +104,18 @@ def _table(verdicts: Sequence[Verdict], engines: Sequence[str], width: int) -> T
         for one in verdicts:
             if one.fault.group == group:
                 table.add_row(*_cells(one, engines, wide))
+    return table
+
+
+def _unseen(passed: Sequence[Passed]) -> Table:
+    """What was planted, and why nothing of it is seen."""
+    table = plain_table()
+    for head in ("", "planted", "why it need not be seen"):
+        table.add_column(head, overflow="fold")
+    for one in passed:
+        failed = dict.fromkeys(rule for rules in one.failed.values() for rule in rules)
+        reason = f"Seen all the same, by {', '.join(failed)}." if failed else one.unseen.reason
+        table.add_row(one.name, one.unseen.what, reason)
     return table
 
 

@@ -7,7 +7,7 @@ at the size planted, while the same run without it, and with it at size 0, passe
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 
@@ -16,7 +16,8 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.fault import Fault
+from reports.selftest.fault import FOURBAR, Fault
+from reports.selftest.unseen import UNSEEN, Unseen
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
 from sim.registry import ENGINES
@@ -38,7 +39,8 @@ class FaultTrial:
     ``finding`` is that of the rule that should fail, None where it passed; ``failed`` are all
     rules that did. ``false`` are rules that fail with a size of 0. ``least`` is the smallest size
     that is caught, 0 where every size was that was looked at, None where there is no size or the
-    fault escapes.
+    fault escapes; ``nothing`` says that it escapes as every error is, to the last bit, that of
+    size 0.
     """
 
     scene: str
@@ -47,6 +49,7 @@ class FaultTrial:
     failed: tuple[str, ...]
     false: tuple[str, ...]
     least: float | None
+    nothing: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,34 @@ def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = 
     return Verdict(name, tuple(places), sound)
 
 
+@dataclass(frozen=True)
+class Passed:
+    """Something that need not be seen, by name, and by engine the rules that fail all the same."""
+
+    name: str
+    failed: Mapping[str, tuple[str, ...]]
+
+    @property
+    def unseen(self) -> Unseen:
+        return next(each for each in UNSEEN if each.name == self.name)
+
+
+def unseen(engines: Sequence[str], scene: str = FOURBAR, steps: int = STEPS) -> list[Passed]:
+    """Plant what need not be seen, in one scene."""
+    cells = {name: _cell(load_scene(scene), name, steps, converge=False) for name in engines}
+    return [
+        Passed(
+            each.name,
+            {
+                name: tuple(f.rule for f in examined(cell, each.plant(1.0))[0].failures)
+                for name, cell in cells.items()
+                if each.possible(name)
+            },
+        )
+        for each in UNSEEN
+    ]
+
+
 def tried_all(
     names: Sequence[str], engines: Sequence[str], jobs: int, done: Callable[[Verdict], None]
 ) -> list[Verdict]:
@@ -136,6 +167,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
         least=_least(fault, lambda size: _named(fault, planted(size)) is not None)
         if sized
         else None,
+        nothing=finding is None and (full.errors, full.reason) == (none.errors, none.reason),
     )
 
 

@@ -36,9 +36,12 @@ class MujocoSpoiler:
         _own(session)._model.eq_solimp[:, :2] = held - share
 
     def slip(self, session: Session, by_m: float) -> None:
-        """The site of the second body moves."""
+        """The site of the second body moves; of one at the body's origin MuJoCo would not look at
+        the place."""
         model = _own(session)._model
-        model.site_pos[model.eq_obj2id[0], 0] += by_m
+        site = model.eq_obj2id[0]
+        model.site_sameframe[site] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
+        model.site_pos[site, 0] += by_m
 
     def pull(self, session: Session, gravity_m_s2: float) -> None:
         """The mechanism stands in the x-y plane, so down is -y."""

@@ -36,7 +36,7 @@ class PymunkSpoiler:
 
     def slip(self, session: Session, by_m: float) -> None:
         """The anchor on the second body moves."""
-        joint = cast(pymunk.PivotJoint, _closing(_model(session)))
+        joint = _closing(_model(session))
         joint.anchor_b = (joint.anchor_b[0] + by_m, joint.anchor_b[1])
 
     def pull(self, session: Session, gravity_m_s2: float) -> None:
@@ -91,10 +91,14 @@ def _last(session: Session) -> pymunk.Body:
     return list(_model(session).bodies.values())[-1]
 
 
-def _closing(model: SpaceModel) -> pymunk.Constraint:
-    """The last joint of two bodies that both can move freely."""
+def _closing(model: SpaceModel) -> pymunk.PivotJoint | pymunk.GrooveJoint | pymunk.PinJoint:
+    """The last joint that holds a point: of two bodies that both can move freely where there is
+    one, else of one of them and the ground or the crank."""
+    kinds = (pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.PinJoint)
     free = pymunk.Body.DYNAMIC
-    return [c for c in model.space.constraints if c.a.body_type == c.b.body_type == free][-1]
+    holding = [c for c in model.space.constraints if isinstance(c, kinds)]
+    both = [c for c in holding if c.a.body_type == c.b.body_type == free]
+    return (both or [c for c in holding if c.b.body_type == free])[-1]
 
 
 SPOILER: Spoiler = PymunkSpoiler()

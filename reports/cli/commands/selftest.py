@@ -16,7 +16,17 @@ from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
 from reports.selftest.table import place_row, show
-from reports.selftest.trial import PROFILE, STEPS, Verdict, healthy, passes, sites, tried_all
+from reports.selftest.trial import (
+    PROFILE,
+    STEPS,
+    Passed,
+    Verdict,
+    healthy,
+    passes,
+    sites,
+    tried_all,
+    unseen,
+)
 from sim.registry import engine, offering
 
 IN_FOLDER = ("selftest.csv", "selftest.json")
@@ -36,11 +46,12 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
         names = [fault.name for fault in faults]
         verdicts = tried_all(names, engines, request.jobs, lambda _: bar.advance(task))
     sound = [healthy(scene, name) for scene, name in sites(faults, engines)]
+    passed = [] if request.faults else unseen(engines)
     facts = provenance({name: engine(name).version() for name in engines})
     try:
-        _write(request, verdicts, sound, facts)
+        _write(request, verdicts, sound, passed, facts)
     finally:  # a full disk costs the file, and not the verdict with it
-        show(console, sound, verdicts, engines, facts)
+        show(console, sound, verdicts, engines, facts, passed)
     return int(not all(one.caught for one in verdicts))
 
 
@@ -48,13 +59,14 @@ def _write(
     request: SelftestRequest,
     verdicts: Sequence[Verdict],
     sound: Sequence[Checked],
+    passed: Sequence[Passed],
     facts: Mapping[str, str],
 ) -> None:
     """Every output that was asked for, each whole or not at all."""
     rows = [place_row(one, place) for one in verdicts for place in one.places]
     texts = (
         pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"),
-        _json(verdicts, sound, rows, facts),
+        _json(verdicts, sound, passed, rows, facts),
     )
     folder = request.folder
     for name, text, path in zip(IN_FOLDER, texts, (request.csv, request.json), strict=True):
@@ -65,10 +77,11 @@ def _write(
 def _json(
     verdicts: Sequence[Verdict],
     sound: Sequence[Checked],
+    passed: Sequence[Passed],
     rows: Sequence[Mapping[str, object]],
     facts: Mapping[str, str],
 ) -> str:
-    """Facts, settings, the runs without a fault, and every fault in every place."""
+    """Facts, settings, the runs without a fault, every fault in every place, and what passes."""
     content = {
         "provenance": dict(facts),
         "settings": {"profile": PROFILE, "steps_per_turn": STEPS, "turns": 1},
@@ -79,5 +92,14 @@ def _json(
             for one in sound
         ],
         "places": list(rows),
+        "not_seen": [
+            {
+                "name": one.name,
+                "what": one.unseen.what,
+                "reason": one.unseen.reason,
+                "failed": dict(one.failed),
+            }
+            for one in passed
+        ],
     }
     return json.dumps(content, indent=1) + "\n"

@@ -9,6 +9,7 @@ from reports.judge.rules.log import AsAsked, LogComplete, StatusOk, ValuesFinite
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.shrinking import ErrorShrinks
+from reports.judge.rules.smooth import ErrorSmooth
 from reports.judge.rules.start import StartWithin
 
 _ALL: tuple[Rule, ...] = (
@@ -21,6 +22,7 @@ _ALL: tuple[Rule, ...] = (
     LogComplete(),
     StartWithin(),
     AsAsked(),
+    ErrorSmooth(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 TUNABLE = ("CC101", "CC103", "CC104", "CC105", "CC110", "CC113")

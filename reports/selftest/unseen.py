@@ -1,0 +1,160 @@
+"""What no rule sees, and need not: planted all the same, and told with the reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import Same, Scene
+from reports.compare.beside import truth_of
+from reports.judge.cell import CellRunner
+from reports.selftest.engines import after_a_third
+from reports.selftest.fault import Plant, in_log, in_scene
+from reports.selftest.logs import last, moved, with_link
+from reports.selftest.requests import other_engine
+from sim.engine import Cost, Run
+from sim.registry import engine, offering
+from sim.run import run, setup
+
+
+@dataclass(frozen=True)
+class Unseen:
+    """Something that is not as it should be, passes every rule, and why that is right."""
+
+    name: str
+    what: str
+    reason: str
+    plant: Plant
+
+    def possible(self, name: str) -> bool:
+        """Whether an engine can have it."""
+        if self.name == "all-renamed":
+            return other_engine(name) is not None
+        return self.name != "gravity-midway" or name in offering("spoiler")
+
+
+def _heavier(scene: Scene, share: float) -> Scene:
+    link = scene.links[last(scene)]
+    more = 1.0 + share
+    heavy = replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
+    return replace(scene, links={**scene.links, link.name: heavy})
+
+
+def _all_renamed(size: float) -> CellRunner:
+    """The other engine's run, of which every word is that of the run that was asked for."""
+
+    def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
+        asked = setup(scene, state, name, profile, **options)
+        other = other_engine(name)
+        if not size or other is None:
+            return run(scene, state, name, profile, **options)
+        done = run(scene, state, other, profile, **{**options, "settings": None})
+        held = engine(name).holds(asked.asked, asked.dt_s, asked.drive)
+        return replace(done, **vars(asked), settings=held)
+
+    return runner
+
+
+def _tenth(scene: Scene, done: Run, size: float) -> Run:
+    """Places that are nearer to the truth, by a factor of ten."""
+    own = moved(done)
+    true = truth_of(Same(scene)).at(own.time_s)
+    kept = 1.0 - 0.9 * size
+    return replace(done, motion=_between(own, true, kept))
+
+
+def _between(own: Motion, true: Motion, kept: float) -> Motion:
+    def near(series: Array, right: Array) -> Array:
+        return np.asarray(right + kept * (series - right))
+
+    return replace(
+        own,
+        links={
+            n: replace(m, theta=near(m.theta, true.links[n].theta)) for n, m in own.links.items()
+        },
+        points={
+            n: replace(m, position=near(m.position, true.points[n].position))
+            for n, m in own.points.items()
+        },
+        sliders={
+            n: replace(m, displacement=near(m.displacement, true.sliders[n].displacement))
+            for n, m in own.sliders.items()
+        },
+    )
+
+
+def _turns_counted(scene: Scene, done: Run, size: float) -> Run:
+    name = last(scene)
+    return with_link(done, name, theta=moved(done).links[name].theta + 2.0 * np.pi * round(size))
+
+
+def _even_taken(scene: Scene, done: Run, size: float) -> Run:
+    """The moving pin of the crank has the places of the closed form."""
+    own = moved(done)
+    pins = scene.links[scene.driver.link].points
+    name = next(point for point in pins if point not in scene.ground)
+    true = truth_of(Same(scene)).at(own.time_s).points[name]
+    points = {**own.points, name: replace(own.points[name], position=true.position)}
+    return replace(done, motion=replace(own, points=points)) if size else done
+
+
+def _cheaper(_: Scene, done: Run, size: float) -> Run:
+    cost = done.cost or Cost(0.0, 0, logged=True)
+    return replace(done, cost=replace(cost, wall_s=cost.wall_s * (1.0 - 0.5 * size)))
+
+
+_NO_FORCES = (
+    "Under a prescribed crank the lengths alone say how a mechanism moves; masses and loads decide "
+    "the forces, which no rule compares."
+)
+UNSEEN = (
+    Unseen(
+        "mass-other",
+        "the scene that is run has a heavier link",
+        f"{_NO_FORCES} A mass in the engine that is not the scene's is refused (mass-off).",
+        in_scene(_heavier),
+    ),
+    Unseen(
+        "gravity-midway",
+        "gravity is switched on in mid-run",
+        f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
+        after_a_third(lambda tools, session, size: tools.pull(session, 9.81 * size)),
+    ),
+    Unseen(
+        "error-tenth",
+        "places with a tenth of their error",
+        "An engine that errs less is a better engine; what is nearer than its order allows is seen "
+        "(too-good).",
+        in_log(_tenth),
+    ),
+    Unseen(
+        "even-taken",
+        "the crank's pin, from the reference",
+        "What moves evenly with the crank comes out right to rounding in an engine as well.",
+        in_log(_even_taken),
+    ),
+    Unseen(
+        "all-renamed",
+        "another engine's run, all its words false",
+        "Numbers within every limit, from a run that says in every word and setting what was asked "
+        "for, are as good as those of that run; one false word is seen (engine-renamed).",
+        _all_renamed,
+    ),
+    Unseen(
+        "turns-counted",
+        "an angle counted from another whole turn",
+        "Engines count turns from where they like; one that is gained or lost on the way is seen "
+        "(whole-turn).",
+        in_log(_turns_counted),
+    ),
+    Unseen(
+        "cost-halved",
+        "half the time that the run took",
+        "Times are advice, measured apart, and judged by nothing.",
+        in_log(_cheaper),
+    ),
+)
