@@ -18,7 +18,7 @@ from reports.quantities.quantity import BodyKind
 
 Series = dict[tuple[BodyKind, str], Array]
 LEAST_SAMPLES = 8
-LEAST_TURN_RAD = 1.0
+LEAST_TURN_RAD = 0.2
 """Over less of a turn of the driver no error comes to its size."""
 EVEN = 1e-3
 """A departure that is none: rounding is far below it, and errors that belong to it below those of

@@ -127,7 +127,7 @@ FAULTS = (
     ),
     _fault(
         "engine-renamed",
-        "the same, under the asked engine's name",
+        "the same, under the name asked for",
         plant=_run_of(_engine_for, renamed=True),
         says=("as the engine holds it",),
         needs=lambda name: other_engine(name) is not None,
@@ -140,7 +140,7 @@ FAULTS = (
     ),
     _fault(
         "profile-renamed",
-        "the same, under the asked profile's name",
+        "the same, under the name asked for",
         plant=_run_of(_profile_for, renamed=True),
         says=("as the engine holds it",),
     ),

@@ -11,11 +11,17 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
-from models.scene import Scene
+from models.scene import Same, Scene
+from reports.compare.beside import Beside, truth_of
+from reports.compare.compare import compare
+from reports.compare.errors import Error, Errors
+from reports.judge.too_good import too_good
+from reports.quantities import named
 from sim.check import refuse_other_model
 from sim.engine import BodyPose, Engine, Poses, Session
 from sim.measure import gaps, motion
 from sim.registry import ENGINES, engine
+from sim.run import run
 from sim.settings import resolved
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper", "scotch-yoke")
@@ -179,3 +185,42 @@ def test_profiles_are_complete_and_say_why(adapter: Engine) -> None:
     for profile in (shipped, tuned):
         assert profile.engine == adapter.name
         assert all(setting.reason for setting in profile.settings.values())
+
+
+def test_places_come_about_as_the_adapter_says(adapter: Engine, scene: Scene) -> None:
+    """Integrated: off by what a step leaves out, which shrinks no faster than its order. Solved:
+    off by rounding, at any step."""
+    coarse, fine = (_errors(adapter, scene, steps) for steps in (180, 720))
+    largest = [max(row.pure for row in errors.rows if _of_place(row)) for errors in (coarse, fine)]
+    if adapter.placing == "solved":
+        assert max(largest) < 1e-10
+        return
+    for errors in (coarse, fine):
+        found = too_good(
+            errors.rows, errors.uneven, errors.step_rad, adapter.placing, adapter.order
+        )
+        assert errors.uneven
+        assert found == []
+    assert largest[0] < largest[1] * 4.0 ** (adapter.order + 0.3)
+
+
+def _errors(adapter: Engine, scene: Scene, steps: int) -> Errors:
+    truth = truth_of(Same(scene))
+    dt_s = scene.driver.law.period_s / steps
+    errors = compare(Beside.of(truth, run(scene, truth.start, adapter, dt_s=dt_s, steps=steps)))
+    assert errors is not None
+    return errors
+
+
+def _of_place(row: Error) -> bool:
+    return row.quantity in named("place") and row.kind == "total"
+
+
+def test_an_engine_says_what_it_holds_of_its_settings(adapter: Engine, scene: Scene) -> None:
+    state = solve(scene, np.zeros(1)).state()
+    for profile in adapter.profiles.values():
+        settings = resolved(profile, None)
+        facts = adapter.open(scene, state, settings, DT_S, "prescribed").facts()
+        held = adapter.holds(settings, DT_S, "prescribed")
+        assert held
+        assert {name: facts.settings.get(name) for name in held} == pytest.approx(held)

@@ -11,6 +11,8 @@ DENSE_RAD = 0.04
 """The longest step, of about 160 a turn, at which an error is followed closely enough."""
 CLEAR = 10.0 * AT_ROUNDING
 """A pure error that is not made of rounding within the engine."""
+UNSURE = 100.0
+"""How far over what the reference may be wrong by an error has to be as well."""
 MOST = 1.0
 """The most that the second difference of an error may be of the error itself. Of independent
 numbers it is over 2; of runs that hold, on every shipped scene and 60 random ones, under 0.05."""
@@ -30,7 +32,7 @@ class ErrorSmooth:
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
-        if errors is None or not errors.uneven or errors.step_rad > DENSE_RAD:
+        if errors is None or errors.step_rad > DENSE_RAD:
             return None
         found = _roughest(errors)
         if found is None:
@@ -48,14 +50,14 @@ def _roughest(errors: Errors) -> tuple[float, str] | None:
         (row.body_kind, row.body): row.pure * errors.step_rad**2
         for row in errors.rows
         if (row.quantity, row.source, row.kind) == ("acceleration", "differenced", "total")
+        and row.finite
     }
     ratios = [
         (bent[row.body_kind, row.body] / row.pure, row)
         for row in errors.rows
         if row.quantity in named("place")
         and row.kind == "total"
-        and row.pure >= CLEAR
-        and (row.body_kind, row.body) in errors.uneven
+        and row.pure >= CLEAR + UNSURE * row.pure_bound
         and (row.body_kind, row.body) in bent
     ]
     if not ratios:

@@ -14,7 +14,16 @@ PARALLELOGRAM = replace(
     fourbar("parallelogram", 0.1, 0.3, 0.1, 0.3, source="Grashof's rule, equality"),
     branch={"C": 1},
 )
+EVEN = "what turns as its crank does comes out right to rounding in an engine too"
 NO_FAULT_THERE = {
+    "too-good-slider": "no slider",
+    "halved-again": EVEN,
+    "too-good-degrees": EVEN,
+    "too-good-next": EVEN,
+    "too-good-link": EVEN,
+    "too-good-point": EVEN,
+    "too-good-crank": EVEN,
+    "too-good-finer": EVEN,
     "line-turned": "no slider",
     "origin-off": "no slider",
     "body-collides": "the post stands beside another rocker",

@@ -43,7 +43,7 @@ def test_faults_that_are_caught_end_with_0_and_their_smallest_sizes(crank: Crank
     assert result.exit_code == 0, result.output
     assert "2 of 2 faults caught by the named rule" in result.output
     text = flat(result.output)
-    assert "no fault: fourbar-lecture-1, mujoco: all 15 rules pass" in text
+    assert "no fault: fourbar-lecture-1, mujoco: all 17 rules pass" in text
     assert "ok jump an angle jumps, and stays 0.0001 rad CC107 4.2e-05" in text
     assert "ok nan-at-end the last angle is NaN CC109 yes" in text
     assert "Profile tuned, 360 steps a turn, 1 turn." in text
@@ -106,7 +106,7 @@ def test_files_hold_every_fault_in_every_place(crank: Crank, tmp_path: Path) -> 
     ("args", "parts"),
     [
         (["--fault", "gravity-left"], ["'gravity-left'", "did you mean gravity-left-on"]),
-        (["--fault", "qqq"], ["'qqq'", "use link-too-long, pin-moved"]),
+        (["--fault", "qqq"], ["'qqq'", "use engine-other, engine-renamed"]),
         (["--fault", "first-order", "--engine", "mujoco"], ["planted in pymunk only", "mujoco"]),
         (["--engine", "mujoko"], ["'mujoko'", "did you mean mujoco"]),
         (["--csv", "/nowhere/at/all.csv"], ["--csv", "no folder"]),

@@ -8,8 +8,8 @@ import pytest
 
 from reports.judge.rules import RULES
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.fault import FOURBAR, SLIDER
-from reports.selftest.trial import Verdict, healthy, passes, tried
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER
+from reports.selftest.trial import Verdict, healthy, passes, tried, unseen
 
 ENGINES = ("mujoco", "pymunk")
 NO_FAULT_OF_A_RUN = {"CC112"}
@@ -49,7 +49,7 @@ def planted(name: str) -> Verdict:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("scene", [FOURBAR, SLIDER])
+@pytest.mark.parametrize("scene", [FOURBAR, SLIDER, SHAPER])
 @pytest.mark.parametrize("steps", [360, 720])
 def test_without_a_fault_every_rule_passes(scene: str, engine: str, steps: int) -> None:
     found = healthy(scene, engine, steps)
@@ -87,6 +87,24 @@ def test_what_is_promised_is_planted_at_the_promised_size() -> None:
 
 def test_every_rule_has_a_fault_that_it_must_catch() -> None:
     assert set(RULES) - {fault.rule for fault in FAULTS.values()} == NO_FAULT_OF_A_RUN
+
+
+def test_what_need_not_be_seen_is_not_seen() -> None:
+    for one in unseen(ENGINES):
+        assert set(one.failed) == set(ENGINES)
+        assert set(one.failed.values()) == {()}, one
+
+
+@pytest.mark.parametrize("group", ["request", "reference"])
+def test_what_is_run_and_what_is_handed_back_is_seen_in_three_scenes(group: str) -> None:
+    for fault in FAULTS.values():
+        if fault.group == group and fault.name != "too-good-slider":  # a four-bar has none
+            assert {place.scene for place in planted(fault.name).places} == {
+                FOURBAR,
+                SLIDER,
+                SHAPER,
+            }
+            assert {place.engine for place in planted(fault.name).places} == set(ENGINES)
 
 
 def test_the_model_check_refuses_gravity_by_name() -> None:

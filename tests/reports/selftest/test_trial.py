@@ -126,7 +126,7 @@ def test_a_fault_that_is_there_at_size_0_is_not_caught(monkeypatch: pytest.Monke
     always = replace(SPIKE, plant=lambda _: SPIKE.plant(1e-5))
     verdict = planted(always, monkeypatch)
     assert verdict.sound
-    assert verdict.places[0].false == ("CC114",)
+    assert verdict.places[0].false == ("CC114", "CC118")
     assert not verdict.caught
 
 
@@ -135,3 +135,12 @@ def test_a_fault_that_ends_the_process_is_not_caught() -> None:
     assert not verdict.caught
     assert verdict.lost == "the process ended with signal 11"
     assert verdict.least("mujoco") is None
+
+
+def test_a_fault_that_plants_nothing_fails_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    nothing = replace(SPIKE, plant=FAULTS["joint-slips"].plant, size=0.0)
+    verdict = planted(nothing, monkeypatch)
+    assert not verdict.caught
+    assert [place.nothing for place in verdict.places] == [True]
+    other = planted(replace(SPIKE, rule="CC102"), monkeypatch)
+    assert [place.nothing for place in other.places] == [False]

@@ -12,7 +12,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
 from models.joints import blocks, bodies, sliding_angle
-from models.motion import LinkMotion, Motion, State
+from models.motion import Motion, State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import BodyPose, Drive, Facts, Log, Placing, Poses, Profile, Setting, Settings
@@ -141,7 +141,6 @@ def exact_poses(scene: Scene, engine: FakeEngine, time_s: Array, dt_s: float) ->
 def _poses(scene: Scene, motion: Motion) -> Poses:
     """Frames of the bodies from the motion of their points; rates are rounded in a way of its own,
     as a solver's are."""
-    motion = replace(motion, links={n: _rounded(link) for n, link in motion.links.items()})
     frames = {}
     for link in scene.links.values():
         point, local = next(iter(link.points.items()))
@@ -166,12 +165,13 @@ def _poses(scene: Scene, motion: Motion) -> Poses:
             track.acceleration,
             guide.alpha if guide else zero,
         )
-    return Poses(motion.time_s, frames)
+    return Poses(motion.time_s, frames).changed(_rounded)
 
 
-def _rounded(link: LinkMotion) -> LinkMotion:
-    omega, alpha = (rounded(series, 2.0**-47) for series in (link.omega, link.alpha))
-    return replace(link, omega=omega, alpha=alpha)
+def _rounded(body: BodyPose) -> BodyPose:
+    """A body with other last digits of its rates."""
+    rates = ("velocity", "omega", "origin_acceleration", "alpha")
+    return replace(body, **{name: rounded(getattr(body, name), 2.0**-47) for name in rates})
 
 
 def _pair(number: NDArray[np.complex128]) -> Array:

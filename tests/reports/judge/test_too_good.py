@@ -1,0 +1,145 @@
+"""What is nearer to the reference than an engine can come was taken from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene, shipped
+from models.laws import ConstantSpeed
+from models.scene import Scene
+from reports.compare.uneven import uneven
+from reports.judge.cell import Cell, examined
+from reports.judge.rules import RULES
+from reports.judge.too_good import LEAST, too_good
+from sim.engine import Run
+from sim.registry import ENGINES, engine
+from sim.run import run
+
+
+def turn(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    law = scene.driver.law
+    time_s = np.linspace(0.0, law.period_s, 361)
+    return time_s, law.at(time_s)[0]
+
+
+def test_the_bodies_that_a_four_bar_moves_unevenly_are_all_but_its_crank() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    time_s, driver_rad = turn(scene)
+    found = uneven(scene, solve(scene, time_s), driver_rad)
+    assert set(found) == {("link", "coupler"), ("link", "rocker"), ("point", "C")}
+    assert all(0.05 < far <= 1.0 for far in found.values())
+
+
+def test_nothing_of_a_parallelogram_moves_unevenly() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    links = {
+        name: replace(link, points={n: (side * x, side * y) for n, (x, y) in link.points.items()})
+        for (name, link), side in zip(scene.links.items(), (1.0, 1.2, 1 / 2), strict=True)
+    }
+    lengths = [max(x for x, _ in link.points.values()) for link in links.values()]
+    assert lengths == pytest.approx([0.1, 0.3, 0.1])
+    even = replace(scene, links=links)
+    time_s, driver_rad = turn(even)
+    time_s, driver_rad = time_s[20:160], driver_rad[20:160]
+    assert uneven(even, solve(even, time_s), driver_rad) == {}
+
+
+def test_a_short_stretch_says_nothing() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    time_s, driver_rad = turn(scene)
+    motion = solve(scene, time_s[:12])
+    assert uneven(scene, motion, driver_rad[:12]) == {}
+
+
+@pytest.mark.parametrize("steps", [45, 360, 2880])
+@pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
+@pytest.mark.parametrize("name", ENGINES)
+def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(
+    name: str, profile: str, steps: int
+) -> None:
+    """With room for a factor of ten, so that no setting that somebody finds is blamed."""
+    adapter = engine(name)
+    for each in shipped():
+        scene = load_scene(each)
+        dt_s = scene.driver.law.period_s / steps
+        checked, _ = examined(Cell(scene, name, profile, dt_s, steps, converge=False))
+        errors = checked.errors
+        assert errors is not None
+        assert errors.uneven
+        wide = {body: 10.0 * far for body, far in errors.uneven.items()}
+        assert too_good(errors.rows, wide, errors.step_rad, adapter.placing, adapter.order) == []
+
+
+def verdict_of(scene: Scene, runner: object) -> dict[str, str]:
+    dt_s = scene.driver.law.period_s / 360
+    cell = Cell(scene, "mujoco", "tuned", dt_s, 360, converge=False)
+    return {f.rule: f.text for f in examined(cell, runner)[0].failures}  # type: ignore[arg-type]  # runners of this file
+
+
+def test_at_rounding_is_no_fault_of_an_engine_that_solves_its_joints(
+    fake_engine: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = load_scene("fourbar-lecture-1")
+
+    def exact(*args: object, **options: object) -> Run:
+        one, state, _, *rest = args
+        return run(one, state, fake_engine.FakeEngine(), *rest, **options)  # type: ignore[arg-type]  # passed on
+
+    seen = verdict_of(scene, exact)
+    assert "places that are integrated are off by step^2" in seen["CC111"]
+    monkeypatch.setattr("reports.judge.cell.engine", lambda _: fake_engine.FakeEngine())
+    assert "CC111" not in verdict_of(scene, exact)
+
+
+@pytest.mark.parametrize("spared", [None, "coupler"])
+def test_rates_that_are_the_references_are_too_good_of_any_engine(
+    fake_engine: ModuleType, monkeypatch: pytest.MonkeyPatch, spared: str | None
+) -> None:
+    scene = load_scene("fourbar-lecture-1")
+
+    def taken(*args: object, **options: object) -> Run:
+        one, state, _, *rest = args
+        done = run(one, state, fake_engine.FakeEngine(), *rest, **options)  # type: ignore[arg-type]  # passed on
+        assert done.motion is not None
+        true = solve(scene, done.motion.time_s)
+        own = {n: link for n, link in done.motion.links.items() if n == spared}
+        return replace(done, motion=replace(done.motion, links={**true.links, **own}))
+
+    monkeypatch.setattr("reports.judge.cell.engine", lambda _: fake_engine.FakeEngine())
+    found = verdict_of(scene, taken)["CC111"]
+    assert "link rocker" in found
+    assert ("link coupler" in found) == (spared is None)
+    assert "rates are rounded in another way" in found
+
+
+@pytest.mark.parametrize("digits", [6, 8, 10])
+def test_an_angle_of_few_digits_is_no_error_of_an_engine(digits: int) -> None:
+    scene = load_scene("fourbar-lecture-1")
+
+    def few(*args: object, **options: object) -> Run:
+        done = run(*args, **options)  # type: ignore[arg-type]  # passed on
+        assert done.motion is not None
+        true = solve(scene, done.motion.time_s).links["rocker"]
+        off = replace(true, theta=np.round(true.theta, digits))
+        links = {**done.motion.links, "rocker": off}
+        return replace(done, motion=replace(done.motion, links=links))
+
+    failed = verdict_of(scene, few)
+    assert {"CC118", "CC111"} & set(failed), failed
+
+
+def test_least_is_far_above_rounding_at_the_steps_of_verify() -> None:
+    assert LEAST * (2.0 * np.pi / 360) ** 2 > 1e-9
+    assert RULES["CC111"].cure
+
+
+def test_a_law_that_swings_is_looked_at_like_any_other() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    assert not isinstance(scene.driver.law, ConstantSpeed)
+    time_s, driver_rad = turn(scene)
+    assert ("link", "rocker") in uneven(scene, solve(scene, time_s), driver_rad)
