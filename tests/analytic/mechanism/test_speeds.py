@@ -16,6 +16,7 @@ from analytic.mechanism.travel import travel
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.laws import ConstantSpeed, Oscillating
+from models.passing import passing
 from models.scene import Driver
 
 OUTPUTS: list[tuple[str, Output]] = [
@@ -111,6 +112,11 @@ def test_a_swinging_driver_has_its_limits_at_the_ends_of_its_swing() -> None:
     assert [one.rate for one in lever] == pytest.approx([end, -end], rel=1e-14)
     law = scene.driver.law
     assert isinstance(law, Oscillating)
+    for one in extreme_speeds(scene, ["sleeve"])["sleeve"]:
+        omega, _ = passing(law, one.driver_rad, clockwise=one.rate * one.driver_rad < 0.0)
+        there = solve_driven(scene, np.array([one.driver_rad]), np.array([omega]), np.zeros(1))
+        speed = there.sliders["sleeve"].speed[0]
+        assert speed == pytest.approx(one.rate * law.frequency_rad_s, rel=1e-13)
     motion = solve(scene, np.linspace(0.0, law.period_s, 40_001))
     fastest = max(one.rate for one in extreme_speeds(scene, ["sleeve"])["sleeve"])
     speeds = motion.sliders["sleeve"].speed / law.frequency_rad_s
