@@ -6,10 +6,11 @@ import math
 from collections.abc import Mapping
 
 from models.errors import SceneError
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     LARGEST,
+    AcceleratingDriver,
     DriverTable,
     FromRestDriver,
     LinkTable,
@@ -154,4 +155,7 @@ def _law(driver: DriverTable) -> Law:
         )
     if isinstance(driver, FromRestDriver):
         return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
-    return ConstantSpeed(math.radians(driver.start_deg), driver.speed_rad_s)
+    start_rad = math.radians(driver.start_deg)
+    if isinstance(driver, AcceleratingDriver):
+        return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
+    return ConstantSpeed(start_rad, driver.speed_rad_s)

@@ -46,6 +46,10 @@ class Law(ABC):
     @abstractmethod
     def peak_speed_rad_s(self) -> float: ...
 
+    def fastest_until(self, time_s: float) -> float:
+        """The largest speed from the start to a time [rad/s]: the peak, where it stays."""
+        return self.peak_speed_rad_s
+
     @abstractmethod
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         """Angle [rad], angular velocity [rad/s], angular acceleration [rad/s^2], shape of time."""
@@ -156,6 +160,50 @@ class FromRest(_ToSpeed):
         share, rate, second = _ramp(time_s, self.rise_s)
         speed = self.speed_rad_s
         return self.start_rad + speed * share, speed * rate, speed * second
+
+
+@dataclass(frozen=True)
+class Accelerating(_ToSpeed):
+    """theta = start + speed t + acceleration t^2 / 2, at all times; the speed may change its sign.
+
+    A turn of a run takes as long as the driver's first whole turn away from its start, to either
+    side, and the peak speed is the largest within it. Later turns are quicker.
+    """
+
+    acceleration_rad_s2: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.acceleration_rad_s2 == 0.0:
+            raise ValueError('acceleration_rad_s2 is 0: use law = "constant"')
+
+    @property
+    def _first_turn(self) -> tuple[float, float]:
+        """How long it takes [s], and the largest speed within it [rad/s]."""
+        speed, rate = abs(self.speed_rad_s), abs(self.acceleration_rad_s2)
+        slows_down = self.speed_rad_s * self.acceleration_rad_s2 < 0.0
+        if slows_down and speed**2 >= 2.0 * math.tau * rate:
+            return 2.0 * math.tau / (speed + math.sqrt(speed**2 - 2.0 * math.tau * rate)), speed
+        end = math.sqrt(speed**2 + 2.0 * math.tau * rate)
+        if slows_down:  # it turns round within the turn, and passes its start
+            return (speed + end) / rate, end
+        return 2.0 * math.tau / (speed + end), end
+
+    @property
+    def period_s(self) -> float:
+        return self._first_turn[0]
+
+    @property
+    def peak_speed_rad_s(self) -> float:
+        return self._first_turn[1]
+
+    def fastest_until(self, time_s: float) -> float:
+        return max(self.peak_speed_rad_s, abs(float(self.at(np.array(time_s))[1])))
+
+    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        gained = self.acceleration_rad_s2 * time_s
+        theta = self.start_rad + (self.speed_rad_s + 0.5 * gained) * time_s
+        return theta, self.speed_rad_s + gained, np.full_like(theta, self.acceleration_rad_s2)
 
 
 @dataclass(frozen=True)

@@ -122,6 +122,14 @@ class FromRestDriver(Table):
     start_deg: Degrees = 0.0
 
 
+class AcceleratingDriver(Table):
+    link: Name
+    law: Literal["accelerating"]
+    speed_rad_s: RateNumber
+    acceleration_rad_s2: RateNumber
+    start_deg: Degrees = 0.0
+
+
 class SceneTable(Table):
     """A whole scene file; its driver table is checked by `DRIVERS` after its law is known."""
 
@@ -137,9 +145,10 @@ class SceneTable(Table):
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
 
 
-DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver
+DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver
 DRIVERS: dict[str, type[DriverTable]] = {
     "constant": ConstantDriver,
     "oscillating": OscillatingDriver,
     "from-rest": FromRestDriver,
+    "accelerating": AcceleratingDriver,
 }

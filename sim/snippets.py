@@ -42,7 +42,10 @@ def snippet(
 ) -> str:
     """The lines that set ``settings`` (those asked for), at a step of period over steps.
 
-    What is the engine's own default is left out. ``period_s`` is that of the driver [s]; the text
-    says how its numbers change with the speed. Raises EngineError where the engine has no writer.
+    What is the engine's own default is left out. In force is what the mechanism needs, on the
+    mechanism alone wherever the engine can, so that what else a user's model holds goes on as it
+    did with that step and integrator; the settings that measured runs had besides, to which that
+    does not apply, stand in a comment. ``period_s`` is that of the driver [s]; the text says how
+    its numbers change with the speed. Raises EngineError where the engine has no writer.
     """
     return snippet_writer(engine).write(settings, steps_per_turn, period_s, drive, head)

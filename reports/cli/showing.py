@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -31,6 +32,13 @@ class SolveRequest:
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
     ] = None
+    clockwise: Annotated[
+        bool, typer.Option("--clockwise", help="With --at-deg: the driver turning clockwise there.")
+    ] = False
+    along: Annotated[
+        Sequence[str],
+        typer.Option(metavar="POINT:DEG", help="Stroke of a point along a direction; repeatable."),
+    ] = ()
 
 
 @command

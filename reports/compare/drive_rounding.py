@@ -25,6 +25,7 @@ TWICE = 4.0
 
 def summed(law: Law, dt_s: float, steps: int) -> float:
     """The most that rounding makes of the driver's angle in so many steps of ``dt_s`` [rad]."""
-    farthest = law.offset_rad + steps * dt_s * law.peak_speed_rad_s
+    lasts_s = steps * dt_s
+    farthest = law.offset_rad + lasts_s * law.fastest_until(lasts_s)
     once = steps * sys.float_info.epsilon / 2.0 * farthest
     return once if isinstance(law, ConstantSpeed) else TWICE * once

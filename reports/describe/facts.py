@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from analytic.kinematics import reach
+from analytic.mechanism.cycle import Along, Output
 from analytic.mechanism.fourbar import FourBar
+from analytic.mechanism.speeds import ExtremeSpeed, extreme_speeds
 from analytic.mechanism.travel import Travel, travels
 from analytic.structure.mobility import Structure
 from models.errors import CrankcheckError, StructureError
+from models.laws import ConstantSpeed, FromRest, Law, Oscillating
 from models.scene import Scene
 
 FULL_TURN = math.tau - 1e-9
 
 
-def facts(scene: Scene, structure: Structure) -> list[str]:
+def facts(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> list[str]:
     """Grashof class and transmission angles of a four-bar; the driver's range where it cannot turn
-    fully; swing or stroke and time ratio of every output between two limit positions."""
+    fully; swing or stroke and time ratio of every link and slider, and of points along directions,
+    between their limit positions."""
     lines = []
     if [group.kind for group in structure.groups] == ["RRR"]:
         with contextlib.suppress(StructureError):  # two links that stand still, or turn as one
@@ -26,8 +31,55 @@ def facts(scene: Scene, structure: Structure) -> list[str]:
     spans = reach(scene)
     if sum(end - start for start, end in spans) < FULL_TURN:
         words = " and ".join(f"{_deg(a)} to {_deg(b)} deg" for a, b in spans)
-        return [*lines, f"{scene.driver.link} can stand at {words}"]
-    return lines + list(_travels(scene))
+        lines.append(f"{scene.driver.link} can stand at {words}")
+    return lines + list(_travels(scene, along))
+
+
+@dataclass(frozen=True)
+class SpeedFacts:
+    """Extreme speeds: a title, and what each output has, by the name that it is called by."""
+
+    title: str
+    rows: Mapping[str, str]
+
+
+def speed_facts(scene: Scene, along: Sequence[Along] = ()) -> SpeedFacts | None:
+    """The largest and smallest speeds of links, sliders and points along directions, at the
+    driver's angles at which they have no acceleration; None where a cycle of the mechanism has
+    none."""
+    try:
+        every = extreme_speeds(scene, _outputs(scene, along))
+    except CrankcheckError:
+        return None  # it does not turn fully, or passes a singular position
+    pace = _pace(scene.driver.law)
+    rows = {
+        _called(output): ", ".join(_speed(one, pace, _turns(scene, output)) for one in found)
+        for output, found in every.items()
+        if found and output != scene.driver.link
+    }
+    return SpeedFacts(f"extreme speeds{pace.words}, where the acceleration is 0", rows)
+
+
+@dataclass(frozen=True)
+class _Pace:
+    """What speeds by the driver's phase are multiplied with, how that is said, and their units."""
+
+    factor: float
+    words: str
+    units: tuple[str, str] = (" rad/s", " m/s")
+
+
+def _pace(law: Law) -> _Pace:
+    if isinstance(law, ConstantSpeed | FromRest):
+        return _Pace(law.speed_rad_s, f", driver at {law.speed_rad_s:g} rad/s")
+    if isinstance(law, Oscillating):
+        return _Pace(abs(law.frequency_rad_s), "")
+    return _Pace(1.0, " over that of a driver of constant speed", ("", " m"))
+
+
+def _speed(one: ExtremeSpeed, pace: _Pace, turns: bool) -> str:
+    unit = pace.units[0 if turns else 1]
+    return f"{one.rate * pace.factor:.6g}{unit} at {_deg(one.driver_rad)} deg"
 
 
 def _grashof(bar: FourBar) -> str:
@@ -40,19 +92,37 @@ def _grashof(bar: FourBar) -> str:
     )
 
 
-def _travels(scene: Scene) -> Iterator[str]:
-    """One line per output that goes back and forth once in a turn of the driver."""
+def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
+    """One line per output that goes back and forth."""
     try:
-        every = travels(scene, (*scene.links, *scene.sliders))
+        every = travels(scene, _outputs(scene, along))
     except CrankcheckError:
-        return  # the mechanism passes a singular position
+        return  # the driver does not turn fully, or the mechanism passes a singular position
     for output, travel in every.items():
-        if not isinstance(travel, Travel):
-            continue  # it turns fully, stands still, or turns back more than twice
-        size = f"{travel.stroke:.6g} m" if output in scene.sliders else f"{_deg(travel.stroke)} deg"
-        word = "stroke" if output in scene.sliders else "swing"
-        yield f"{output}: {word} {size}, time ratio {travel.time_ratio:.6g}"
+        if not isinstance(travel, Travel) or output == scene.driver.link:
+            continue  # it turns fully, stands still, or is told of as the driver
+        turns = _turns(scene, output)
+        size = f"{_deg(travel.stroke)} deg" if turns else f"{travel.stroke:.6g} m"
+        line = f"{_called(output)}: {'swing' if turns else 'stroke'} {size}"
+        line += f", time ratio {travel.time_ratio:.6g}"
+        yield line + (f", turns back {travel.limits} times" if travel.limits > 2 else "")
+
+
+def _outputs(scene: Scene, along: Sequence[Along]) -> list[Output]:
+    return [*scene.links, *scene.sliders, *along]
+
+
+def _turns(scene: Scene, output: Output) -> bool:
+    """Whether its place is an angle."""
+    return isinstance(output, str) and output in scene.links
+
+
+def _called(output: Output) -> str:
+    if isinstance(output, str):
+        return output
+    return f"{output.point} along {_deg(output.direction_rad)} deg"
 
 
 def _deg(angle_rad: float) -> str:
-    return f"{math.degrees(angle_rad):.6g}"
+    """To six digits; what is less than rounding of a turn is 0."""
+    return f"{round(math.degrees(angle_rad), 9) + 0.0:.6g}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Oscillating
 from models.scene import Scene
 
 
@@ -13,6 +13,11 @@ def describe_law(scene: Scene) -> str:
     law = scene.driver.law
     if isinstance(law, ConstantSpeed):
         return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
+    if isinstance(law, Accelerating):
+        return (
+            f"{law.speed_rad_s:g} rad/s and {law.acceleration_rad_s2:g} rad/s^2 from "
+            f"{math.degrees(law.start_rad):g} deg"
+        )
     if isinstance(law, FromRest):
         return f"from rest to {law.speed_rad_s:g} rad/s in {law.rise_s:g} s"
     if isinstance(law, Oscillating):

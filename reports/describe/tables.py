@@ -8,9 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 from rich.table import Table
 
+from analytic.mechanism.coriolis import coriolis
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
+from reports.describe.facts import SpeedFacts
 from reports.output.columns import plain_table
 
 WIDE = 100
@@ -22,8 +24,9 @@ def digits(value: float) -> str:
     return "-" if math.isnan(value) else f"{value + 0.0:#.8g}"
 
 
-def position_tables(motion: Motion) -> list[Table]:
-    """Links, points and sliders at one position."""
+def position_tables(scene: Scene, motion: Motion) -> list[Table]:
+    """Links, points and sliders at one position; the Coriolis component of those on a moving guide,
+    where there are any."""
     links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
     for name, link in motion.links.items():
         theta = float(link.theta[0])
@@ -38,12 +41,25 @@ def position_tables(motion: Motion) -> list[Table]:
         rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
     tables = [links, places, rates]
     if motion.sliders:
-        sliders = _table("slider", ("displacement m", "speed m/s", "acceleration m/s^2"))
+        turned = coriolis(scene, motion)
+        heads = ("displacement m", "speed m/s", "acceleration m/s^2")
+        sliders = _table("slider", (*heads, "Coriolis m/s^2") if turned else heads)
         for name, slider in motion.sliders.items():
             row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
+            row += [turned[name][0] if name in turned else 0.0] if turned else []
             sliders.add_row(name, *(digits(float(value)) for value in row))
         tables.append(sliders)
     return tables
+
+
+def speed_table(speeds: SpeedFacts) -> Table:
+    """Extreme speeds, a row for each output; long rows are folded within their column."""
+    table = plain_table()
+    table.add_column(no_wrap=True)
+    table.add_column(speeds.title, overflow="fold")
+    for name, words in speeds.rows.items():
+        table.add_row(name, words)
+    return table
 
 
 def certainty(motion: Motion) -> str:

@@ -10,7 +10,11 @@ from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED
 from sim.snippets import SnippetWriter
 
-SECTION = "Paste into the mujoco element: of sections that are there twice the later one adds."
+IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
+INSET = "  "
+"""Before an element within a comment: it is to be seen as one, and kept on its line."""
+LOOP_CLASS = "crankcheck-loop"
+"""The default class of the connects that close the mechanism, and of nothing else."""
 WIDTH = 96
 
 
@@ -19,59 +23,62 @@ def mujoco_snippet(
 ) -> str:
     """Sections to paste into ``<mujoco>``, which merges those that it has twice.
 
-    Only what differs from MuJoCo's defaults; see `sim.snippets.snippet`.
+    A class for the loop's own connects, and the step and integrator, which can only be the whole
+    model's. What else differs from MuJoCo's defaults would change the rest of a user's model and
+    stands in a comment; see `sim.snippets.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
     dt_s = period_s / steps_per_turn
-    lines = _comment([*head, SECTION])
-    lines += _option(complete, defaults, dt_s, drive)
-    lines += _equality(complete, defaults, dt_s)
-    lines += _comment(
-        [
-            _how_to_scale(complete, steps_per_turn, period_s),
-            *_absolute(complete),
-            *(_servo(complete) if drive == "servo" else _flywheel(complete)),
-            *_flags(complete, defaults),
-            *([f"Close the loops at {complete['close']}."] if complete["close"] else []),
-        ]
-    )
+    connect = _connect(complete, defaults, dt_s)
+    integrator = complete["servo_integrator" if drive == "servo" else "integrator"]
+    whole = {"timestep": repr(dt_s), "integrator": str(integrator)}
+    lines = [
+        *_comment([*head, _where(complete, paired=bool(connect))]),
+        *connect,
+        *_comment(
+            [
+                "Step and integrator are the whole model's: all that it holds is stepped so.",
+                _how_to_scale(complete, steps_per_turn, period_s),
+                *_absolute(complete),
+                *_coarse(defaults, dt_s),
+            ]
+        ),
+        f"<option{_attributes(whole)}/>",
+        *_comment(_measured(complete, defaults, drive)),
+    ]
     return "\n".join(lines) + "\n"
 
 
-def _option(complete: Settings, defaults: Settings, dt_s: float, drive: Drive) -> list[str]:
-    """The option element."""
-    servo = drive == "servo"
-    row = {"timestep": repr(dt_s)}
-    integrator = complete["servo_integrator" if servo else "integrator"]
-    if integrator != defaults["integrator"]:
-        row["integrator"] = str(integrator)
-    for name in ("solver", "iterations"):
-        if complete[name] != defaults[name]:
-            row[name] = str(complete[name])
-    tolerance = float(complete["tolerance"]) / (1.0 if servo else float(complete["flywheel_ratio"]))
-    if tolerance != defaults["tolerance"]:
-        row["tolerance"] = _short(tolerance)
-    flags = {
-        flag: str(complete[name])
-        for name, flag in (("islands", "island"), ("contact", "contact"))
-        if complete[name] != defaults[name]
+def _where(complete: Settings, *, paired: bool) -> str:
+    """Where to paste, and how the loop gets what is its own."""
+    text = "Paste at the end of the mujoco element."
+    if paired:
+        text += f' Write class="{LOOP_CLASS}" on each connect that closes the mechanism.'
+    if complete["close"]:
+        text += f" Close the loops at {complete['close']}."
+    return text
+
+
+def _connect(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
+    """The class of the connects, where they are not as MuJoCo's own; complete, as it would have
+    the rest from the model's own defaults."""
+    timeconst, damping = _timeconst(complete, dt_s), float(complete["solref_dampratio"])
+    impedance = tuple(complete[name] for name in IMPEDANCE)
+    own = (defaults["solref_timeconst_s"], defaults["solref_dampratio"])
+    if (timeconst, damping) == own and impedance == tuple(defaults[name] for name in IMPEDANCE):
+        return []
+    row = {
+        "solref": f"{timeconst!r} {damping:g}",
+        "solimp": " ".join([*(f"{value:g}" for value in impedance), "0.5", "2"]),
     }
-    if not flags:
-        return [f"<option{_attributes(row)}/>"]
-    return [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
-
-
-def _equality(complete: Settings, defaults: Settings, dt_s: float) -> list[str]:
-    """Defaults of the connects, where they are not MuJoCo's own."""
-    row = {}
-    solref = (_timeconst(complete, dt_s), float(complete["solref_dampratio"]))
-    if solref != (defaults["solref_timeconst_s"], defaults["solref_dampratio"]):
-        row["solref"] = f"{solref[0]!r} {solref[1]:g}"
-    impedance = ("solimp_dmin", "solimp_dmax", "solimp_width")
-    if any(complete[name] != defaults[name] for name in impedance):
-        row["solimp"] = " ".join([*(f"{complete[name]:g}" for name in impedance), "0.5", "2"])
-    return ["<default>", f"  <equality{_attributes(row)}/>", "</default>"] if row else []
+    return [
+        "<default>",
+        f'  <default class="{LOOP_CLASS}">',
+        f"    <equality{_attributes(row)}/>",
+        "  </default>",
+        "</default>",
+    ]
 
 
 def _timeconst(complete: Settings, dt_s: float) -> float:
@@ -101,6 +108,49 @@ def _absolute(complete: Settings) -> list[str]:
     ]
 
 
+def _coarse(defaults: Settings, dt_s: float) -> list[str]:
+    """What a step does to contacts that is not short beside their time constant."""
+    usual = float(defaults["solref_timeconst_s"])
+    if 2.0 * dt_s <= usual:
+        return []
+    return [
+        f"So long a step makes contacts softer: for their solref of {usual:g} s MuJoCo takes 2 "
+        "timestep."
+    ]
+
+
+def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
+    """What the measured runs had besides: settings for a model of nothing else, and the drive."""
+    driven = {"prescribed": _flywheel(complete), "servo": _servo(complete), "free": []}[drive]
+    return [*_alone(complete, defaults, drive), *driven]
+
+
+def _alone(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
+    """The option element for a model of nothing but the mechanism."""
+    row = {
+        name: str(complete[name])
+        for name in ("solver", "iterations")
+        if complete[name] != defaults[name]
+    }
+    ratio = float(complete["flywheel_ratio"]) if drive == "prescribed" else 1.0
+    tolerance = float(complete["tolerance"]) / ratio
+    if tolerance != defaults["tolerance"]:
+        row["tolerance"] = _short(tolerance)
+    flags = {
+        flag: str(complete[name])
+        for name, flag in (("islands", "island"), ("contact", "contact"))
+        if complete[name] != defaults[name]
+    }
+    if not row and not flags:
+        return []
+    lines = [f"<option{_attributes(row)}/>"]
+    if flags:
+        lines = [f"<option{_attributes(row)}>", f"  <flag{_attributes(flags)}/>", "</option>"]
+    title = "ONLY TO MEASURE AS WE DID, in a model with nothing else in it:"
+    harm = "Without contacts bodies fall through each other; with them the numbers are the same."
+    return [title, *(INSET + line for line in lines), *([harm] if "contact" in flags else [])]
+
+
 def _flywheel(complete: Settings) -> list[str]:
     """How the crank is driven, and what that asks of the solver."""
     ratio, tolerance = _short(complete["flywheel_ratio"]), _short(complete["tolerance"])
@@ -109,7 +159,7 @@ def _flywheel(complete: Settings) -> list[str]:
         "inertia), L the longest link: a flywheel that keeps the speed it starts with (qvel). The "
         "other hinges start with the speeds that go with it.",
         f"tolerance is {tolerance} / {ratio}: MuJoCo scales it by the inertia of the model, "
-        f"flywheel included. Without a flywheel write {tolerance}.",
+        "flywheel included, and would stop too early. A drive of your own needs neither.",
     ]
 
 
@@ -120,13 +170,6 @@ def _servo(complete: Settings) -> list[str]:
         f"{complete['servo_gain']:g} speed (sum over all bodies of mass L^2 + inertia), L the "
         "longest link."
     ]
-
-
-def _flags(complete: Settings, defaults: Settings) -> list[str]:
-    """When the flags are to be left out."""
-    if complete["contact"] == defaults["contact"]:
-        return []
-    return ["Leave out contact where bodies touch: without contacts it only saves time."]
 
 
 def _short(value: SettingValue) -> str:
@@ -143,10 +186,12 @@ def _comment(paragraphs: Sequence[str]) -> list[str]:
     lines: list[str] = []
     for paragraph in paragraphs:
         text = paragraph.replace("--", "- -").replace("--", "- -")
-        lines += textwrap.wrap(text, WIDTH - 5, break_on_hyphens=False)
-    return [("<!-- " if i == 0 else "     ") + line for i, line in enumerate(lines[:-1])] + [
-        ("<!-- " if len(lines) == 1 else "     ") + f"{lines[-1]} -->"
-    ]
+        whole = text.startswith(INSET)
+        lines += [text] if whole else textwrap.wrap(text, WIDTH - 5, break_on_hyphens=False)
+    if not lines:
+        return []
+    lines = [("<!-- " if i == 0 else "     ") + line for i, line in enumerate(lines)]
+    return [*lines[:-1], f"{lines[-1]} -->"]
 
 
 SNIPPET = SnippetWriter("xml", mujoco_snippet)

@@ -13,7 +13,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from analytic.check.constraints import Constraints
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene, Slider
 from tests.analytic import oracle
@@ -32,6 +32,9 @@ def law_at(law: Law, time_s: float) -> Jet:
     if isinstance(law, Oscillating):
         phase = t * mpf(law.frequency_rad_s) + mpf(law.phase_rad)
         return jets.sin(phase) * mpf(law.amplitude_rad) + mpf(law.centre_rad)
+    if isinstance(law, Accelerating):
+        gain = t * mpf(law.acceleration_rad_s2) / 2
+        return (gain + mpf(law.speed_rad_s)) * t + mpf(law.start_rad)
     assert isinstance(law, FromRest)
     speed, rise = mpf(law.speed_rad_s), mpf(law.rise_s)
     if time_s >= law.rise_s:

@@ -15,7 +15,7 @@ from analytic.check.moved_scene import moved
 from analytic.kinematics import solve
 from models.array import Array
 from models.files import load_scene, shipped
-from models.laws import ConstantSpeed, FromRest, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Driver, Point, Scene
 from tests.analytic.chain import Chain, Solved, coordinates
@@ -111,13 +111,16 @@ def test_error_stays_below_the_bound_a_million_lengths_away(name: str) -> None:
         ConstantSpeed(1e5, 1e-3),
         FromRest(0.4, 25.0, 0.3),
         FromRest(0.4, -3.0, 2.0),
+        Accelerating(0.4, 3.0, 9.0),
+        Accelerating(0.4, 0.0, -80.0),
+        Accelerating(-0.4, 30.0, -29.0),
         Oscillating(0.2, 3.0, 7.0, 0.5),
         Oscillating(-0.2, 0.01, 200.0, math.radians(36_000.0)),
     ],
     ids=str,
 )
 def test_error_stays_below_the_bound_under_every_law(
-    law: ConstantSpeed | FromRest | Oscillating,
+    law: Law,
 ) -> None:
     scene = load_scene("sixbar-watt")
     scene = replace(scene, driver=Driver(scene.driver.link, law))

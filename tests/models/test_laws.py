@@ -7,13 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from tests.worlds.other_way import faster_law, mirrored_law
 
 LAWS: list[Law] = [
     ConstantSpeed(0.3, -7.0),
     Oscillating(0.5, 0.4, 9.0, 0.2),
     FromRest(0.1, 12.0, 0.4),
+    Accelerating(0.3, -2.0, 9.0),
     SpeedChange(0.3, 6.0, -4.0, 0.25, 0.3),
 ]
 STEP = 1e-5
@@ -67,6 +68,23 @@ def test_change_of_speed_from_rest_is_a_start_from_rest() -> None:
 
 
 @pytest.mark.parametrize(
+    ("speed", "acceleration"), [(10.0, 5.0), (0.0, -8.0), (-6.0, 1.4), (10.0, -8.0), (-3.0, 20.0)]
+)
+def test_a_turn_of_a_steady_acceleration_is_the_first_away_from_the_start(
+    speed: float, acceleration: float
+) -> None:
+    law = Accelerating(0.3, speed, acceleration)
+    t = np.linspace(0.0, law.period_s, 1001)
+    theta, omega, _ = law.at(t)
+    assert abs(theta[-1] - 0.3) == pytest.approx(math.tau, rel=1e-13)
+    assert np.abs(theta[:-1] - 0.3).max() < math.tau
+    assert law.peak_speed_rad_s == pytest.approx(np.abs(omega).max(), rel=1e-13)
+    assert law.fastest_until(3 * law.period_s) == pytest.approx(
+        max(law.peak_speed_rad_s, abs(speed + 3 * acceleration * law.period_s)), rel=1e-13
+    )
+
+
+@pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda: ConstantSpeed(0.0, 0.0), "drives nothing"),
@@ -74,6 +92,8 @@ def test_change_of_speed_from_rest_is_a_start_from_rest() -> None:
         (lambda: Oscillating(0.0, 0.0, 1.0), "amplitude"),
         (lambda: Oscillating(0.0, 1.0, math.inf), "frequency_rad_s is inf"),
         (lambda: FromRest(0.0, 1.0, 0.0), "rise_s"),
+        (lambda: Accelerating(0.0, 1.0, 0.0), 'use law = "constant"'),
+        (lambda: Accelerating(0.0, math.inf, 1.0), "speed_rad_s is inf"),
         (lambda: SpeedChange(0.0, 1.0, 0.0, 0.1, 0.1), "after_rad_s"),
         (lambda: SpeedChange(0.0, 1.0, 2.0, 0.1, -0.1), "rise_s"),
     ],

@@ -10,7 +10,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene, parse_scene, shipped
-from models.laws import FromRest, Law, Oscillating
+from models.laws import Accelerating, FromRest, Law, Oscillating
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import ENGINES
@@ -58,7 +58,12 @@ GUIDES = {
     "offset lever, block with mass": OFFSET_LEVER.replace("mass_kg = 0.0", "mass_kg = 0.2"),
     "telescope": TELESCOPE,
 }
-LAWS = {"oscillating": Oscillating(1.6, 0.9, 10.0, 0.3), "from rest": FromRest(1.57, 10.0, 0.3)}
+LAWS = {
+    "oscillating": Oscillating(1.6, 0.9, 10.0, 0.3),
+    "from rest": FromRest(1.57, 10.0, 0.3),
+    "accelerating": Accelerating(1.57, 4.0, 6.0),
+    "turning round": Accelerating(1.57, 4.0, -6.0),
+}
 
 
 def ran(

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from sim.drive import chords, pushes, start_speed
 
 LAWS: list[Law] = [
     ConstantSpeed(0.4, -3.0),
     Oscillating(1.0, 0.7, 6.0, 0.5),
     FromRest(0.2, 9.0, 0.4),
+    Accelerating(0.2, 3.0, -1.3),
 ]
 DT_S, START_S, STEPS = 2e-3, 0.13, 2000
 

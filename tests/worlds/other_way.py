@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from analytic.structure.mobility import analyse
-from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.scene import Driver, Link, Point, Scene, Slider
 
 
@@ -16,6 +16,8 @@ def mirrored_law(law: Law) -> Law:
             return replace(law, centre_rad=-law.centre_rad, amplitude_rad=-law.amplitude_rad)
         case ConstantSpeed() | FromRest():
             return replace(law, start_rad=-law.start_rad, speed_rad_s=-law.speed_rad_s)
+        case Accelerating(start, speed, gain):
+            return Accelerating(-start, -speed, -gain)
         case SpeedChange(start, before, after):
             return replace(law, start_rad=-start, before_rad_s=-before, after_rad_s=-after)
     raise TypeError(law)
@@ -30,6 +32,8 @@ def faster_law(law: Law, factor: float) -> Law:
             return replace(law, speed_rad_s=law.speed_rad_s * factor)
         case FromRest():
             return FromRest(law.start_rad, law.speed_rad_s * factor, law.rise_s / factor)
+        case Accelerating(start, speed, gain):
+            return Accelerating(start, speed * factor, gain * factor**2)
         case SpeedChange(start, before, after, at, rise):
             return SpeedChange(start, before * factor, after * factor, at / factor, rise / factor)
     raise TypeError(law)

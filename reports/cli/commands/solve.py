@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,17 +12,18 @@ import pandas as pd
 from rich.console import Console
 
 from analytic.kinematics import solve, solve_driven
+from analytic.mechanism.cycle import Along
 from analytic.structure.mobility import Structure, analyse
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError, harmless, suggestion
 from models.files import load_scene
-from models.laws import ConstantSpeed, FromRest, Oscillating
 from models.motion import Motion
+from models.passing import passing
 from models.scene import Scene
 from reports.cli.showing import SolveRequest
-from reports.describe.facts import facts
+from reports.describe.facts import facts, speed_facts
 from reports.describe.frame import cleaned, motion_frame
 from reports.describe.law import describe_law
-from reports.describe.tables import certainty, motion_tables, position_tables
+from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
 from reports.output.provenance import crankcheck_version
 from reports.output.write import check_file, clean, write
 from reports.plan.singular import continued_note, singular_note
@@ -44,19 +46,28 @@ def run_solve(request: SolveRequest, console: Console) -> None:
             "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
             "motion; give one of them"
         )
+    if request.clockwise and request.at_deg is None:
+        raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
     if request.output is not None:
         check_file(request.output, "-o", ENDINGS)
     scene = load_scene(request.scene)
+    along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
-    motion = _over(scene, request) if request.at_deg is None else _at(scene, request.at_deg)
+    motion = (
+        _over(scene, request)
+        if request.at_deg is None
+        else _at(scene, request.at_deg, clockwise=request.clockwise)
+    )
     if request.output is not None:
         _write(request.output, scene, motion)
         told = harmless(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
         console.print(told, highlight=False, markup=False)
         return
-    console.print(heading(scene, structure), highlight=False, markup=False)
+    console.print(heading(scene, structure, along), highlight=False, markup=False)
+    if (speeds := speed_facts(scene, along)) and speeds.rows:
+        console.print(speed_table(speeds), "")
     if request.at_deg is not None:
-        for table in position_tables(cleaned(motion)):
+        for table in position_tables(scene, cleaned(motion)):
             console.print(table, "")
         console.print(certainty(motion), style="dim", highlight=False)
     else:
@@ -69,50 +80,47 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         console.print(note, style="yellow", highlight=False, markup=False)
 
 
-def heading(scene: Scene, structure: Structure) -> str:
+def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
     """What the mechanism is, and what the theory says of it as a whole."""
     groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
     lines = [
         f"{scene.name}: {scene.source}",
         f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
         f"groups in solving order: {groups}",
-        *facts(scene, structure),
+        *facts(scene, structure, along),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _at(scene: Scene, at_deg: float) -> Motion:
+def _along(scene: Scene, text: str) -> Along:
+    """A point and a direction, from text such as C:30."""
+    point, colon, degrees = text.partition(":")
+    try:
+        direction_deg = float(degrees)
+    except ValueError:
+        direction_deg = math.nan
+    if not (colon and abs(direction_deg) <= MOST_DEG):
+        raise CrankcheckError(
+            f"--along {text}: write a point and a direction in degrees, such as C:30"
+        )
+    points = dict.fromkeys([*scene.pins, *(slider.point for slider in scene.sliders.values())])
+    if point not in points:
+        raise CrankcheckError(f"--along {text}: {suggestion(point, points, 'the points are')}")
+    return Along(point, math.radians(direction_deg))
+
+
+def _at(scene: Scene, at_deg: float, *, clockwise: bool = False) -> Motion:
     """The mechanism with its driver at an angle, moving as its law moves it there."""
     if not abs(at_deg) <= MOST_DEG:
         raise CrankcheckError(
             f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
         )
     theta = math.radians(at_deg)
-    omega, alpha = _rates(scene, theta, at_deg)
+    try:
+        omega, alpha = passing(scene.driver.law, theta, clockwise=clockwise)
+    except ValueError as error:
+        raise CrankcheckError(f"--at-deg {at_deg:g}: the driver of {scene.name} {error}") from None
     return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
-
-
-def _rates(scene: Scene, theta: float, at_deg: float) -> tuple[float, float]:
-    """Speed and acceleration of the driver when its law takes it through an angle.
-
-    An oscillating law is taken on its way of increasing angle; a start from rest after its rise.
-    """
-    law = scene.driver.law
-    if isinstance(law, Oscillating):
-        swing = theta - law.centre_rad
-        rest = law.amplitude_rad**2 - swing**2
-        # Rounding of the degrees must not put the end of the swing out of the law's range.
-        if rest < -1e-12 * law.amplitude_rad**2:
-            ends = sorted(math.degrees(law.centre_rad + s * law.amplitude_rad) for s in (-1.0, 1.0))
-            raise CrankcheckError(
-                f"--at-deg {at_deg:g}: the driver of {scene.name} swings from {ends[0]:.6g} to "
-                f"{ends[1]:.6g} deg; give an angle between"
-            )
-        frequency = abs(law.frequency_rad_s)
-        return frequency * math.sqrt(max(rest, 0.0)), -(frequency**2) * swing
-    if isinstance(law, ConstantSpeed | FromRest):
-        return law.speed_rad_s, 0.0
-    raise CrankcheckError(f"--at-deg: {scene.name} has a law without a speed at an angle")
 
 
 def _over(scene: Scene, request: SolveRequest) -> Motion:

@@ -13,7 +13,8 @@ from analytic.mechanism.fourbar import FourBar
 from analytic.mechanism.travel import Travel, travel, travels
 from models.errors import CrankcheckError, ReachError, StructureError
 from models.files import load_scene, parse_scene
-from models.scene import Scene
+from models.laws import ConstantSpeed
+from models.scene import Driver, Scene
 from tests.analytic.test_reach import fourbar
 
 STILL = """
@@ -235,8 +236,10 @@ def test_output_without_limits_is_refused() -> None:
         CrankcheckError, match="no link or slider 'ram'; it has crank, lever, rod, B, F"
     ):
         travel(load_scene("shaper"), "ram")
+    scene = load_scene("fourbar-double-rocker")
+    turning = replace(scene, driver=Driver(scene.driver.link, ConstantSpeed(0.0, 1.0)))
     with pytest.raises(ReachError, match="driver can stand at"):
-        travel(load_scene("fourbar-double-rocker"), "rocker")
+        travel(turning, "rocker")
 
 
 def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -248,7 +251,7 @@ def test_travels_of_many_outputs_take_the_work_of_one(monkeypatch: pytest.Monkey
         asked.append(1)
         return solve_driven(*args, **options)  # type: ignore[arg-type]  # passed on as they are
 
-    monkeypatch.setattr("analytic.mechanism.travel.solve_driven", counting)
+    monkeypatch.setattr("analytic.mechanism.cycle.solve_driven", counting)
     found = travels(scene, outputs)
     together = len(asked)
     for output in outputs:

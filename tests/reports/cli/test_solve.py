@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -156,6 +157,64 @@ def test_an_oscillating_driver_is_drawn_back_to_its_centre(crank: Crank) -> None
     assert float(lever[4]) == pytest.approx(-100.0 * math.radians(20.0), rel=1e-7)
 
 
+def test_a_swinging_driver_is_taken_on_its_way_back_when_told(crank: Crank) -> None:
+    result = crank("solve", "tangent", "--at-deg", "20", "--clockwise")
+    (lever,) = [line.split() for line in result.output.splitlines() if line.startswith("lever")]
+    speed = 10.0 * math.sqrt(math.radians(40.0) ** 2 - math.radians(20.0) ** 2)
+    assert float(lever[3]) == pytest.approx(-speed, rel=1e-7)
+
+
+def links(output: str) -> dict[str, list[str]]:
+    """The rows of the table of links, by name."""
+    rows = (line.split() for line in output.split("link ")[-1].split("point")[0].splitlines())
+    return {row[0]: row for row in rows if len(row) == 5 and row[0] != "x"}
+
+
+def test_a_crank_may_be_asked_for_turning_clockwise(crank: Crank) -> None:
+    """Velocities are turned round, accelerations are not."""
+    forth = links(crank("solve", "fourbar-lecture-1", "--at-deg", "30").output)
+    back = links(crank("solve", "fourbar-lecture-1", "--at-deg", "30", "--clockwise").output)
+    assert list(forth) == list(back) == ["crank", "coupler", "rocker"]
+    for one, other in zip(forth.values(), back.values(), strict=True):
+        assert float(other[3]) == -float(one[3])
+        assert (other[2], other[4]) == (one[2], one[4])
+
+
+def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = tmp_path / "faster.toml"
+    text = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+    law = 'law = "accelerating"\nspeed_rad_s = 10.0\nacceleration_rad_s2 = 5.0'
+    path.write_text(text.replace("speed_rad_s = 10.0", law), encoding="utf-8")
+    output = crank("solve", str(path), "--at-deg", "180").output
+    assert "driver crank, 10 rad/s and 5 rad/s^2 from 90 deg" in output
+    row = links(output)["crank"]
+    assert float(row[3]) == pytest.approx(math.sqrt(100.0 + 2 * 5.0 * math.pi / 2), rel=1e-7)
+    assert float(row[4]) == 5.0
+    result = crank("solve", str(path), "--at-deg", "80")
+    assert result.exit_code == 2
+    assert "never comes there; it comes to the same position at 440 deg" in result.stderr
+
+
+def test_stroke_time_ratio_and_extreme_speeds_are_shown(crank: Crank) -> None:
+    output = crank("solve", "slotted-lever", "--along", "E:0").output
+    assert "lever: swing 38.9424 deg, time ratio 1.55215" in output
+    assert re.search(r"E along 0 deg: stroke 0\.\d+ m, time ratio 1\.55215", output)
+    assert re.search(r"lever +2\.5 rad/s at 90 deg, -5 rad/s at 270 deg", output)
+    assert re.search(r"E along 0 deg +-?\d.* m/s at \d", output)
+
+
+def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides(crank: Crank) -> None:
+    output = crank("solve", "shaper", "--at-deg", "30").output
+    lever = float(links(output)["lever"][3])
+    sliders = output.split("Coriolis")[-1].splitlines()
+    found = {row[0]: row for row in map(str.split, sliders) if len(row) == 5}
+    assert float(found["F"][4]) == 0.0
+    assert float(found["B"][4]) == pytest.approx(2.0 * lever * float(found["B"][2]), rel=1e-7)
+    assert "Coriolis" not in crank("solve", "slider-crank-central", "--at-deg", "30").output
+
+
 def test_two_links_that_stand_still_are_solved_and_called_nothing(
     crank: Crank, tmp_path: Path
 ) -> None:
@@ -178,6 +237,10 @@ MISTAKES = {
         ["solve", "tangent", "--at-deg", "41"],
         ["--at-deg 41", "swings from -40 to 40 deg"],
     ),
+    "along nothing": (["solve", "tangent", "--along", "P"], ["--along P", "such as C:30"]),
+    "along no number": (["solve", "tangent", "--along", "P:x"], ["--along P:x", "in degrees"]),
+    "along of no point": (["solve", "shaper", "--along", "Q:0"], ["--along Q:0", "A, C, B, E, F"]),
+    "clockwise motion": (["solve", "tangent", "--clockwise"], ["--clockwise", "give --at-deg"]),
     "angle of nan": (["solve", "tangent", "--at-deg", "nan"], ["--at-deg nan"]),
     "angle of no digits": (["solve", "tangent", "--at-deg", "1e300"], ["1e+300", "up to 1e+06"]),
     "angle and turns": (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,6 +12,7 @@ import pytest
 
 from models.errors import EngineError, ReachError
 from models.files import load_scene
+from models.laws import Accelerating
 from models.scene import Scene
 from reports.judge import cell as cells
 from reports.judge.cell import Cell, check, unfinished
@@ -34,6 +36,19 @@ def test_a_tuned_fourbar_shrinks_with_second_order(fourbar: Scene, engine: str) 
     assert seen.order == pytest.approx(2.0, abs=0.3)
     assert seen.unit == "rad"
     assert len(seen.error) == 3
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+@pytest.mark.parametrize(("speed", "acceleration"), [(10.0, 5.0), (0.0, -20.0), (10.0, -20.0)])
+def test_a_crank_of_steady_acceleration_is_within_tolerance(
+    fourbar: Scene, engine: str, speed: float, acceleration: float
+) -> None:
+    """From rest, and where it turns round on its way, too."""
+    law = Accelerating(math.pi / 2, speed, acceleration)
+    found = check(cell(replace(fourbar, driver=replace(fourbar.driver, law=law)), engine))
+    assert found.verdict == "within", found.failures
+    assert found.convergence is not None
+    assert found.convergence.trend == "shrinks"
 
 
 def test_the_rounding_of_a_long_run_is_not_taken_for_a_floor(fourbar: Scene) -> None:

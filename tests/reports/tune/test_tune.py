@@ -22,6 +22,7 @@ from sim.mujoco.knobs import EVALUATIONS
 from sim.tuning import Knob, search_space
 from tests.worlds.command import PYTHON, script
 from tests.worlds.programs import Start
+from tests.worlds.workshop import mujoco_disturbance
 
 SMALL = TuneRequest(("fourbar-lecture-1",), "mujoco", 1e-5, budget=6, seed=3, timing=False)
 Tell = Callable[[TuneRequest], tuple[int, str]]
@@ -96,6 +97,9 @@ def test_the_snippet_has_the_settings_that_were_found(whole: tuple[int, str]) ->
     assert f'integrator="{line(text, "integrator")[1]}"' in text
     ratio = line(text, "solref_dampratio")[1]
     assert f' {ratio}" solimp=' in text
+    pasted = text[text.index("<!--") : text.rindex("-->") + 3]
+    assert "makes contacts softer" in pasted  # and so a box does not lie where it lay
+    assert mujoco_disturbance(pasted).moving < 1e-9
 
 
 def test_a_search_in_two_halves_finds_what_a_whole_one_does(

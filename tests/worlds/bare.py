@@ -8,6 +8,8 @@ found follow from the law of cosines.
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -18,6 +20,8 @@ from models.array import Array
 CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
 START = math.pi / 2
 TURNS = 2
+Fourbar = tuple[tuple[pymunk.Body, ...], tuple[pymunk.Constraint, ...]]
+"""Crank, coupler and rocker, and their joints."""
 
 
 def angles(crank: Array) -> tuple[Array, Array]:
@@ -40,13 +44,9 @@ def rates(crank: float, speed: float) -> tuple[float, float]:
     )
 
 
-MJCF = """
-<mujoco>
-  <compiler angle="radian" inertiafromgeom="false"/>
-  <!-- paste here -->
-  <worldbody>
+BODIES = """
     <body euler="0 0 {crank!r}">
-      <joint axis="0 0 1" armature="{flywheel!r}"/>
+      <joint name="A" axis="0 0 1" armature="{flywheel!r}"/>
       <inertial pos="0.05 0 0" mass="0.1" diaginertia="8.333333333333e-5 8.333333333333e-5 8.333333333333e-5"/>
       <body pos="0.1 0 0" euler="0 0 {coupler_in_crank!r}">
         <joint axis="0 0 1"/>
@@ -59,43 +59,86 @@ MJCF = """
       <inertial pos="0.1 0 0" mass="0.2" diaginertia="6.666666666667e-4 6.666666666667e-4 6.666666666667e-4"/>
       <site name="C of the rocker" pos="0.2 0 0"/>
     </body>
-  </worldbody>
-  <equality>
-    <connect site1="C of the coupler" site2="C of the rocker"/>
-  </equality>
-</mujoco>
 """  # noqa: E501
+CONNECT = '<connect site1="C of the coupler" site2="C of the rocker"/>'
+MJCF = f"""
+<mujoco>
+  <compiler angle="radian" inertiafromgeom="false"/>
+  <worldbody>{BODIES}</worldbody>
+  <equality>{CONNECT}</equality>
+</mujoco>
+"""
+CLASS = 'class="crankcheck-loop"'
+
+
+def measured_as_we_did(snippet: str) -> str:
+    """The snippet with the settings that stand in its comments in force, too."""
+    elements = re.findall(r"^ {5,}(</?(?:option|flag).*?>)(?: -->)?$", snippet, re.MULTILINE)
+    return re.sub(r"^#   (?=space\.)", "", snippet, flags=re.MULTILINE) + "\n".join(elements)
+
+
+def fourbar_bodies(text: str, flywheel: float) -> str:
+    """MJCF text with the four-bar's places filled in."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
+    return text.format(
+        crank=START, coupler_in_crank=coupler - START, rocker=rocker, flywheel=flywheel
+    )
+
+
+def pasted(text: str, snippet: str) -> str:
+    """MJCF text with the snippet done to it: at its end, and on the connect of the loop."""
+    if CLASS in snippet:
+        text = text.replace(CONNECT, CONNECT.replace("<connect", f"<connect {CLASS}"))
+    return text.replace("</mujoco>", f"{snippet}</mujoco>")
 
 
 def mujoco_error(snippet: str, steps: int, speed: float) -> float:
     """The largest error of coupler and rocker [rad] over two turns of the MJCF with a snippet."""
-    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
     # The snippet's rule: 1e12 times the sum of mass L^2 + inertia, L = 0.3 m.
     flywheel = 1e12 * (0.55 * 0.3**2 + (0.1**3 + 0.25**3 + 0.2**3) / 12)
-    text = MJCF.format(
-        crank=START, coupler_in_crank=coupler - START, rocker=rocker, flywheel=flywheel
-    )
-    model = mujoco.MjModel.from_xml_string(text.replace("<!-- paste here -->", snippet))
+    text = fourbar_bodies(MJCF, flywheel)
+    model = mujoco.MjModel.from_xml_string(pasted(text, measured_as_we_did(snippet)))
+    return _turned(model, steps, speed, lambda turned: START + speed * _times(model, len(turned)))
+
+
+def mujoco_error_of_geometry(snippet: str, steps: int, speed: float) -> float:
+    """As `mujoco_error`, at the angle that the crank has, driven by a motor of a user's own, with
+    nothing in force but what is."""
+    motor = f'<actuator><velocity joint="A" kv="{0.5 / speed}"/></actuator></mujoco>'
+    text = fourbar_bodies(MJCF, 0.0).replace("</mujoco>", motor)
+    model = mujoco.MjModel.from_xml_string(pasted(text, snippet))
+    return _turned(model, steps, speed, lambda turned: START + turned[:, 0])
+
+
+def _times(model: mujoco.MjModel, samples: int) -> Array:
+    times: Array = model.opt.timestep * np.arange(samples)
+    return times
+
+
+def _turned(
+    model: mujoco.MjModel, steps: int, speed: float, crank: Callable[[Array], Array]
+) -> float:
+    """The error over two turns, where the true angle of the crank follows from the angles."""
+    coupler, rocker = (float(each[0]) for each in angles(np.array([START])))
     start = mujoco.MjData(model)
     of_coupler, of_rocker = rates(START, speed)
     start.qvel[:] = speed, of_coupler - speed, of_rocker
+    start.ctrl[:] = speed
     turned = np.empty((TURNS * steps + 1, 3))
     for row in turned:
         row[:] = start.qpos
         mujoco.mj_step(model, start)
-    crank = START + speed * model.opt.timestep * np.arange(len(turned))
-    exact = angles(crank)
+    exact = angles(crank(turned))
     found = (START + turned[:, 0] + coupler - START + turned[:, 1], rocker + turned[:, 2])
     return worst(found, exact)
 
 
-def pymunk_error(snippet: str, steps: int, speed: float) -> float:
-    """The largest error of coupler and rocker [rad] over two turns of a space with a snippet."""
+def pymunk_fourbar(space: pymunk.Space, speed: float) -> Fourbar:
+    """The four-bar added to a space."""
     at_start = tuple(float(each[0]) for each in angles(np.array([START])))
     b = CRANK * math.cos(START), CRANK * math.sin(START)
     c = GROUND + ROCKER * math.cos(at_start[1]), ROCKER * math.sin(at_start[1])
     of_coupler, of_rocker = rates(START, speed)
-    space = pymunk.Space()
     crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     crank.angle, crank.angular_velocity = START, speed
     coupler = pymunk.Body(0.25, 0.25 * 0.25**2 / 12)
@@ -108,17 +151,22 @@ def pymunk_error(snippet: str, steps: int, speed: float) -> float:
     of_b = -speed * b[1], speed * b[0]
     rocker.velocity = of_c[0] / 2, of_c[1] / 2
     coupler.velocity = (of_b[0] + of_c[0]) / 2, (of_b[1] + of_c[1]) / 2
-    space.add(
-        crank,
-        coupler,
-        rocker,
+    joints = (
         pymunk.PivotJoint(crank, coupler, (CRANK, 0.0), (-COUPLER / 2, 0.0)),
         pymunk.PivotJoint(coupler, rocker, (COUPLER / 2, 0.0), (ROCKER / 2, 0.0)),
         pymunk.PivotJoint(space.static_body, rocker, (GROUND, 0.0), (-ROCKER / 2, 0.0)),
     )
-    names: dict[str, object] = {"space": space}
+    space.add(crank, coupler, rocker, *joints)
+    return (crank, coupler, rocker), joints
+
+
+def pymunk_error(snippet: str, steps: int, speed: float) -> float:
+    """The largest error of coupler and rocker [rad] over two turns of a space with a snippet."""
+    space = pymunk.Space()
+    (crank, coupler, rocker), joints = pymunk_fourbar(space, speed)
+    names: dict[str, object] = {"space": space, "joints": joints}
     turned = [(crank.angle, coupler.angle, rocker.angle)]
-    run = compile(snippet, "snippet", "exec")
+    run = compile(measured_as_we_did(snippet), "snippet", "exec")
     for _ in range(TURNS * steps):
         exec(run, names)
         turned.append((crank.angle, coupler.angle, rocker.angle))
@@ -132,3 +180,10 @@ def pymunk_error(snippet: str, steps: int, speed: float) -> float:
 def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
     """The largest difference."""
     return max(float(np.abs(a - b).max()) for a, b in zip(found, exact, strict=True))
+
+
+BARE: dict[str, Callable[[str, int, float], float]] = {
+    "mujoco": mujoco_error,
+    "pymunk": pymunk_error,
+}
+"""By engine, the error [rad] with a snippet, at steps a turn and a speed of the crank [rad/s]."""

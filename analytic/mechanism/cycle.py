@@ -1,0 +1,225 @@
+"""One cycle of a mechanism: what repeats, over the driver's phase, and where a rate of it is zero.
+
+The phase grows evenly in time. Of a driver that turns it is its angle, and a cycle is a turn (two,
+where change points let positions repeat after two only); of one that swings it is the argument of
+the sine, and a cycle is a swing to and fro.
+
+Zeros are looked for at `SCAN` phases a turn, closer where a rate comes nearer to zero than beside
+it, as it may pass zero and return between two looks; each is then halved in upon, on the closed
+form, until its floats have no middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.kinematics import repeats_after, solve_driven
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import Oscillating
+from models.motion import Motion, PointMotion
+from models.scene import Scene
+
+SCAN = 720
+"""Looks at a turn."""
+ZOOMS = 5
+FINER = 65
+"""Looks at the neighbourhood of every smallest rate in each zoom."""
+HALVINGS = 60
+DEPTH = 1e-9
+"""What a rate falls by, over the largest, or is below zero by, if it is more than rounding."""
+
+
+@dataclass(frozen=True)
+class Along:
+    """The place of a point along a direction of the ground, counter-clockwise from x [rad]."""
+
+    point: str
+    direction_rad: float
+
+
+Output = str | Along
+"""A link or a slider by name, or a point along a direction."""
+Series = tuple[Array, Array, Array]
+"""A place ([rad] or [m]) and its rates by the phase."""
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A cycle of ``period_rad`` of the phase; ``swing`` is the law of a driver that swings."""
+
+    scene: Scene
+    period_rad: float
+    swing: Oscillating | None
+
+    @staticmethod
+    def of(scene: Scene) -> Cycle:
+        """That of a scene's driver; one that is no swing is taken to turn at constant speed."""
+        law = scene.driver.law
+        if isinstance(law, Oscillating):
+            return Cycle(scene, math.tau, Oscillating(law.centre_rad, abs(law.amplitude_rad), 1.0))
+        return Cycle(scene, repeats_after(scene), None)
+
+    @property
+    def grid(self) -> Array:
+        """The phases looked at, half a look away from 0."""
+        count = SCAN * round(self.period_rad / math.tau)
+        return (np.arange(count, dtype=np.float64) + 0.5) * (math.tau / SCAN)
+
+    def driver(self, phase: Array) -> Array:
+        """The driver's angles [rad]."""
+        return phase if self.swing is None else self.swing.at(phase)[0]
+
+    def at(self, outputs: Sequence[Output], phase: Array, *, bound: bool = False) -> Motion:
+        """The motion of the outputs at phases that grow by one a second."""
+        theta, one, zero = phase, np.ones_like(phase), np.zeros_like(phase)
+        if self.swing is not None:
+            theta, one, zero = self.swing.at(phase)
+        named = [output for output in outputs if isinstance(output, str)]
+        links = [name for name in named if name in self.scene.links]
+        sliders = [name for name in named if name not in self.scene.links]
+        points = [output.point for output in outputs if isinstance(output, Along)]
+        return solve_driven(
+            self.scene,
+            theta,
+            one,
+            zero,
+            links=links,
+            points=tuple(dict.fromkeys(points)),
+            sliders=sliders,
+            bound=bound,
+        )
+
+    def refuse_singular(self, phase: Array, motion: Motion) -> None:
+        """Refuse a cycle in which a dyad all but loses its position, change points apart: an output
+        may run to infinity there. Raises CrankcheckError."""
+        passed = {crossing.dyad for crossing in motion.crossings}
+        for key, sine in motion.conditioning.items():
+            if key in passed:
+                continue
+            worst = int(np.argmin(sine))
+            if sine[worst] < math.tau / SCAN:
+                angle = math.degrees(self.driver(phase)[worst])
+                raise CrankcheckError(
+                    f"{self.scene.name}: the dyad of {key} passes a singular position near "
+                    f"{angle:.4g} deg, where its travel has no limits"
+                )
+
+
+def series(motion: Motion, output: Output) -> Series:
+    """The place of an output, its rate and the rate of that."""
+    if isinstance(output, Along):
+        along = np.array([math.cos(output.direction_rad), math.sin(output.direction_rad)])
+        point = motion.points[output.point]
+        return point.position @ along, point.velocity @ along, point.acceleration @ along
+    if output in motion.links:
+        link = motion.links[output]
+        return link.theta, link.omega, link.alpha
+    slider = motion.sliders[output]
+    return slider.displacement, slider.speed, slider.acceleration
+
+
+def zeros(cycle: Cycle, outputs: Sequence[Output], order: int) -> dict[Output, Array]:
+    """By output, the phases of a cycle at which its rate (``order`` 1) or the rate of that (2)
+    changes its sign, in order, to rounding.
+
+    The work is that of one output: all are refined together. None where it is zero all the time.
+
+    Raises
+    ------
+    ReachError
+        The driver does not turn fully, or swing as far as its law has it.
+    CrankcheckError
+        A cycle that passes a singular position, change points apart; an unknown point or slider.
+    """
+    grid = cycle.grid
+    looked = cycle.at(outputs, grid, bound=True)
+    cycle.refuse_singular(grid, looked)
+    moving = [output for output in dict.fromkeys(outputs) if _moves(looked, output, order)]
+    brackets: dict[Output, tuple[Array, Array, Array]] = {}
+    for output, (phase, rate) in _closer(cycle, moving, grid, looked, order).items():
+        sign = np.sign(rate)
+        turns = np.flatnonzero(sign != np.roll(sign, -1))
+        after = np.append(phase[1:], phase[0] + cycle.period_rad)
+        brackets[output] = phase[turns], after[turns], sign[turns]
+    refined = _refined(cycle, brackets, order)
+    return {output: refined.get(output, np.zeros(0)) for output in outputs}
+
+
+def _moves(motion: Motion, output: Output, order: int) -> bool:
+    """Whether a rate is anything but rounding somewhere."""
+    assert motion.bound is not None
+    if isinstance(output, Along):
+        bounds: PointMotion = motion.bound.points[output.point]
+        bound = (bounds.position, bounds.velocity, bounds.acceleration)[order]
+    else:
+        every = {**motion.bound.sliders, **motion.bound.links}
+        bound = tuple(vars(every[output]).values())[order]
+    return bool(np.any(np.abs(series(motion, output)[order]) > bound))
+
+
+def _closer(
+    cycle: Cycle, outputs: Sequence[Output], grid: Array, looked: Motion, order: int
+) -> dict[Output, tuple[Array, Array]]:
+    """By output, the phases of the grid and those where its rate went through zero and back between
+    them, in order, and the rates there.
+
+    A rate that is nearest to zero at one sample is looked at ever closer on both sides of it, as
+    far as where it is smallest.
+    """
+    rates = {output: series(looked, output)[order] for output in outputs}
+    valleys = [(output, k) for output, rate in rates.items() for k in _valleys(rate)]
+    if not valleys:
+        return {output: (grid, rate) for output, rate in rates.items()}
+    places = np.array([grid[k] for _, k in valleys])
+    signs = np.array([np.sign(rates[output][k]) for output, k in valleys])
+    width = math.tau / SCAN
+    for _ in range(ZOOMS):
+        near = places[:, None] + np.linspace(-width, width, FINER)
+        motion = cycle.at(list(rates), near.ravel())
+        every = {output: series(motion, output)[order].reshape(near.shape) for output in rates}
+        signed = np.array([every[o][i] for i, (o, _) in enumerate(valleys)]) * signs[:, None]
+        best = np.arange(len(near)), np.argmin(signed, axis=1)
+        places, least = near[best], signed[best]
+        width *= 2.0 / (FINER - 1)
+    found = {}
+    for output, rate in rates.items():
+        back = -DEPTH * np.max(np.abs(rate))
+        more = [i for i, (name, _) in enumerate(valleys) if name == output and least[i] < back]
+        phase = np.append(grid, places[more])
+        inside = np.argsort(phase)
+        found[output] = phase[inside], np.append(rate, signs[more] * least[more])[inside]
+    return found
+
+
+def _valleys(rate: Array) -> NDArray[np.intp]:
+    """The samples at which a rate that repeats is nearer to zero than beside them, of one sign."""
+    before, after, size = np.roll(rate, 1), np.roll(rate, -1), np.abs(rate)
+    same = (np.sign(before) == np.sign(rate)) & (np.sign(after) == np.sign(rate))
+    least = (size <= np.abs(before)) & (size <= np.abs(after))
+    depth = np.maximum(np.abs(before), np.abs(after)) - size
+    return np.flatnonzero(same & least & (depth > DEPTH * np.max(size)))
+
+
+def _refined(
+    cycle: Cycle, between: Mapping[Output, tuple[Array, Array, Array]], order: int
+) -> dict[Output, Array]:
+    """The zeros by bisection: ``between`` has, by output, the looks just before and after them, and
+    the signs of the rate before."""
+    owner = [output for output, (low, _, _) in between.items() for _ in low]
+    if not owner:
+        return {}
+    low, high, signs = (np.concatenate(parts) for parts in zip(*between.values(), strict=True))
+    for _ in range(HALVINGS):
+        middle: Array = 0.5 * (low + high)
+        motion = cycle.at(list(between), middle)
+        rates = {output: series(motion, output)[order] for output in between}
+        same = np.array([np.sign(rates[output][k]) for k, output in enumerate(owner)]) == signs
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    mine = {output: np.array([each == output for each in owner]) for output in between}
+    return {output: np.sort(low[rows] % cycle.period_rad) for output, rows in mine.items()}

@@ -1,0 +1,119 @@
+"""Snippets leave alone what they are pasted beside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import get_args
+
+import pytest
+
+from sim.engine import Drive, Settings, SettingValue
+from sim.registry import engine, offering
+from sim.settings import resolved
+from sim.snippets import snippet
+from sim.tuning import search_space
+from tests.worlds.bare import BARE, measured_as_we_did
+from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance
+
+SAME = 1e-9
+"""m, rad: what a solver leaves that stops at 1e-12."""
+COARSEST = 1.0
+"""rad, above which no target is."""
+STEPS = (90.0, 360.0)
+ENGINES = offering("snippet")
+OTHER: dict[str, SettingValue] = {
+    "integrator": "RK4",
+    "solver": "CG",
+    "islands": "disable",
+    "contact": "disable",
+    "close": "C",
+    "servo_integrator": "implicit",
+    "lines": "exact",
+}
+"""Other words than the engines' defaults; for numbers half of them and one more."""
+
+
+def other(name: str, value: SettingValue) -> SettingValue:
+    return OTHER[name] if isinstance(value, str) else type(value)(value / 2 + 1)
+
+
+def settings_of(name: str) -> Iterator[Settings]:
+    """Every profile; every setting of another value; every knob of a search turned as far as it
+    goes, from all starts."""
+    for profile in engine(name).profiles.values():
+        yield resolved(profile, None)
+    shipped = resolved(engine(name).profiles["as-shipped"], None)
+    for setting, value in shipped.items():
+        yield shipped | {setting: other(setting, value)}
+    tuned = resolved(engine(name).profiles["tuned"], None)
+    space = search_space(name).around(tuned)
+    for start in space.starts:
+        yield space.settings(tuned, start)
+        for knob in space.knobs:
+            for value in (knob.values[0], knob.values[-1]) if knob.ordered else knob.values:
+                yield space.settings(tuned, {**start, knob.name: value})
+
+
+def test_every_engine_that_writes_snippets_is_looked_at() -> None:
+    assert set(DISTURBANCE) == set(ENGINES)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+@pytest.mark.parametrize("name", ENGINES)
+def test_box_and_free_body_do_beside_a_snippet_what_they_did(name: str, steps: float) -> None:
+    texts = {
+        snippet(name, settings, steps, drive=drive)
+        for settings in settings_of(name)
+        for drive in get_args(Drive)
+    }
+    assert len(texts) > 20
+    for text in sorted(texts):
+        disturbed = DISTURBANCE[name](text).worst
+        # Settings with which the mechanism alone comes apart are what nothing advises.
+        assert disturbed < SAME or BARE[name](text, round(steps), 10.0) > COARSEST, text
+
+
+HARMS = {
+    "contacts off": (
+        "mujoco",
+        {},
+        lambda text: text + '<option><flag contact="disable"/></option>',
+    ),
+    "stiffness for all connects": (
+        "mujoco",
+        {},
+        lambda text: text + '<default><equality solref="0.005 1"/></default>',
+    ),
+    "few iterations for all": ("mujoco", {"iterations": 1}, measured_as_we_did),
+    "all that we measure with": ("mujoco", None, measured_as_we_did),
+    "bias for all joints": (
+        "pymunk",
+        {"error_bias": 0.0},
+        lambda text: text.replace("in joints", "in space.constraints"),
+    ),
+    "few passes for all": ("pymunk", {"iterations": 5}, measured_as_we_did),
+    "damping for all": ("pymunk", {"damping": 0.9}, measured_as_we_did),
+}
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_what_would_change_them_is_seen(harm: str) -> None:
+    name, settings, change = HARMS[harm]
+    if settings is None:
+        settings = resolved(engine(name).profiles["tuned"], None)
+    text = snippet(name, settings, 360.0)
+    assert change(text) != text
+    assert DISTURBANCE[name](change(text)).worst > 1e2 * SAME
+
+
+def test_a_space_never_gets_fewer_passes_than_it_has() -> None:
+    text = snippet("pymunk", {"iterations": 20}, 360.0)
+    assert "max(space.iterations, 20)" in text
+    assert "space.iterations" not in snippet("pymunk", {"iterations": 10}, 360.0)
+
+
+def test_a_step_that_softens_contacts_is_said_to() -> None:
+    """MuJoCo takes two steps at least for the time constant of any constraint (refsafe)."""
+    assert "softer" in snippet("mujoco", {}, 62.0)
+    assert "softer" not in snippet("mujoco", {}, 63.0)
+    assert mujoco_disturbance(snippet("mujoco", {}, 50.0)).lasting > SAME

@@ -1,0 +1,232 @@
+"""A user's own model in which a mechanism is not alone, and what a snippet does to the rest of it.
+
+Beside the four-bar of `tests.worlds.bare`: a floor, a box that falls on it, a box that lies there,
+a body that drifts, and a constraint of the user's own that gives way. The mechanism touches none of
+them. The user has his solver work until a box that lies there does lie still.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import mujoco
+import numpy as np
+import pymunk
+
+from models.array import Array
+from tests.worlds.bare import BODIES, CONNECT, START, fourbar_bodies, pasted, pymunk_fourbar, rates
+
+SPEED = 10.0
+LASTS_S = 1.0
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """What pasting a snippet changes in the rest of a model [m, rad, or of a quaternion].
+
+    ``moving`` is the largest difference over a second to the model without the snippet, stepped as
+    the snippet says that all is: with its step, and MuJoCo's integrator or pymunk's iterations.
+    ``lasting`` is that of what no step changes, to the model as it was: where a box lies, and a
+    body that drifts at constant speed.
+    """
+
+    moving: float
+    lasting: float
+
+    @property
+    def worst(self) -> float:
+        return max(self.moving, self.lasting)
+
+
+MJCF = f"""
+<mujoco>
+  <compiler angle="radian"/>
+  <option timestep="0.002" tolerance="1e-12"/>
+  <default class="main">
+    <geom friction="0.8"/>
+    <equality solref="0.03 1"/>
+    <default class="mine"><joint damping="0.01"/></default>
+  </default>
+  <worldbody>
+    <geom type="plane" size="5 5 .1"/>
+    <body pos="2 0 0.3" euler="0.3 0.2 0">
+      <freejoint name="falls"/>
+      <geom type="box" size="0.1 0.1 0.1" mass="1"/>
+    </body>
+    <body pos="3 0 0.1">
+      <freejoint name="lies"/>
+      <geom type="box" size="0.1 0.1 0.1" mass="2"/>
+    </body>
+    <body pos="0 4 3" gravcomp="1">
+      <freejoint name="drifts"/>
+      <geom type="sphere" size="0.1" mass="1.5"/>
+    </body>
+    <body name="held" pos="0 -2 2">
+      <joint type="ball" class="mine"/>
+      <geom type="capsule" fromto="0 0 0 .3 0 0" size=".03" mass="1"/>
+    </body>
+    <body name="welded" pos="0.3 -2 2">
+      <freejoint/><geom type="sphere" size=".05" mass="1" contype="0" conaffinity="0"/>
+    </body>
+    <body pos="0 0 1">{BODIES}</body>
+  </worldbody>
+  <equality><weld body1="held" body2="welded"/>{CONNECT}</equality>
+  <actuator><velocity joint="A" kv="0.05"/></actuator>
+</mujoco>
+"""
+OF_LOOP = 3
+"""Degrees of freedom of the mechanism; MuJoCo has them last."""
+
+
+def mujoco_disturbance(snippet: str) -> Disturbance:
+    """What a snippet for MuJoCo changes."""
+    model = mujoco.MjModel.from_xml_string(pasted(fourbar_bodies(MJCF, 0.0), snippet))
+    found, end = _mujoco_run(model)
+    untouched = mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0))
+    same = _same_steps(model.opt.timestep, model.opt.integrator)
+    lies, drifts = (untouched.joint(name) for name in ("lies", "drifts"))
+    place, spin = drifts.qposadr[0], drifts.dofadr[0]
+    drifted = untouched.qpos0[place : place + 3] + DRIFT[:3] * end.time
+    lasting = [
+        end.qpos[lies.qposadr[0] :][:7] - _settled()[lies.qposadr[0] :][:7],
+        end.qpos[place : place + 3] - drifted,
+        end.qvel[spin : spin + 6] - DRIFT,
+    ]
+    return Disturbance(_largest(found - same), _largest(np.concatenate(lasting)))
+
+
+DRIFT = np.array([0.1, 0.2, 0.3, 1.0, 2.0, 3.0])
+FALL = np.array([0.5, 0.2, -1.0, 0.3, 1.0, 2.0])
+
+
+def _mujoco_run(model: mujoco.MjModel) -> tuple[Array, mujoco.MjData]:
+    """The coordinates of the rest over a second, and the state at its end."""
+    state = mujoco.MjData(model)
+    for name, rate in (("falls", FALL), ("drifts", DRIFT)):
+        first = model.joint(name).dofadr[0]
+        state.qvel[first : first + 6] = rate
+    of_coupler, of_rocker = rates(START, SPEED)
+    state.qvel[-OF_LOOP:] = SPEED, of_coupler - SPEED, of_rocker
+    state.ctrl[:] = SPEED
+    rows = np.empty((round(LASTS_S / model.opt.timestep), model.nq))
+    for row in rows:
+        mujoco.mj_step(model, state)
+        row[:] = state.qpos
+    return rows[:, :-OF_LOOP], state
+
+
+@cache
+def _same_steps(timestep: float, integrator: int) -> Array:
+    """The rest of the model without a snippet, stepped so."""
+    model = mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0))
+    model.opt.timestep, model.opt.integrator = timestep, integrator
+    return _mujoco_run(model)[0]
+
+
+@cache
+def _settled() -> Array:
+    """The last coordinates of the model as it was."""
+    _, end = _mujoco_run(mujoco.MjModel.from_xml_string(fourbar_bodies(MJCF, 0.0)))
+    places: Array = end.qpos.copy()
+    return places
+
+
+def pymunk_disturbance(snippet: str) -> Disturbance:
+    """What a snippet for pymunk changes."""
+    run = compile(snippet, "snippet", "exec")
+    space, joints, rest = _space()
+    names: dict[str, object] = {"space": space, "joints": joints}
+    exec(run, names)
+    found = [_places(rest)]
+    dt = names["dt"]
+    assert isinstance(dt, float)
+    for _ in range(1, round(LASTS_S / dt)):
+        exec(run, names)
+        found.append(_places(rest))
+    same = _same_passes(dt, space.iterations)
+    space, joints, rest = _space()
+    for _ in range(500):
+        space.step(1.0 / 500.0)
+    before, names = _places(rest), {"space": space, "joints": joints}
+    for _ in range(len(found)):
+        exec(run, names)
+    lasting = (_places(rest) - before)[LASTING]
+    lasting[-3:] -= np.array(PYMUNK_DRIFT) * dt * len(found)
+    return Disturbance(_largest(np.array(found) - same), _largest(lasting))
+
+
+PYMUNK_DRIFT = (1.0, 3.0, 2.0)
+"""Speeds [m/s] and angular velocity."""
+LASTING = slice(3, 9)
+"""Of the places of the rest, those of the box that lies and of the body that drifts."""
+
+
+def _space() -> tuple[pymunk.Space, tuple[pymunk.Constraint, ...], list[pymunk.Body]]:
+    """A space, the joints of the mechanism in it, and the other bodies."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    space.iterations = 50
+    _, joints = pymunk_fourbar(space, SPEED)
+    floor = pymunk.Segment(space.static_body, (-10.0, -1.0), (10.0, -1.0), 0.05)
+    floor.friction = 0.8
+    space.add(floor)
+    falls, lies = _box(space, -2.0, 0.0), _box(space, 2.0, -0.85)
+    falls.velocity, falls.angle, falls.angular_velocity = (0.5, 0.0), 0.3, 1.0
+    drifts = _box(space, 0.0, 5.0)
+    drifts.velocity, drifts.angular_velocity = PYMUNK_DRIFT[:2], PYMUNK_DRIFT[2]
+    drifts.velocity_func = _weightless
+    hangs, springs = _box(space, 5.0, 0.0), _box(space, 7.0, 0.0)
+    gives_way = pymunk.PivotJoint(space.static_body, hangs, (5.0, 0.3), (0.0, 0.1))
+    gives_way.error_bias = 0.3
+    ends = (7.0, 1.0), (0.0, 0.0)
+    spring = pymunk.DampedSpring(space.static_body, springs, *ends, 0.5, 20.0, 0.5)
+    space.add(gives_way, spring)
+    return space, joints, [falls, lies, drifts, hangs, springs]
+
+
+def _box(space: pymunk.Space, x: float, y: float) -> pymunk.Body:
+    """A box of 0.2 m and 1 kg."""
+    side = (0.2, 0.2)
+    body = pymunk.Body(1.0, pymunk.moment_for_box(1.0, side))
+    body.position = x, y
+    shape = pymunk.Poly.create_box(body, side)
+    shape.friction = 0.8
+    space.add(body, shape)
+    return body
+
+
+def _weightless(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+    """The body's velocities after a step, without gravity."""
+    pymunk.Body.update_velocity(body, (0.0, 0.0), damping, dt)
+
+
+@cache
+def _same_passes(dt: float, iterations: int) -> Array:
+    """The rest of the space without a snippet, stepped so."""
+    space, _, rest = _space()
+    space.iterations = iterations
+    found = []
+    for _ in range(round(LASTS_S / dt)):
+        space.step(dt)
+        found.append(_places(rest))
+    return np.array(found)
+
+
+def _places(bodies: list[pymunk.Body]) -> Array:
+    """Places [m] and angles [rad], three of each body."""
+    return np.array([n for body in bodies for n in (*body.position, body.angle)])
+
+
+DISTURBANCE: dict[str, Callable[[str], Disturbance]] = {
+    "mujoco": mujoco_disturbance,
+    "pymunk": pymunk_disturbance,
+}
+"""By engine, what a snippet changes."""
+
+
+def _largest(differences: Array) -> float:
+    """Infinite where a difference is no number."""
+    return float(np.max(np.nan_to_num(np.abs(differences), nan=math.inf)))
