@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
-from analytic.forces.jolts import mass_ratio
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
@@ -129,7 +128,6 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         convergence=seen,
         gated=cell.gated,
         profile=cell.profile,
-        mass_ratio=mass_ratio(cell.scene),
     )
     checked = Checked(
         **vars(evidence),

@@ -20,7 +20,8 @@ class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
     ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
-    cell that is not ``gated`` is shown only. ``mass_ratio`` is the heaviest body over the lightest.
+    cell that is not ``gated`` is shown only. ``remedy`` says what came of other settings, where
+    they were tried (`reports.verify.advised`).
     """
 
     status: str
@@ -31,7 +32,7 @@ class Evidence:
     convergence: Convergence | None = None
     gated: bool = True
     profile: str = ""
-    mass_ratio: float = 1.0
+    remedy: str = ""
 
 
 @dataclass(frozen=True)
