@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from models.scene import Same
 from reports.compare.beside import truth_of
@@ -42,49 +42,76 @@ def _mendable(checked: Checked) -> bool:
     )
 
 
+@dataclass(frozen=True)
+class _Outcome:
+    """What came of a run: the rules that it fails, and what its error takes of the limit (no end
+    where it fails a rule that it should not)."""
+
+    failing: tuple[str, ...]
+    share: float
+
+
 def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
-    """What came of the first choice that leaves the cell within its limits with `HELPS` times less
-    error, or of the best of all."""
-    cell = checked.cell
-    before, finer = _share(checked), False
-    if before <= 1.0:  # only finer steps fail: those are to be seen, then
-        before, finer = math.inf, True
-    best, least, tried = "", math.inf, []
+    """What came of the first choice that mends the cell with `HELPS` times less error, or of the
+    best of all; the error is that which takes most of its limit."""
+    cell, rule = checked.cell, _worst(checked)
+    before = _share(checked, rule) if rule else math.inf
+    outcomes: dict[str, _Outcome] = {}
     for settings in choices:
-        tried.append(" ".join(f"{cell.engine}.{name}={value}" for name, value in settings.items()))
-        share = _tried(replace(cell, settings={**cell.settings, **settings}), finer)
-        if share < least:
-            best, least = tried[-1], share
-        if least <= min(1.0, before / HELPS):
+        words = " ".join(f"{cell.engine}.{name}={value}" for name, value in settings.items())
+        changed = replace(cell, settings={**cell.settings, **settings})
+        outcomes[words] = found = _outcome(checked, changed, rule)
+        if not found.failing and HELPS * found.share <= before:
             break
-    instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
-    left = f"sweep --set {best} leaves {least:.2g} of the limit{instead}"
-    if least < math.inf and HELPS * least <= before:
-        return f"Tried at the same step: {left}."
-    none = f"Nothing tried at the same step lowers the error threefold: {', '.join(tried)}."
-    if least <= 1.0:
+    best = min(outcomes, key=lambda words: (bool(outcomes[words].failing), outcomes[words].share))
+    left = f"sweep --set {best} leaves {_of_limit(outcomes[best].share, before)}"
+    still = ", ".join(outcomes[best].failing)
+    if outcomes[best].share < math.inf and HELPS * outcomes[best].share <= before:
+        return f"Tried at the same step: {left}" + (f"; still out by {still}." if still else ".")
+    none = f"Nothing tried at the same step lowers the error threefold: {', '.join(outcomes)}."
+    if not still:
         return f"{none} But {left}."
-    half = _tried(replace(cell, dt_s=cell.dt_s / 2, steps=2 * cell.steps), finer)
-    return f"{none} Half the step leaves {half:.2g} of its own limit{instead}."
+    half = _outcome(checked, replace(cell, dt_s=cell.dt_s / 2, steps=2 * cell.steps), rule)
+    if half.share == math.inf:
+        return f"{none} Half the step mends nothing."
+    return f"{none} Half the step leaves {_of_limit(half.share, before)}."
 
 
-def _tried(cell: Cell, finer: bool) -> float:
-    """What is left of the error; infinite where a finer step fails, if those are asked for."""
-    again = check(replace(cell, converge=finer))
-    fails = finer and any(finding.rule == "CC110" for finding in again.failures)
-    return math.inf if fails else _share(again)
+def _outcome(checked: Checked, changed: Cell, rule: str) -> _Outcome:
+    """What comes of a changed cell; with its finer steps where these failed, or nothing ran."""
+    again = check(replace(changed, converge=changed.converge and not rule))
+    failing = {finding.rule for finding in again.failures}
+    mended = failing <= {finding.rule for finding in checked.failures} if rule else not failing
+    return _Outcome(tuple(sorted(failing)), _share(again, rule) if mended else math.inf)
 
 
-def _share(checked: Checked) -> float:
-    """The largest share of a limit that an error takes; infinite for a run that did not end well.
+def _worst(checked: Checked) -> str:
+    """The rule whose error takes most of its limit, of those that fail; "" where there is none,
+    and for a run that did not end well."""
+    if checked.status != "ok":
+        return ""
+    failing = [f.rule for f in checked.failures if f.rule in (*PLACES, *RATES)]
+    return max(failing, key=lambda rule: _share(checked, rule), default="")
+
+
+def _share(checked: Checked, rule: str) -> float:
+    """The part of its limit that the error of a rule takes, "" for the largest of all.
 
     The limits are the same for all settings: they follow from the step and the geometry.
     """
     if checked.status != "ok":
         return math.inf
-    shares = [
+    parts = [
         finding.number / finding.limit
         for finding in checked.findings
-        if finding.rule in (*PLACES, *RATES) and finding.number is not None and finding.limit
+        if finding.rule in ([rule] if rule else (*PLACES, *RATES))
+        and finding.number is not None
+        and finding.limit
     ]
-    return max((math.inf if math.isnan(share) else share for share in shares), default=math.inf)
+    return max((math.inf if math.isnan(part) else part for part in parts), default=math.inf)
+
+
+def _of_limit(after: float, before: float) -> str:
+    """Two shares in words."""
+    instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
+    return f"{after:.2g} of its limit{instead}"
