@@ -3,9 +3,10 @@
 The mechanisms follow from `SEED` alone: the same command makes the same ones. One that raises an
 alarm is printed as a scene file, with the command that shows it.
 
-Limits follow from the step and the geometry, not from the masses. So an alarm that masses raise is
-a true one, and has to come with advice that was tried: of `HARD` mechanisms 8 in 500 are out of
-tolerance in MuJoCo, of which 7 are told what lowers the error threefold (measured).
+Limits follow from the step and the geometry, not from the masses (but for the accelerations of the
+first samples, `reports.judge.start_allowance`). So an alarm that masses raise is a true one, and
+has to come with advice that was tried. Of 500 `HARD` mechanisms 8 are out of tolerance in MuJoCo,
+of which 7 are told what lowers the error threefold (measured).
 
 Outside of the range an alarm is no false one: pymunk does not come to the solution of its joints
 within the iterations of profile tuned, as the last test shows, and steps too coarse for the
