@@ -96,6 +96,14 @@ def inertia_scale(scene: Scene) -> float:
     return total
 
 
+def mass_ratio(scene: Scene) -> float:
+    """The mass of the heaviest body over that of the lightest that has one."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    given = [mass for mass in masses if mass > 0.0]
+    return max(given, default=1.0) / min(given, default=1.0)
+
+
 def centre_of(scene: Scene, body: str) -> Point:
     """Centre of mass in the body's own frame [m]; a block has it at its point."""
     return scene.links[body].centre_m if body in scene.links else (0.0, 0.0)

@@ -3,21 +3,27 @@
 Which joints stay in the tree is chosen by Kruskal's rule with this priority: the driver's pin,
 then prismatic pairs and slots (an engine can close a loop at a pin, not at a slide), then ground
 pins, then the other pins in the order of the file; pins named in ``close`` come last. In a
-four-bar A B C D this closes the loop at C.
+four-bar A B C D this closes the loop at C. Where the masses differ by more than `UNEQUAL` the pins
+of the lightest bodies come first, so that loops close at heavy ones.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from models.errors import EngineError
 from models.joints import Prism, Slot, bodies, joints, local_point, turned
 from models.motion import State
-from models.poses import Frame, along, frames
+from models.poses import Frame, along, frames, mass_of, mass_ratio
 from models.scene import GROUND, Point, Scene, Slider
+
+UNEQUAL = 25.0
+"""The heaviest body over the lightest from which on loops close where bodies are heavy. Up to it a
+stiff closure of MuJoCo gives way elsewhere by (1 - 0.9999) (3 dt)^2 25 = 0.02 dt^2 times an
+acceleration: a fiftieth of what a step leaves open by itself."""
 
 
 @dataclass(frozen=True)
@@ -144,8 +150,28 @@ def _choices(scene: Scene, close: Sequence[str]) -> Iterator[list[_Edge]]:
         for i, a in enumerate(pin.bodies)
         for b in pin.bodies[i + 1 :]
     ]
-    for _, edge in sorted(pairs, key=lambda pair: pair[0] in close):  # ground pins come first
+    lightness = _lightness(scene)  # where it says nothing, ground pins come first
+    for _, edge in sorted(pairs, key=lambda pair: (pair[0] in close, -lightness(pair[1]))):
         yield [edge]
+
+
+def _lightness(scene: Scene) -> Callable[[_Edge], float]:
+    """How light the two bodies of a pin are [1/kg]; the same for all pins of masses alike.
+
+    A soft constraint gives way by the force that it carries times the inverse masses of its
+    bodies, of which the lighter one has more. Closed between a light body and a heavy one it gives
+    way by the ratio of their masses; at a pin of heavy bodies by what it does where all are alike.
+    Ground and driver are moved by nothing.
+    """
+    if mass_ratio(scene) <= UNEQUAL:
+        return lambda edge: 0.0
+    firm = (GROUND, scene.driver.link)
+
+    def lightness(edge: _Edge) -> float:
+        masses = (mass_of(scene, body)[0] for body in (edge.a, edge.b) if body not in firm)
+        return sum(1.0 / mass if mass else math.inf for mass in masses)
+
+    return lightness
 
 
 def _slides(slide: Prism | Slot) -> list[_Edge]:

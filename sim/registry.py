@@ -17,7 +17,7 @@ ENGINES: Mapping[str, str] = {
     "pymunk": ".pymunk",
 }
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
-Capability = Literal["snippet", "knobs", "spoiler", "viewer"]
+Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer"]
 """What an engine may lack."""
 
 
@@ -27,7 +27,8 @@ class Declaration:
 
     ``package`` is what Python imports, ``install`` what pip calls it. The adapter is the value
     ``ENGINE`` of the file ``engine``; each of what it ``offers`` has a file of that name too, with
-    a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Spoiler` or `Viewer`.
+    a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler` or
+    `Viewer`.
     """
 
     package: str

@@ -47,7 +47,7 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        run snippets tuning viewing
+        remedies run snippets tuning viewing
         check energy registry
         measure drive tree_poses settings
         engine

@@ -37,14 +37,6 @@ def jolts(scene: Scene, motion: Motion) -> Array:
     return np.where(np.isfinite(half), half, 0.0)
 
 
-def mass_ratio(scene: Scene) -> float:
-    """The mass of the heaviest body over that of the lightest that has one."""
-    masses = [link.mass_kg for link in scene.links.values()]
-    masses += [slider.mass_kg for slider in scene.sliders.values()]
-    given = [mass for mass in masses if mass > 0.0]
-    return max(given, default=1.0) / min(given, default=1.0)
-
-
 def _pushes(scene: Scene, motion: Motion) -> Iterator[Array]:
     """For links [rad/s^2], their points and sliders [m/s^2 over the longest link], each (T,)."""
     for name, link in scene.links.items():

@@ -15,10 +15,11 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.forces.jolts import jolts, mass_ratio
+from analytic.forces.jolts import jolts
 from models.array import Array, Mask
 from models.errors import ReachError
 from models.motion import Motion
+from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.branch import departure

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from analytic.forces.jolts import mass_ratio
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
@@ -154,7 +153,6 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         convergence=seen,
         gated=cell.gated,
         profile=cell.profile,
-        mass_ratio=mass_ratio(cell.scene),
         placing=adapter.placing,
         order=adapter.order,
         unasked=tuple(unasked),

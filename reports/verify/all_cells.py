@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from reports.judge.cell import Cell, Checked, check, unfinished
+from reports.judge.cell import Cell, Checked, unfinished
+from reports.verify.advised import advised
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
 
@@ -23,7 +24,7 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
-    return run_all(check, cells, jobs, LIMITS, _lost, done)
+    return run_all(advised, cells, jobs, LIMITS, _lost, done)
 
 
 def _lost(cell: Cell, lost: Lost) -> Checked:

@@ -50,13 +50,16 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
 
 
 def _failures(console: Console, failed: Sequence[Checked]) -> None:
-    """What is out of tolerance, cell by cell, then what would mend it, rule by rule."""
+    """What is out of tolerance, cell by cell and with what was tried on it, then what would mend
+    the others, rule by rule."""
     for one in failed:
         console.print(Text(f"{_mark(one).plain}  {one.cell.label}", "bold red"))
         for finding in one.failures:
             rule = RULES[finding.rule]
             hanging(console, f"  {rule.id} ", f"{rule.title}: {finding.text}")
-    cures = {(finding.rule, finding.cure) for one in failed for finding in one.failures}
+        if one.remedy:
+            hanging(console, "  cure: ", one.remedy, style="cyan")
+    cures = {(f.rule, f.cure) for one in failed for f in one.failures if f.cure != one.remedy}
     for rule_id, cure in sorted(cures):
         if cure:
             hanging(console, f"{rule_id} cure: ", cure, style="cyan")

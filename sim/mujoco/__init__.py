@@ -2,4 +2,4 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("mujoco", "mujoco", ("snippet", "knobs", "spoiler", "viewer"))
+DECLARATION = Declaration("mujoco", "mujoco", ("snippet", "knobs", "remedies", "spoiler", "viewer"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from models import mjcf, mjcf_options
 from models.motion import State
 from models.poses import inertia_scale
@@ -54,7 +56,7 @@ AS_SHIPPED = Profile(
         "solimp_width": Setting(0.001, "default [m]"),
         "islands": Setting("enable", "default"),
         "contact": Setting("enable", "default"),
-        "close": Setting("", "the pins that `models.tree` chooses; names with commas between"),
+        "close": Setting("", "the pins that `models.tree` chooses; names with + or , between"),
         "flywheel_ratio": Setting(mjcf_options.FLYWHEEL_RATIO, "the drive, not an engine default"),
         "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
         "servo_integrator": Setting("Euler", "default; takes the place of integrator under servo"),
@@ -115,7 +117,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
         servo = float(settings["servo_gain"]) * scale
     dmin, dmax = float(settings["solimp_dmin"]), float(settings["solimp_dmax"])
     return mjcf_options.Writing(
-        close=tuple(p.strip() for p in str(settings["close"]).split(",") if p.strip()),
+        close=tuple(p.strip() for p in re.split("[+,]", str(settings["close"])) if p.strip()),
         option={
             "timestep": dt_s,
             "integrator": str(held["integrator"]),

@@ -2,4 +2,4 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pymunk", "pymunk", ("snippet", "knobs", "spoiler"))
+DECLARATION = Declaration("pymunk", "pymunk", ("snippet", "knobs", "remedies", "spoiler"))

@@ -15,6 +15,10 @@ on) hang on it and on each other, of all kinds and in all roles. What is random,
   what anyone would call wrong, whatever the theory grants (`reports.judge.tolerance`);
 - joints that pymunk's iterations solve: those of profile tuned leave at most `LEFT` of an error
   (`tests.worlds.contraction`). From about 0.35 on its mechanisms come apart.
+
+`HARD` is a second range, for MuJoCo: sines from 0.15, densities 1:1000 (so that masses come to more
+than that), every link with a point on an arm of up to ten of its lengths, to the end of which half
+of the rods reach; and joints that pymunk's iterations solve or do not.
 """
 
 from __future__ import annotations
@@ -33,7 +37,7 @@ from analytic.kinematics import solve
 from models.errors import EngineError, ReachError
 from models.files import parse_scene
 from models.laws import ConstantSpeed
-from models.scene import GROUND, Link, Point, Scene, Slider
+from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.tree import plan
 from reports.compare.compare import curvature
 from reports.judge.tolerance import DEFAULTS
@@ -55,6 +59,24 @@ ROD_M, BLOCK_M, BLOCK_KG = 0.2, 0.1, 0.1
 """Length of the shortest rod, side of a block, and its mass at density 1."""
 ITERATIONS = int(TUNED.settings["iterations"].value)
 LEFT = 0.2
+TRACED = "traced"
+"""What the names of points begin with to which no rod reaches."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """What may be drawn: sines from ``margin``, densities 1 : ``density``, points on arms of up to
+    ``arm`` lengths of their link (0: no such points), and what pymunk's iterations leave."""
+
+    margin: float = MARGIN
+    density: float = DENSITY
+    arm: float = 0.0
+    least_left: float = 0.0
+    most_left: float = LEFT
+
+
+TUNED_RANGE = Range()
+HARD = Range(margin=0.15, density=1000.0, arm=10.0, most_left=1.0)
 
 
 @dataclass(frozen=True)
@@ -81,9 +103,8 @@ def recipes(draw: st.DrawFn) -> tuple[tuple[str, ...], int]:
     return tuple(forms), draw(st.integers(0, 2**64 - 1))
 
 
-def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT) -> Driven:
-    """The mechanism of a seed: laid out and weighed anew until it is within the range, which is one
-    that the iterations of profile tuned leave ``least`` to ``most`` of.
+def made(forms: Sequence[str], seed: int, within: Range = TUNED_RANGE) -> Driven:
+    """The mechanism of a seed: laid out and weighed anew until it is within the range.
 
     Raises LookupError where that does not come about.
     """
@@ -95,14 +116,14 @@ def made(forms: Sequence[str], seed: int, least: float = 0.0, most: float = LEFT
         designed = _laid_out(chance, forms, speed)
         turns_round = stuck < TRIES
         if not turns_round:
-            designed = swinging(designed, abs(speed))
-        elif _least_sine(designed.scene) < MARGIN:
+            designed = swinging(designed, abs(speed), within.margin)
+        elif _least_sine(designed.scene) < within.margin:
             stuck += 1
             continue
-        scene = _weighed(chance, designed.scene)
+        scene = _weighed(chance, _with_arms(chance, designed.scene, within.arm), within.density)
         left = contraction(scene) ** ITERATIONS
         fewest = _fewest_steps(scene)
-        if least <= left <= most and fewest <= MOST_STEPS:
+        if within.least_left <= left <= within.most_left and fewest <= MOST_STEPS:
             break
     else:
         raise LookupError(f"{forms}: none of {MOST_TRIES} layouts is within the range")
@@ -150,11 +171,27 @@ def _fewest_steps(scene: Scene) -> float:
     return max(law.peak_speed_rad_s * law.period_s / longest, LEAST_STEPS)
 
 
-def _weighed(chance: random.Random, scene: Scene) -> Scene:
-    """The scene with random masses."""
+def _with_arms(chance: random.Random, scene: Scene, most: float) -> Scene:
+    """Each link with one more point, away from its first by up to ``most`` of its lengths."""
+    if not most:
+        return scene
+
+    def armed(link: Link) -> Link:
+        arm = max(span(link.points), ROD_M) * most ** chance.uniform(-0.5, 1.0)
+        x, y = next(iter(link.points.values()))
+        turn = chance.uniform(-math.pi, math.pi)
+        end = (x + arm * math.cos(turn), y + arm * math.sin(turn))
+        name = f"{chance.choice(('carried', TRACED))}-{link.name}"
+        return replace(link, points={**link.points, name: end})
+
+    return replace(scene, links={name: armed(link) for name, link in scene.links.items()})
+
+
+def _weighed(chance: random.Random, scene: Scene, most: float) -> Scene:
+    """The scene with random masses, of densities 1 : ``most``."""
 
     def density() -> float:
-        return float(DENSITY ** chance.random())
+        return float(most ** chance.random())
 
     def block(slider: Slider) -> Slider:
         mass = BLOCK_KG * density()
@@ -176,7 +213,10 @@ def _weighed(chance: random.Random, scene: Scene) -> Scene:
 def _carried(scene: Scene) -> Mapping[str, list[Point]]:
     """What each link has to reach, in its frame [m]: its pins, and where others slide on it."""
     motion = solve(scene, _period(scene), links=(), points=(), bound=False)
-    found = {name: list(link.points.values()) for name, link in scene.links.items()}
+    found = {
+        name: [place for point, place in link.points.items() if not point.startswith(TRACED)]
+        for name, link in scene.links.items()
+    }
     for slider in scene.sliders.values():
         if slider.on != GROUND:
             travel = motion.sliders[slider.name].displacement

@@ -128,25 +128,25 @@ def _places(link: Link, frame: tuple[float, float, float]) -> dict[str, complex]
     return {name: complex(x, y) + turn * complex(*local) for name, local in link.points.items()}
 
 
-def _with_margin(designed: Designed) -> Designed:
+def _with_margin(designed: Designed, margin: float = MARGIN) -> Designed:
     """With the largest swing of the driver that keeps every dyad off its singular positions."""
     scene = designed.scene
     law = scene.driver.law
     assert isinstance(law, Oscillating)
     for swing in SWINGS:
         tried = replace(scene, driver=replace(scene.driver, law=replace(law, amplitude_rad=swing)))
-        if _worst(tried) >= MARGIN:
+        if _worst(tried) >= margin:
             return replace(designed, scene=tried)
     raise AssertionError("laid out too near to a singular position")
 
 
-def swinging(designed: Designed, frequency_rad_s: float) -> Designed:
+def swinging(designed: Designed, frequency_rad_s: float, margin: float = MARGIN) -> Designed:
     """The same mechanism under a driver that swings as far as the margin lets it."""
     driver = designed.scene.driver
     theta = designed.frames[driver.link][2]
     law = Oscillating(theta, SWINGS[0], frequency_rad_s)
     scene = replace(designed.scene, driver=replace(driver, law=law))
-    return _with_margin(replace(designed, scene=scene))
+    return _with_margin(replace(designed, scene=scene), margin)
 
 
 def _worst(scene: Scene) -> float:

@@ -25,10 +25,9 @@ _ALL: tuple[Rule, ...] = (
     ErrorSmooth(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
-TUNABLE = ("CC101", "CC103", "CC104", "CC105", "CC110", "CC113")
-"""Failures that come from what an engine is set to."""
-UNEQUAL = 100.0
-"""Masses of two links over each other that the solvers of engines find hard."""
+PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
+TUNABLE = ("CC101", "CC110", *PLACES)
+"""Failures that come from what an engine is set to; those of rates follow from them."""
 
 
 def judge(evidence: Evidence) -> tuple[Finding, ...]:
@@ -42,20 +41,17 @@ def judge(evidence: Evidence) -> tuple[Finding, ...]:
 
 
 def _cure(finding: Finding, evidence: Evidence) -> str:
-    """The cure of a rule for this profile and these masses.
+    """The cure of a rule for this profile, and what came of trying.
 
     Where a run did not end well the status alone is to be mended: the rest follows from it.
     """
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""
     cure = RULES[finding.rule].cure
+    if evidence.remedy and finding.level == "fail" and finding.rule in (*TUNABLE, *RATES):
+        return evidence.remedy
     if finding.rule not in TUNABLE or evidence.status in ("unsupported", "branch-changed"):
         return cure
     if evidence.profile != "tuned":
         return f"{cure} Or use profile tuned."
-    if evidence.mass_ratio > UNEQUAL:
-        return (
-            f"{cure} The heaviest body has {evidence.mass_ratio:.0f} times the mass of the "
-            "lightest, which takes more iterations than the profile has: bring the masses nearer."
-        )
     return cure

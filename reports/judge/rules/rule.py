@@ -21,9 +21,10 @@ class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
     ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
-    cell that is not ``gated`` is shown only. ``mass_ratio`` is the heaviest body over the lightest.
-    ``placing`` and ``order`` are the engine's (`sim.engine.Engine`); ``unasked`` says what of the
-    run, and of the finer ones, is not as it was asked for, None where there is no run.
+    cell that is not ``gated`` is shown only. ``placing`` and ``order`` are the engine's
+    (`sim.engine.Engine`); ``unasked`` says what of the run, and of the finer ones, is not as it was
+    asked for, None where there is no run. ``remedy`` says what came of other settings, where they
+    were tried (`reports.verify.advised`).
     """
 
     status: str
@@ -34,10 +35,10 @@ class Evidence:
     convergence: Convergence | None = None
     gated: bool = True
     profile: str = ""
-    mass_ratio: float = 1.0
     placing: Placing = "integrated"
     order: int = 2
     unasked: tuple[str, ...] | None = None
+    remedy: str = ""
 
 
 @dataclass(frozen=True)

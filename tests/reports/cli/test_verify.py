@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -14,7 +15,7 @@ from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from models.errors import CrankcheckError, EngineError
-from models.files import shipped
+from models.files import scene_texts, shipped
 from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify as command
@@ -429,3 +430,18 @@ def test_a_bad_baseline_is_refused_before_the_run(
     ):
         with pytest.raises(CrankcheckError, match=fault):
             against(**asked)
+
+
+def test_a_failing_cell_is_told_what_was_tried_and_a_sweep_takes_it(
+    crank: Crank, tmp_path: Path
+) -> None:
+    text = scene_texts(["slider-crank-offset"])["slider-crank-offset"]
+    path = tmp_path / "heavy.toml"
+    path.write_text(text.replace("mass_kg = 0.5", "mass_kg = 3e3"))
+    steps = ["--steps-per-turn", "360", "--turns", "1", "--engine", "mujoco"]
+    done = crank("verify", str(path), "--profile", "tuned", *steps)
+    assert done.exit_code == 1
+    told = re.findall(r"cure: Tried at the same step: sweep (--set) (\S+) ", done.output)
+    assert len(told) == 1, done.output
+    out = ["--no-timing", "-o", str(tmp_path / "out")]
+    assert crank("sweep", str(path), *steps, *told[0], *out).exit_code == 0

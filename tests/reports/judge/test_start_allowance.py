@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from analytic.forces.jolts import mass_ratio
 from models.files import load_scene
+from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.judge.cell import Cell, Checked, check

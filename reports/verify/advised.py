@@ -1,0 +1,117 @@
+"""A failing cell is run again with what its engine has against that, and says what came of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from models.scene import Same
+from reports.compare.beside import truth_of
+from reports.judge.cell import Cell, Checked, check
+from reports.judge.rules import PLACES, RATES, TUNABLE, judge
+from sim.engine import Settings
+from sim.remedies import remedies
+
+HELPS = 3.0
+"""How many times less error makes a remedy; less than that may be chance."""
+ENDS = ("ok", "diverged", "locked", "branch-changed")
+"""How runs end that other settings may mend."""
+
+
+def advised(cell: Cell) -> Checked:
+    """As `judge.cell.check`; where profile tuned fails by what settings can mend, the remedies of
+    its engine are tried at the same step, and the cures say what came of it."""
+    checked = check(cell)
+    if not _mendable(checked):
+        return checked
+    choices = remedies(cell.engine, cell.scene, truth_of(Same(cell.scene)).start)
+    if not choices:
+        return checked
+    checked = replace(checked, remedy=_remedy(checked, choices))
+    return replace(checked, findings=judge(checked))
+
+
+def _mendable(checked: Checked) -> bool:
+    """A servo lags by itself; other profiles are told to use this one."""
+    cell = checked.cell
+    return (
+        (cell.profile, cell.drive) == ("tuned", "prescribed")
+        and checked.status in ENDS
+        and any(finding.rule in (*TUNABLE, *RATES) for finding in checked.failures)
+    )
+
+
+@dataclass(frozen=True)
+class _Outcome:
+    """What came of a run: the rules that it fails, and what its error takes of the limit (no end
+    where it fails a rule that it should not)."""
+
+    failing: tuple[str, ...]
+    share: float
+
+
+def _remedy(checked: Checked, choices: Sequence[Settings]) -> str:
+    """What came of the first choice that mends the cell with `HELPS` times less error, or of the
+    best of all; the error is that which takes most of its limit."""
+    cell, rule = checked.cell, _worst(checked)
+    before = _share(checked, rule) if rule else math.inf
+    outcomes: dict[str, _Outcome] = {}
+    for settings in choices:
+        words = " ".join(f"{cell.engine}.{name}={value}" for name, value in settings.items())
+        changed = replace(cell, settings={**cell.settings, **settings})
+        outcomes[words] = found = _outcome(checked, changed, rule)
+        if not found.failing and HELPS * found.share <= before:
+            break
+    best = min(outcomes, key=lambda words: (bool(outcomes[words].failing), outcomes[words].share))
+    left = f"sweep --set {best} leaves {_of_limit(outcomes[best].share, before)}"
+    still = ", ".join(outcomes[best].failing)
+    if outcomes[best].share < math.inf and HELPS * outcomes[best].share <= before:
+        return f"Tried at the same step: {left}" + (f"; still out by {still}." if still else ".")
+    none = f"Nothing tried at the same step lowers the error threefold: {', '.join(outcomes)}."
+    if not still:
+        return f"{none} But {left}."
+    half = _outcome(checked, replace(cell, dt_s=cell.dt_s / 2, steps=2 * cell.steps), rule)
+    if half.share == math.inf:
+        return f"{none} Half the step mends nothing."
+    return f"{none} Half the step leaves {_of_limit(half.share, before)}."
+
+
+def _outcome(checked: Checked, changed: Cell, rule: str) -> _Outcome:
+    """What comes of a changed cell; with its finer steps where these failed, or nothing ran."""
+    again = check(replace(changed, converge=changed.converge and not rule))
+    failing = {finding.rule for finding in again.failures}
+    mended = failing <= {finding.rule for finding in checked.failures} if rule else not failing
+    return _Outcome(tuple(sorted(failing)), _share(again, rule) if mended else math.inf)
+
+
+def _worst(checked: Checked) -> str:
+    """The rule whose error takes most of its limit, of those that fail; "" where there is none,
+    and for a run that did not end well."""
+    if checked.status != "ok":
+        return ""
+    failing = [f.rule for f in checked.failures if f.rule in (*PLACES, *RATES)]
+    return max(failing, key=lambda rule: _share(checked, rule), default="")
+
+
+def _share(checked: Checked, rule: str) -> float:
+    """The part of its limit that the error of a rule takes, "" for the largest of all.
+
+    The limits are the same for all settings: they follow from the step and the geometry.
+    """
+    if checked.status != "ok":
+        return math.inf
+    parts = [
+        finding.number / finding.limit
+        for finding in checked.findings
+        if finding.rule in ([rule] if rule else (*PLACES, *RATES))
+        and finding.number is not None
+        and finding.limit
+    ]
+    return max((math.inf if math.isnan(part) else part for part in parts), default=math.inf)
+
+
+def _of_limit(after: float, before: float) -> str:
+    """Two shares in words."""
+    instead = f" instead of {before:.2g}" if math.isfinite(before) else ""
+    return f"{after:.2g} of its limit{instead}"

@@ -1,0 +1,29 @@
+"""What may help a mechanism of unequal masses in MuJoCo: other pins, or stiffer ones.
+
+A closure gives way by what its force is over a stiffness that MuJoCo scales by the inverse masses
+of the two bodies as they hang in the tree. `models.tree` closes where these are heavy, which is the
+best pin mostly; which one it is depends on the forces.
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+
+from models.closings import closings
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Settings
+from sim.remedies import Remedies
+
+MOST_CLOSINGS = 8
+STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_dampratio": 0.3})
+"""6 and 4 times as stiff as profile tuned; more than that RK4 does not resolve."""
+
+
+def mujoco_remedies(scene: Scene, state: State) -> list[Settings]:
+    """Closings first: they cost nothing."""
+    elsewhere = islice(closings(scene, state), MOST_CLOSINGS)
+    return [*({"close": "+".join(pins)} for pins in elsewhere), *STIFFER]
+
+
+REMEDIES: Remedies = mujoco_remedies

@@ -1,0 +1,78 @@
+"""What fails is tried with what its engine has against it, and nothing else is run again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from models.files import load_scene
+from models.scene import Scene
+from reports.judge.cell import Cell, Checked, check
+from reports.verify import advised as advice
+from reports.verify.advised import advised
+
+
+def heavy_block(ratio: float) -> Scene:
+    """A light rod between the crank and a heavy block: no pin is one of heavy bodies."""
+    scene = load_scene("slider-crank-offset")
+    rod = scene.links["rod"].mass_kg
+    blocks = {n: replace(s, mass_kg=ratio * rod) for n, s in scene.sliders.items()}
+    return replace(scene, sliders=blocks)
+
+
+def cell(scene: Scene, engine: str = "mujoco", steps: int = 360) -> Cell:
+    dt_s = scene.driver.law.period_s / steps
+    return Cell(scene, engine, "tuned", dt_s, steps, converge=False)
+
+
+def cures(checked: Checked) -> set[str]:
+    return {finding.cure for finding in checked.failures}
+
+
+@pytest.fixture
+def runs(monkeypatch: pytest.MonkeyPatch) -> list[Cell]:
+    """The cells that are run, in their order."""
+    asked: list[Cell] = []
+
+    def noted(one: Cell) -> Checked:
+        asked.append(one)
+        return check(one)
+
+    monkeypatch.setattr(advice, "check", noted)
+    return asked
+
+
+def test_a_setting_that_helps_is_named_with_what_it_leaves(runs: list[Cell]) -> None:
+    found = advised(cell(heavy_block(1.5e4)))
+    (told,) = cures(found)
+    assert told.startswith("Tried at the same step: sweep --set mujoco.solref_timeconst_steps=2 ")
+    worst = max(f.number / f.limit for f in found.failures if f.number and f.limit)
+    assert told.endswith(f"of its limit instead of {worst:.2g}.")
+    assert runs[-1].settings == {"solref_timeconst_steps": 2}
+    assert {(one.dt_s, one.steps) for one in runs} == {(found.cell.dt_s, found.cell.steps)}
+
+
+def test_where_nothing_helps_all_that_was_tried_is_named_and_half_the_step_told() -> None:
+    one = replace(cell(load_scene("fourbar-lecture-1")), tolerance={"angle": 1e-12})
+    (told,) = cures(advised(one))
+    assert told.startswith("Nothing tried at the same step lowers the error threefold: ")
+    for setting in ("close=B", "close=D", "solref_timeconst_steps=2", "solref_dampratio=0.3"):
+        assert f"mujoco.{setting}" in told
+    assert "Half the step leaves" in told
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda one: one,
+        lambda one: replace(one, profile="as-shipped"),
+        lambda one: replace(one, drive="servo"),
+    ],
+)
+def test_nothing_is_run_again_that_is_within_or_has_another_cure(
+    runs: list[Cell], change: Callable[[Cell], Cell]
+) -> None:
+    advised(change(cell(load_scene("fourbar-lecture-1"))))
+    assert len(runs) == 1
