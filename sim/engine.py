@@ -194,6 +194,7 @@ class Setup:
     steps: int
     every: int
     start_s: float
+    reports_accelerations: bool
     asked: Settings
 
 

@@ -91,7 +91,6 @@ def run(
         status="ok",
         reason="",
         settings=told.asked,
-        reports_accelerations=chosen.reports_accelerations,
     )
     try:
         session = chosen.open(scene, state, told.asked, dt_s, drive)
@@ -135,6 +134,7 @@ def setup(
         steps=steps,
         every=every,
         start_s=state.time_s,
+        reports_accelerations=chosen.reports_accelerations,
         asked=resolved(profile_of(chosen, profile), settings),
     )
 

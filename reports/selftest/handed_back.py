@@ -15,7 +15,7 @@ from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, in_log, switched
-from reports.selftest.logs import last, moved
+from reports.selftest.logs import last, moved, with_link
 from sim.engine import Run
 from sim.run import run
 
@@ -82,6 +82,20 @@ def _one_link(scene: Scene, done: Run) -> Run:
     return replace(done, motion=replace(own, links={**own.links, name: true}))
 
 
+def _velocity(scene: Scene, done: Run) -> Run:
+    """The last link has the angular velocity of the closed form, at the instants that those of the
+    engine belong to."""
+    assert done.velocity_time_s is not None
+    name = last(scene)
+    omega = solve(scene, done.velocity_time_s, bound=False).links[name].omega
+    return with_link(done, name, omega=omega)
+
+
+def _shut(_: Scene, done: Run) -> Run:
+    """No joint is open."""
+    return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
+
+
 def _one_point(scene: Scene, done: Run) -> Run:
     """The pin at the end of the last link, likewise."""
     own, name = moved(done), _moving_pin(scene)
@@ -137,6 +151,8 @@ FAULTS = (
         switched(_one_slider),
         scenes=(SLIDER, SHAPER),
     ),
+    _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity)),
+    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut)),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(_to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(_noisy), 1e-7, "rad, L"),
     _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank)),

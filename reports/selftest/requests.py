@@ -13,6 +13,7 @@ from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant
+from reports.selftest.logs import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup
@@ -102,6 +103,27 @@ def _of_another_version(size: float) -> CellRunner:
     return runner
 
 
+def _silent(size: float) -> CellRunner:
+    """Accelerations are NaN, and said to be none that the engine has."""
+
+    def runner(*args: Any, **options: Any) -> Run:
+        done = run(*args, **options)
+        if not size:
+            return done
+        motion = moved(done)
+        none = np.full_like(motion.time_s, np.nan)
+        links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
+        points = {
+            name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
+            for name, point in motion.points.items()
+        }
+        sliders = {n: replace(slider, acceleration=none) for n, slider in motion.sliders.items()}
+        mute = replace(motion, links=links, points=points, sliders=sliders)
+        return replace(done, motion=mute, reports_accelerations=False)
+
+    return runner
+
+
 def _the_first_again(size: float) -> CellRunner:
     """The run at the full step stands in the place of the finer ones, with their words."""
 
@@ -162,6 +184,13 @@ FAULTS = (
     _fault("step-double", "twice the step", plant=_given(_double_step), says=("dt_s: ",)),
     _fault("log-thinned", "every eighth sample", plant=_given(_thinned), says=("every: ",)),
     _fault("start-later", "a start ten steps later", plant=_given(_started_later), says=("start",)),
+    _fault(
+        "accelerations-kept",
+        "accelerations that are kept back",
+        plant=_silent,
+        says=("reports_accelerations: asked for True",),
+        needs=lambda name: engine(name).reports_accelerations,
+    ),
     _fault(
         "halved-again",
         "the first run, for its own finer ones",

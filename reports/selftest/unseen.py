@@ -33,7 +33,9 @@ class Unseen:
     def possible(self, name: str) -> bool:
         """Whether an engine can have it."""
         if self.name == "all-renamed":
-            return other_engine(name) is not None
+            other = other_engine(name)
+            silent = not engine(name).reports_accelerations
+            return other is not None and (silent or engine(other).reports_accelerations)
         return self.name != "gravity-midway" or name in offering("spoiler")
 
 

@@ -51,7 +51,7 @@ class TwoComputations:
         first = found[0]
         bodies = ", ".join(dict.fromkeys(f"{row.body_kind} {row.body}" for row in found))
         why = (
-            f"places that are integrated are off by step^{order}"
+            f"what is integrated is off by step^{order}"
             if placing == "integrated"
             else "rates are rounded in another way where they are worked out apart"
         )

@@ -73,6 +73,7 @@ FIELDS: dict[str, Any] = {
     "steps": 61,
     "every": 2,
     "start_s": 1e-3,
+    "reports_accelerations": None,
     "asked": {},
     "settings": {},
 }

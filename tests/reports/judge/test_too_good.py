@@ -91,7 +91,7 @@ def test_at_rounding_is_no_fault_of_an_engine_that_solves_its_joints(
         return run(one, state, fake_engine.FakeEngine(), *rest, **options)  # type: ignore[arg-type]  # passed on
 
     seen = verdict_of(scene, exact)
-    assert "places that are integrated are off by step^2" in seen["CC111"]
+    assert "what is integrated is off by step^2" in seen["CC111"]
     monkeypatch.setattr("reports.judge.cell.engine", lambda _: fake_engine.FakeEngine())
     assert "CC111" not in verdict_of(scene, exact)
 

@@ -22,6 +22,8 @@ NO_FAULT_THERE = {
     "too-good-next": EVEN,
     "too-good-link": EVEN,
     "too-good-point": EVEN,
+    "too-good-velocity": EVEN,
+    "too-good-gaps": EVEN,
     "too-good-crank": EVEN,
     "too-good-finer": EVEN,
     "line-turned": "no slider",
