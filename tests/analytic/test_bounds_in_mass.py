@@ -50,7 +50,9 @@ def _beside(motion: Motion, exact: Solved) -> Iterator[Held]:
         if not bodies:
             continue
         largest = [max(np.abs(rows[k]).max() for rows in bodies.values()) for k in range(3)]
-        largest = [largest[0], *(max(largest[k], largest[k - 1] * fastest) for k in (1, 2))]
+        first = 1.0 if kind == "links" else largest[0]  # whole turns have no part in it
+        largest = [first, max(largest[1], first * fastest), largest[2]]
+        largest[2] = max(largest[2], largest[1] * fastest)
         for body, levels in bodies.items():
             found = vars(getattr(motion, kind)[body]).values()
             limits = vars(getattr(bound, kind)[body]).values()
