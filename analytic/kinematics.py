@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import MotionArrays, Selection
 from analytic.structure.mobility import analyse
+from analytic.turns.cells import Look
+from analytic.turns.count import Counter, Turns
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
@@ -63,7 +65,9 @@ def solve(
     Returns
     -------
     Motion
-        Angles are continuous from the first sample on; sliders count from ``through_m``.
+        Angles of links go on continuously with the driver's angle, the same whatever samples
+        are asked for: in (-pi, pi] at time 0, and counted on from there. Sliders count from
+        ``through_m``.
 
     Raises
     ------
@@ -152,8 +156,7 @@ def _samples(values: Array) -> Array:
 def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one."""
-    passages = _prepared(Same(scene)).passages.values()
-    return max((passage.period for passage in passages), default=math.tau)
+    return _prepared(Same(scene)).period
 
 
 @lru_cache(maxsize=KEPT)
@@ -173,6 +176,17 @@ class _Prepared:
     passages: Mapping[str, ChangePoints]
     start: float
 
+    @cached_property
+    def turns(self) -> Turns:
+        """The whole turns of the links, worked out when they are first asked for."""
+        look = Look(self.scene, self.steps, self.passages)
+        return Turns.of(look, self.start, self.period)
+
+    @property
+    def period(self) -> float:
+        """The driver angle [rad] after which the positions repeat."""
+        return max((passage.period for passage in self.passages.values()), default=math.tau)
+
     def stretched(self, theta: Array) -> Chunk:
         return stretched(self.scene, self.steps, theta, self.passages)
 
@@ -187,7 +201,9 @@ class _Prepared:
             driven = driver(span)
             low = min(low, float(driven[0].min()))
             high = max(high, float(driven[0].max()))
-            result.write(span, self._chunk(*driven))
+            counted = wanted.links and low < high  # at the start itself there is nothing to count
+            counter = Counter(self.turns, driven[0]) if counted else None
+            result.write(span, self._chunk(*driven), counter)
         return replace(result.motion(), crossings=passed(self.passages, low, high))
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none

@@ -11,6 +11,8 @@ import numpy as np
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
+from analytic.turns.cells import SURE
+from analytic.turns.count import Counter
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
@@ -117,12 +119,12 @@ class MotionArrays:
             self.slider_bounds = {k: block.track() for k in wanted.sliders}
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def write(self, span: slice, chunk: Chunk) -> None:
-        """Store what was asked for of a solved chunk."""
+    def write(self, span: slice, chunk: Chunk, counter: Counter | None) -> None:
+        """Store what was asked for of a solved chunk; None where no turns are to be counted."""
         for key, row in self.sines.items():
             row[span] = chunk.sines[key]
         for name in self.links:
-            self._write_link(span, name, chunk.bodies[name])
+            self._write_link(span, name, chunk.bodies[name], counter)
         for name, body in self.wanted.points.items():
             self._write_point(span, name, chunk.point(body, name))
         for name, track in self.sliders.items():
@@ -132,18 +134,23 @@ class MotionArrays:
                 e = sliding.error
                 self.slider_bounds[name].put_bounds(span, e.displacement, e.speed, e.acceleration)
 
-    def _write_link(self, span: slice, name: str, body: BodyKinematics) -> None:
+    def _write_link(
+        self, span: slice, name: str, body: BodyKinematics, counter: Counter | None
+    ) -> None:
         track = self.links[name]
         if body.theta is not None:
             track.put(span, body.theta, body.omega, body.alpha)
         else:
             np.arctan2(body.turn.y, body.turn.x, out=track.value[span])
             track.rate[span], track.second[span] = body.omega, body.alpha
-            _continue_angle(track.value, span)
+            if counter is not None:
+                counter.count(name, track.value[span])
         if self.certified and body.error is not None:
             e = body.error
-            rounding = 2 * EPS * (np.abs(track.value[span]) + math.pi)
-            self.link_bounds[name].put_bounds(span, e.theta + rounding, e.omega, e.alpha)
+            limit = e.theta + 2 * EPS * (np.abs(track.value[span]) + math.pi)
+            # Where little is sure of the angle the count of its turns is not sure either.
+            limit = np.where(e.theta > SURE, math.tau, limit)
+            self.link_bounds[name].put_bounds(span, limit, e.omega, e.alpha)
 
     def _write_point(self, span: slice, name: str, at: PointKinematics) -> None:
         track = self.points[name]
@@ -170,10 +177,3 @@ class MotionArrays:
             self.sines,
             bound,
         )
-
-
-def _continue_angle(theta: Array, span: slice) -> None:
-    """Take whole turns off the samples of ``span`` so that they follow on from those before."""
-    part = theta[max(span.start - 1, 0) : span.stop]
-    if part.max() - part.min() > math.pi:  # else there is no jump to look for
-        part[1:] -= math.tau * np.cumsum(np.round((part[1:] - part[:-1]) / math.tau))

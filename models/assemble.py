@@ -136,12 +136,17 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
         point=table.point or name,
         on=table.on,
         through_m=table.through_m,
-        direction_rad=math.radians(table.direction_deg),
+        direction_rad=_within_a_turn(table.direction_deg),
         link=table.link,
-        angle_rad=math.radians(table.angle_deg),
+        angle_rad=_within_a_turn(table.angle_deg),
         mass_kg=mass,
         inertia_kg_m2=inertia,
     )
+
+
+def _within_a_turn(degrees: float) -> float:
+    """An angle that counts but for whole turns, in radians: without them it loses no digits."""
+    return math.radians(math.fmod(degrees, 360.0))
 
 
 def _law(driver: DriverTable) -> Law:
@@ -151,7 +156,7 @@ def _law(driver: DriverTable) -> Law:
             math.radians(driver.centre_deg),
             math.radians(driver.amplitude_deg),
             driver.frequency_rad_s,
-            math.radians(driver.phase_deg),
+            _within_a_turn(driver.phase_deg),
         )
     if isinstance(driver, FromRestDriver):
         return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)

@@ -12,7 +12,11 @@ from models.scene import Point
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Angle ``theta`` [rad] (continuous, not wrapped), ``omega`` [rad/s], ``alpha`` [rad/s^2]."""
+    """Angle ``theta`` [rad], ``omega`` [rad/s], ``alpha`` [rad/s^2].
+
+    The angle goes on continuously with the driver's, its whole turns counted from time 0: which
+    instants are asked for, and in what order, does not matter.
+    """
 
     theta: Array
     omega: Array

@@ -41,6 +41,7 @@ FLOORS: Mapping[str, str] = {
         mechanism
         nearness kinematics
         forces free change_points check reach result
+        turns
         dyads
         structure
     """,

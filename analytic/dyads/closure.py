@@ -17,6 +17,7 @@ toggle: each dyad then gives the width of its fold, and rates are not certain at
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,7 +91,7 @@ def certify(
     jacobian: Jacobian,
     residual: Real,
     curvature: Curvature,
-    fold: tuple[Real, Real],
+    folds: Callable[[], tuple[Real, Real]],
     lost: Real = 0.0,
 ) -> tuple[Real, Real]:
     """Bounds on the errors of a dyad's two unknowns at position level.
@@ -103,9 +104,9 @@ def certify(
         Bound on |f| at the computed position and the exact inputs [m].
     curvature : Curvature
         Bounds on the second derivatives of f nearby.
-    fold : tuple
+    folds : Callable
         What the errors of the unknowns are at most beside the toggle, where the first order
-        no longer says anything.
+        no longer says anything; asked for only where it matters.
     lost : Array or float
         What the errors of the inputs may take off the determinant, where its columns hold any.
     """
@@ -113,4 +114,8 @@ def certify(
     inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)
     e1, e2 = n2 * residual * inverse, n1 * residual * inverse
     valid = 4.0 * curvature.remainder(e1, e2) <= residual
-    return np.where(valid, 2.0 * e1, fold[0]), np.where(valid, 2.0 * e2, fold[1])
+    e1, e2 = 2.0 * e1, 2.0 * e2
+    if np.all(valid):
+        return e1, e2
+    fold1, fold2 = folds()
+    return np.where(valid, e1, fold1), np.where(valid, e2, fold2)

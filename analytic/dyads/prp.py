@@ -15,7 +15,7 @@ import numpy as np
 
 from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Closure, Dyad, MovingLine, OpenError, SlideError, Sliding
-from analytic.dyads.plane import EPS, Real
+from analytic.dyads.plane import EPS
 
 
 def solve(
@@ -82,9 +82,8 @@ def _errors(
     # The loop is linear in s1, s2, but its lines turn with the errors of their bodies; that share
     # is in the residual, and in the columns below.
     turn1, turn2 = line1.error.theta + 2 * EPS, line2.error.theta + 2 * EPS
-    nowhere: Real = np.inf
     e1, e2 = certify(
-        jacobian, residual, Curvature(0.0, 0.0, 0.0), (nowhere, nowhere), turn1 + turn2
+        jacobian, residual, Curvature(0.0, 0.0, 0.0), lambda: (np.inf, np.inf), turn1 + turn2
     )
     certificate = Certificate(jacobian, e1, e2, turn1, turn2)
     drift = line1.errors(s1, v1, e1, 0.0)[1] + line2.errors(s2, v2, e2, 0.0)[1]

@@ -31,8 +31,17 @@ def total(*points: Point) -> Point:
     return (math.fsum(p[0] for p in points), math.fsum(p[1] for p in points))
 
 
+def rounding_of_angles(*angles: float) -> float:
+    """Rounding of the direction of a sum of constant angles [rad], each known to its last digit.
+
+    The sum may be small where they are large; what is lost is that of the large ones.
+    """
+    return 4 * EPS * (1.0 + sum(map(abs, angles)))
+
+
 def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
-    """Rounding of a place worked out by turning constant vectors by up to ``angle`` [m].
+    """Rounding of a place worked out by turning constant vectors by angles that come to ``angle``,
+    all taken as positive [m].
 
     ``onto`` is what they were added to; 0 where there was nothing to add.
     """
@@ -87,24 +96,26 @@ class Bar:
 
 
 def turning_body(
-    found: Turning, back: Vec, local: Point, anchor: PointKinematics
+    found: Turning, back: Vec, local: Point, anchor: PointKinematics, rounding: float = 0.0
 ) -> BodyKinematics:
-    """The body whose frame stands at the angle of ``found`` less that of ``back``."""
+    """The body whose frame stands at the angle of ``found`` less that of ``back``, which is known
+    but for ``rounding`` [rad]."""
     aligned = back.x == 1.0 and back.y == 0.0
     turn = found.turn if aligned else found.turn.turned(Vec(back.x, -back.y))
-    return BodyKinematics(
-        local, anchor, turn, found.omega, found.alpha, found.error, None, found.length
-    )
+    error = found.error
+    if error is not None and rounding:
+        error = replace(error, theta=error.theta + rounding)
+    return BodyKinematics(local, anchor, turn, found.omega, found.alpha, error, None, found.length)
 
 
 def following_body(
-    known: BodyKinematics, by: float, local: Point, anchor: PointKinematics
+    known: BodyKinematics, by: float, rounding: float, local: Point, anchor: PointKinematics
 ) -> BodyKinematics:
-    """The body that keeps the angle ``by`` to a known body."""
+    """The body that keeps the angle ``by``, known but for ``rounding`` [rad], to a known body."""
     theta = None if known.theta is None else known.theta + by
     error = known.error
-    if error is not None and by != 0.0:
-        error = replace(error, theta=error.theta + 4 * EPS * (1.0 + abs(by)))
+    if error is not None:
+        error = replace(error, theta=error.theta + rounding)
     turn = known.turn.turned(direction(by))
     return BodyKinematics(local, anchor, turn, known.omega, known.alpha, error, theta, known.length)
 
@@ -115,8 +126,9 @@ class RidingLine:
 
     The line goes through ``base`` at ``angle`` in the known body's frame; the slider's
     displacement is ``sign`` times the coordinate on this line. The unknown body keeps the angle
-    ``follow`` to the known one, and its point ``rider`` (in its own frame) is the one on the line.
-    ``slack`` bounds the rounding of ``base`` where that was worked out [m].
+    ``follow`` to the known one, the sum of angles that all taken as positive come to ``angles``,
+    and its point ``rider`` (in its own frame) is the one on the line. ``slack`` bounds the rounding
+    of ``base`` where that was worked out [m].
     """
 
     known: str
@@ -124,6 +136,7 @@ class RidingLine:
     angle: float
     sign: int
     follow: float
+    angles: float
     rider: Point
     slack: float = 0.0
 
@@ -133,19 +146,24 @@ class RidingLine:
         slider = placed.scene.sliders[name]
         body = sliding_body(slider)
         pin = placed.local(body, slider.point)
+        line, angle = slider.direction_rad, slider.angle_rad
+        angles = abs(line) + abs(angle)
         if slider.on in placed.known:
-            follow = slider.direction_rad + slider.angle_rad
-            return RidingLine(slider.on, slider.through_m, slider.direction_rad, 1, follow, pin)
-        follow = -slider.direction_rad - slider.angle_rad
-        return RidingLine(body, pin, -slider.angle_rad, -1, follow, slider.through_m)
+            return RidingLine(slider.on, slider.through_m, line, 1, line + angle, angles, pin)
+        return RidingLine(body, pin, -angle, -1, -line - angle, angles, slider.through_m)
 
     def through(self, local: Point) -> tuple[RidingLine, float]:
         """The parallel line of another point of the unknown body, and that point's lead on it."""
         away = less(local, self.rider)
         lead, aside = turned(away, self.follow - self.angle)
         base = total(self.base, turned((0.0, aside), self.angle))
-        slack = rounding_of(abs(self.follow) + 2.0 * abs(self.angle), away, onto=base)
+        slack = rounding_of(self.angles + 2.0 * abs(self.angle), away, onto=base)
         return replace(self, base=base, rider=local, slack=slack), lead
+
+    @property
+    def rounding(self) -> float:
+        """Rounding of the angle that the unknown body keeps [rad]."""
+        return rounding_of_angles(self.angles) if self.angles else 0.0
 
     def line(self, chunk: Chunk) -> MovingLine:
         """The line in motion."""
@@ -153,7 +171,7 @@ class RidingLine:
         along = body.unit(self.angle)
         error = body.error
         if error is not None:
-            error = replace(error, theta=error.theta + 4 * EPS)
+            error = replace(error, theta=error.theta + rounding_of_angles(self.angle))
         point = body.point(self.base)
         if self.slack and error is not None and point.error is not None:
             point = replace(point, error=_loosened(point.error, self.slack, body))

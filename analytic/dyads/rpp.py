@@ -26,6 +26,7 @@ def solve(
     p1: PointKinematics,
     line: MovingLine,
     inner: Vec,
+    rounding: float = 0.0,
     *,
     certified: bool = False,
     stretch: bool = False,
@@ -40,6 +41,8 @@ def solve(
         The line on which the link slides.
     inner : Vec
         Unit vector of the block's line k against e: the constant angle from e to k.
+    rounding : float
+        What that angle may be off by [rad].
     certified, stretch
         As for `analytic.dyads.prp.solve`.
 
@@ -54,7 +57,10 @@ def solve(
     OpenError
         The two lines are parallel.
     """
-    across = MovingLine(p1, line.along.turned(inner), line.omega, line.alpha, line.error)
+    error = line.error
+    if error is not None:
+        error = replace(error, theta=error.theta + rounding)
+    across = MovingLine(p1, line.along.turned(inner), line.omega, line.alpha, error)
     crossing = prp.solve(line, across, certified=certified, stretch=stretch)
     # The crossing lies at s2 from P1 along k; the block lies at -s2 from the crossing.
     second = crossing.second

@@ -100,10 +100,14 @@ def _errors(
     gap = (p1.p - p2.p - along * s - along.perp() * offset).norm()
     size = p1.p.norm() + p2.p.norm() + 2.0 * (np.abs(s) + abs(offset))
     residual = gap + p1.error.position + p2.error.position + ROUNDING * size
-    fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
-    # Where the two pins nearly meet the direction of the line is not determined at all.
-    turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
-    t, es = certify(jacobian, residual, Curvature(arm, 1.0, 0.0), (turn, fold + residual))
+
+    def folds() -> tuple[Real, Real]:
+        fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
+        # Where the two pins nearly meet the direction of the line is not determined at all.
+        turn = np.where(arm > 2.0 * residual, np.fmin(np.pi, 2.0 * fold / arm), np.pi)
+        return turn, fold + residual
+
+    t, es = certify(jacobian, residual, Curvature(arm, 1.0, 0.0), folds)
     certificate = Certificate(jacobian, t, es, arm * t + es, t)
     r, ev = certificate.above(
         w, v, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()

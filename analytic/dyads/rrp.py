@@ -103,11 +103,11 @@ def _errors(
     # moves the toggle.
     turn = line.error.theta + 2 * EPS
     slack = residual + turn * (np.abs(jacobian.det) + turn * length)
-    fold = 2.0 * np.abs(jacobian.det) + 2.5 * np.sqrt(slack * length)
-    folds: tuple[Real, Real] = (
-        np.minimum(fold / length + turn, np.pi),
-        fold + slack + turn * length,
-    )
+
+    def folds() -> tuple[Real, Real]:
+        fold = 2.0 * np.abs(jacobian.det) + 2.5 * np.sqrt(slack * length)
+        return np.minimum(fold / length + turn, np.pi), fold + slack + turn * length
+
     t, es = certify(jacobian, residual, Curvature(length, 0.0, 0.0), folds, turn * length)
     certificate = Certificate(jacobian, t, es, length * t, turn)
     _, drift, _ = line.errors(s, speed, es, 0.0)

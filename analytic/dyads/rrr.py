@@ -122,12 +122,9 @@ def _errors(
     gap = gap + np.abs(first.turn.norm() - l1) + np.abs(second.turn.norm() - l2)
     size = p1.p.norm() + p2.p.norm() + 2.0 * (l1 + l2)
     residual = gap + p1.error.position + p2.error.position + ROUNDING * size
-    bend = np.sqrt(residual * l1 * l2 / apart)
-    fold = 2.0 * np.abs(jacobian.det) / apart + 2.5 * bend
-    turn = np.pi * residual / apart  # of the line between the outer pins
-    # No angle is wrong by more than half a turn; nor is one that was not found at all (NaN).
-    folds = np.fmin(fold / l1 + turn, np.pi), np.fmin(fold / l2 + turn, np.pi)
-    t1, t2 = certify(jacobian, residual, Curvature(l1, 0.0, l2), folds)
+    t1, t2 = certify(
+        jacobian, residual, Curvature(l1, 0.0, l2), lambda: _folds(jacobian, residual, apart, dyad)
+    )
     certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2)
     w1, w2 = np.abs(first.omega), np.abs(second.omega)
     r1, r2 = certificate.above(
@@ -141,3 +138,31 @@ def _errors(
         p1.a.norm() + p2.a.norm() + l1 * w1 * w1 + l2 * w2 * w2,
     )
     return AngleError(t1 + 4 * EPS, r1, a1), AngleError(t2 + 4 * EPS, r2, a2)
+
+
+def _folds(
+    jacobian: Jacobian, residual: Real, apart: Real, dyad: Dyad[Turning, Turning]
+) -> tuple[Real, Real]:
+    """Bounds of the angles where the first order says nothing: of the line between the outer pins,
+    and of the links against it.
+
+    By a residual e the foot of C on the line, x1 from P1 and x2 from P2, moves along it by up to
+    e / d (|x2| + |x1 - x2| e / d) and a little, which turns the links by that over its height;
+    where that is small, or the links in line, by twice the height and the square root of it.
+    """
+    l1, l2 = dyad.first.length, dyad.second.length
+    line = np.pi * residual / apart
+    height = np.abs(jacobian.det) / apart
+    fold = 2.0 * height + 2.5 * np.sqrt(residual * l1 * l2 / apart)
+    base = dyad.first.turn - dyad.second.turn
+    share = residual / apart
+    found = []
+    for one, other in ((dyad.first, dyad.second), (dyad.second, dyad.first)):
+        far = np.abs(base.dot(other.turn)) / apart
+        near = np.abs(base.dot(one.turn)) / apart
+        shift = 2.0 * share * (far + (far + near) * share)
+        small = (share <= 0.25) & (4.0 * one.length * shift <= height * height)
+        swing = np.where(small, 2.0 * shift / height, fold / one.length)
+        # No angle is wrong by more than half a turn; nor is one that was not found at all (NaN).
+        found.append(np.fmin(np.fmin(swing, fold / one.length) + line, np.pi))
+    return found[0], found[1]

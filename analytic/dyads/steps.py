@@ -19,6 +19,7 @@ from analytic.dyads.riding import (
     following_body,
     riding_point,
     rounding_of,
+    rounding_of_angles,
     total,
     turning_body,
     without_lead,
@@ -110,7 +111,8 @@ class RRPStep:
         chunk.bodies[g.first] = self.bar.body(dyad.first, p1)
         pin = riding_point(line, dyad.second)
         known = chunk.bodies[self.riding.known]
-        chunk.bodies[g.second] = following_body(known, self.riding.follow, self.rider, pin)
+        follow, rounding = self.riding.follow, self.riding.rounding
+        chunk.bodies[g.second] = following_body(known, follow, rounding, self.rider, pin)
         chunk.sliders[g.outer2] = self.through.displacement(dyad.second, self.lead)
 
 
@@ -131,8 +133,11 @@ class RPRStep:
         tip = placed.local(self.body, slider.point)
         reach = turned(less(tip, self.local1), slider.angle_rad)
         self.lead, self.offset = foot[0] - reach[0], foot[1] - reach[1]
-        self.slack = rounding_of(abs(slider.direction_rad) + abs(slider.angle_rad), foot, reach)
-        self.back1, self.back2 = direction(-slider.angle_rad), direction(slider.direction_rad)
+        line, angle = slider.direction_rad, slider.angle_rad
+        self.slack = rounding_of(abs(line) + abs(angle), foot, reach)
+        self.back1, self.back2 = direction(-angle), direction(line)
+        self.rounding1 = rounding_of_angles(angle) if angle else 0.0
+        self.rounding2 = rounding_of_angles(line) if line else 0.0
 
     def advance(self, chunk: Chunk) -> None:
         p1, p2 = chunk.point(self.hold1, self.pin1), chunk.point(self.hold2, self.pin2)
@@ -143,8 +148,9 @@ class RPRStep:
         branch, stretch = chunk.assembly(self.key)
         free = rpr.solve(block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch)
         dyad = chunk.keep(self.key, free)
-        chunk.bodies[self.body] = turning_body(dyad.first, self.back1, self.local1, p1)
-        chunk.bodies[self.guide] = turning_body(dyad.first, self.back2, self.local2, p2)
+        found = dyad.first
+        chunk.bodies[self.body] = turning_body(found, self.back1, self.local1, p1, self.rounding1)
+        chunk.bodies[self.guide] = turning_body(found, self.back2, self.local2, p2, self.rounding2)
         chunk.sliders[self.slider] = without_lead(dyad.second, self.lead, self.slack)
 
 
@@ -166,7 +172,9 @@ class PRPStep:
         for i, (body, slider, sliding) in enumerate(ends):
             riding, pin = self.ridings[i], riding_point(lines[i], sliding)
             known = chunk.bodies[riding.known]
-            chunk.bodies[body] = following_body(known, riding.follow, self.locals[i], pin)
+            chunk.bodies[body] = following_body(
+                known, riding.follow, riding.rounding, self.locals[i], pin
+            )
             line, lead = self.through[i]
             chunk.sliders[slider] = line.displacement(sliding, lead)
         chunk.keep(self.key, dyad)
@@ -181,24 +189,30 @@ class RPPStep:
         self.outer = RidingLine.of(placed, group.outer2)
         inner = RidingLine.of(replace(placed, known=frozenset({group.second})), group.inner)
         # Everything below is in the frame of the known body, in which both lines keep their angle.
-        self.follow = self.outer.follow + inner.follow
+        angles = self.outer.angles + inner.angles
+        self.follow, self.rounding = self.outer.follow + inner.follow, rounding_of_angles(angles)
         offset = turned(less(inner.base, self.outer.rider), self.outer.follow)
         arm = turned(less(self.local, inner.rider), self.follow)
         base = total(self.outer.base, offset, arm)
-        slack = rounding_of(abs(self.outer.follow) + abs(self.follow), offset, arm, onto=base)
+        slack = rounding_of(self.outer.angles + angles, offset, arm, onto=base)
         self.through = replace(self.outer, base=base, slack=slack)
         self.inner = inner
         self.between = direction(self.outer.follow + inner.angle - self.outer.angle)
+        self.apart = rounding_of_angles(self.outer.angles, inner.angle, self.outer.angle)
 
     def advance(self, chunk: Chunk) -> None:
         g = self.group
         p1 = chunk.point(self.hold, g.outer1)
         line = self.through.line(chunk)
-        dyad = rpp.solve(p1, line, self.between, certified=chunk.certified, stretch=chunk.stretch)
-        known = chunk.bodies[self.outer.known]
-        rider = riding_point(self.outer.line(chunk), dyad.first)
-        chunk.bodies[g.second] = following_body(known, self.outer.follow, self.outer.rider, rider)
-        chunk.bodies[g.first] = following_body(known, self.follow, self.local, p1)
+        dyad = rpp.solve(
+            p1, line, self.between, self.apart, certified=chunk.certified, stretch=chunk.stretch
+        )
+        known, outer = chunk.bodies[self.outer.known], self.outer
+        rider = riding_point(outer.line(chunk), dyad.first)
+        chunk.bodies[g.second] = following_body(
+            known, outer.follow, outer.rounding, outer.rider, rider
+        )
+        chunk.bodies[g.first] = following_body(known, self.follow, self.rounding, self.local, p1)
         chunk.sliders[g.outer2] = self.outer.displacement(dyad.first, 0.0)
         chunk.sliders[g.inner] = self.inner.displacement(dyad.second, 0.0)
         chunk.keep(self.key, dyad)

@@ -154,6 +154,26 @@ def test_error_stays_below_the_bound_where_frames_lie_far_off(
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
 
 
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "RRR"])
+@settings(max_examples=3, deadline=None, derandomize=True, database=None)
+@given(data=st.data(), turns=st.sampled_from([-2775, 777, 2775]))
+def test_error_stays_below_the_bound_where_angles_hold_many_turns(
+    form: str, data: st.DataObject, turns: int
+) -> None:
+    """Angles that are small sums of large ones are rounded as those are."""
+    scene = data.draw(mechanisms([form])).scene
+    sliders = {
+        name: replace(
+            s,
+            direction_rad=s.direction_rad + math.tau * turns,
+            angle_rad=s.angle_rad - math.tau * (turns // 7) if s.link is not None else 0.0,
+        )
+        for name, s in scene.sliders.items()
+    }
+    scene = replace(scene, sliders=sliders)
+    assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
+
+
 def with_far_frames(scene: Scene, by: Point) -> Scene:
     """The same mechanism, the origin of each link's frame moved far away from the link."""
 

@@ -13,6 +13,7 @@ import pytest
 
 from models.errors import CrankcheckError, SceneError
 from models.files import MOST_BYTES, load_scene, parse_scene, read_scene, shipped
+from models.laws import Oscillating
 
 GOOD = """
 name = "good"
@@ -340,3 +341,40 @@ def test_file_that_is_too_large(tmp_path: Path) -> None:
     path.write_bytes(b"#" * (MOST_BYTES + 1))
     with pytest.raises(SceneError, match="has at most"):
         read_scene(path)
+
+
+def test_whole_turns_in_a_file_take_no_digits_off_its_angles() -> None:
+    """Of lines, of links on them and of phases; a driver starts where it is told to, turns and all."""
+    text = """
+name = "turns"
+source = "test"
+[ground]
+points = {{ A = [0.0, 0.0] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+rod = {{ bar = ["B", "C"], length_m = 0.3 }}
+ram = {{ bar = ["C", "E"], length_m = 0.1 }}
+[sliders.C]
+on = "ground"
+link = "ram"
+direction_deg = {line}
+angle_deg = {lean}
+[driver]
+link = "crank"
+law = "oscillating"
+centre_deg = {centre}
+amplitude_deg = 500.0
+frequency_rad_s = 2.0
+phase_deg = {phase}
+"""
+    turned = text.format(
+        line=30.25 + 360 * 2777, lean=-45.5 - 360 * 2776, phase=7.0 + 360 * 1000, centre=720.0
+    )
+    one, other = (
+        parse_scene(t, "test")
+        for t in (turned, text.format(line=30.25, lean=-45.5, phase=7.0, centre=720.0))
+    )
+    assert one == other
+    law = one.driver.law
+    assert isinstance(law, Oscillating)
+    assert law.centre_rad == 2.0 * math.tau

@@ -1,0 +1,1 @@
+"""Whole turns of the links, as functions of the driver's angle."""

@@ -1,0 +1,134 @@
+"""Bounds and how loose they are, at hundreds of thousands of samples of random mechanisms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from analytic.kinematics import solve
+from models.array import Array
+from models.motion import Motion
+from tests.analytic.chain import Chain, coordinates
+from tests.analytic.change_points.jets import Jet
+from tests.analytic.oracle import Place
+from tests.analytic.wide_chain import HAS_DIGITS, PI, Rows, Solved, Wide, WideChain
+from tests.worlds.wide_angles import made, times
+
+pytestmark = pytest.mark.skipif(not HAS_DIGITS, reason="long doubles here are floats")
+SAMPLES = 200
+"""Of each mechanism."""
+OWN = 2.0**-58
+"""What the long doubles are wrong by themselves, over the largest of the motion at that level, or
+one below and the fastest link: of what is exact, a bound of 0."""
+LEVELS = ("value", "rate", "second")
+QUANTITIES = {
+    "links": ("theta", "omega", "alpha"),
+    "points": ("position", "velocity", "acceleration"),
+    "sliders": ("displacement", "speed", "rate of speed"),
+}
+
+
+@dataclass(frozen=True)
+class Held:
+    """Errors and bounds of one quantity of one body, (T,)."""
+
+    quantity: str
+    error: Array
+    bound: Array
+
+
+def _beside(motion: Motion, exact: Solved) -> Iterator[Held]:
+    bound = motion.bound
+    assert bound is not None
+    fastest = max(np.abs(link.omega).max() for link in motion.links.values())
+    for kind, names in QUANTITIES.items():
+        bodies = {body: _levels(jet) for body, jet in getattr(exact, kind).items()}
+        if not bodies:
+            continue
+        largest = [max(np.abs(rows[k]).max() for rows in bodies.values()) for k in range(3)]
+        first = 1.0 if kind == "links" else largest[0]  # whole turns have no part in it
+        largest = [first, max(largest[1], first * fastest), largest[2]]
+        largest[2] = max(largest[2], largest[1] * fastest)
+        for body, levels in bodies.items():
+            found = vars(getattr(motion, kind)[body]).values()
+            limits = vars(getattr(bound, kind)[body]).values()
+            for k, (array, limit) in enumerate(zip(found, limits, strict=True)):
+                apart = Wide(array.T) - levels[k]
+                if names[k] == "theta":
+                    apart -= 2 * PI * np.round(apart / (2 * PI))
+                error = np.hypot(*apart) if kind == "points" else np.abs(apart)
+                error = np.where(error > OWN * largest[k], error, 0)
+                yield Held(names[k], np.float64(error), limit)
+
+
+def _levels(exact: Jet | Place) -> list[Rows]:
+    """Value, rate and second derivative, (T,) or (2, T)."""
+    if isinstance(exact, Jet):
+        return [getattr(exact, name) for name in LEVELS]
+    pairs = [(getattr(exact.x, name), getattr(exact.y, name)) for name in LEVELS]
+    return [np.stack(np.broadcast_arrays(*pair)).reshape(2, -1) for pair in pairs]
+
+
+def held(number: int) -> list[Held]:
+    """Everything that moves in the mechanism of a number."""
+    turned = made(number)
+    motion = solve(turned.scene, times(turned.scene, number, SAMPLES))
+    exact = WideChain(turned.scene, turned.given).solve(motion)
+    return list(_beside(motion, exact))
+
+
+def _hold(numbers: range) -> None:
+    """No error above its bound, and none that is missing."""
+    for number in numbers:
+        for row in held(number):
+            over = np.flatnonzero(~(row.error <= row.bound))
+            assert not over.size, (
+                f"mechanism {number}: {row.quantity}: error {row.error[over[0]]:.3g} above the "
+                f"bound {row.bound[over[0]]:.3g}, at {over.size} of {SAMPLES} samples"
+            )
+
+
+def test_errors_stay_below_their_bounds_at_thousands_of_samples() -> None:
+    """Of all dyads, with angles up to a million degrees and times up to a million turns."""
+    _hold(range(15))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(10))
+def test_errors_stay_below_their_bounds_at_300_000_samples(part: int) -> None:
+    _hold(range(150 * part, 150 * (part + 1)))
+
+
+@pytest.mark.parametrize("number", range(0, 10, 2))
+def test_long_doubles_agree_with_fifty_digits(number: int) -> None:
+    """To a thousandth of the bounds that are held to them."""
+    turned = made(number)  # in radians, as the other oracle has them
+    scene = turned.scene
+    motion = solve(scene, times(scene, number, 6))
+    assert motion.bound is not None
+    wide, chain = WideChain(scene, turned.given).solve(motion), Chain(scene)
+    for i, t in enumerate(motion.time_s):
+        exact = chain.solve(float(t), coordinates(scene, motion, i))
+        for kind in QUANTITIES:
+            for body, truth in getattr(exact, kind).items():
+                found, limit = getattr(wide, kind)[body], getattr(motion.bound, kind)[body]
+                for own, other in zip(_jets(found), _jets(truth), strict=True):
+                    for name, most in zip(LEVELS, vars(limit).values(), strict=True):
+                        apart = _digits(getattr(own, name), i) - getattr(other, name)
+                        if kind == "links" and name == "value":
+                            apart -= 2 * mp.pi * mp.nint(apart / (2 * mp.pi))
+                        assert abs(apart) <= 1e-3 * most[i] + OWN
+
+
+def _jets(exact: Jet | Place) -> list[Jet]:
+    return [exact] if isinstance(exact, Jet) else [exact.x, exact.y]
+
+
+def _digits(rows: Rows, i: int) -> mpf:
+    """A long double, all of its digits."""
+    number = np.ravel(rows)[i if np.size(rows) > 1 else 0]
+    return mpf(float(number)) + mpf(float(number - Wide(float(number))))
