@@ -39,7 +39,7 @@ StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]
 Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
-Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")]
+Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
 """Options that several commands have."""
 
 

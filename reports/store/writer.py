@@ -11,6 +11,7 @@ from types import TracebackType
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
+from models.regular import UnreadableError
 from reports.describe.frame import motion_frame
 from reports.judge.frames import parquet
 from reports.output.write import check_folder, write
@@ -19,7 +20,7 @@ from reports.store.folder import has_parts, paths_of
 from reports.store.lock import locked
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.mending import mend
-from reports.store.part import UnreadableError, open_part, write_part
+from reports.store.part import open_part, write_part
 from reports.store.schema import LOCK, TABLES, table
 
 EVERY_S = 1.0
