@@ -1,12 +1,44 @@
 """crankcheck: which physics engine, with which settings, can you trust with a closed loop?
 
 The public face, the same in a checkout and where the wheel is installed. Importing it costs next to
-nothing: what stands behind a name is loaded when the name is first used.
+nothing: what stands behind a name is loaded when the name is first used. Where it is the command
+that begins, Ctrl-C is heard from here on.
 """
 
-from __future__ import annotations
+import sys
 
-from typing import TYPE_CHECKING
+
+def _interrupted(*_: object) -> None:
+    """End the process as the command ends it for Ctrl-C; there is nothing to be undone yet."""
+    import os
+
+    os.write(2, b"crankcheck: interrupted\n")
+    os._exit(130)
+
+
+def _end_on_ctrl_c() -> None:
+    """Let Ctrl-C end the process with one line, until `reports.workers.signals` takes it over."""
+    try:
+        import signal
+
+        # One that is ignored stays ignored (nohup).
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, _interrupted)
+    except KeyboardInterrupt:
+        _interrupted()
+
+
+def _is_command(program: str) -> bool:
+    """Whether that is the program of `crankcheck`, or `python -m crankcheck` is being looked up."""
+    if program == "-m":
+        return not {"crankcheck", "-mcrankcheck"}.isdisjoint(sys.orig_argv)
+    return program.replace("\\", "/").rpartition("/")[2].removesuffix(".exe") == "crankcheck"
+
+
+if _is_command((getattr(sys, "argv", None) or [""])[0]):
+    _end_on_ctrl_c()
+TYPE_CHECKING = False
+"""As that of `typing`, whose import would take longer than all else here."""
 
 if TYPE_CHECKING:
     from analytic.kinematics import solve, solve_driven

@@ -7,10 +7,14 @@ message and exits with 2; anything else that escapes is a fault of crankcheck.
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable, Sequence
 
 SHOWN = 20
-"""Faults of one scene that a message lists; the others are counted."""
+"""Faults of one file that a message lists; the others are counted."""
+
+LONGEST = 8_000
+"""Characters of a message, whatever of a file or of an option stands in it."""
 
 
 def harmless(text: str) -> str:
@@ -46,6 +50,22 @@ def cut(text: str, most: int = 60) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
+def shown(found: object) -> str:
+    """What was found in a file, short enough for a message."""
+    if isinstance(found, float) and not math.isfinite(found):
+        return str(found)
+    return cut(repr(found))
+
+
+def listed(place: str, faults: Sequence[str]) -> str:
+    """The message of several faults: the first of them, one a line, and how many more there are."""
+    lines = [*faults[:SHOWN]]
+    if left := len(faults) - len(lines):
+        lines.append(f"and {left} more")
+    where = place.replace("\n", "\\n")  # a line of the message is one of ours
+    return f"{where}: " + "\n  ".join([""] * (len(lines) > 1) + lines)
+
+
 class CrankcheckError(Exception):
     """A fault in what the user asked for; its text is the whole message.
 
@@ -53,7 +73,7 @@ class CrankcheckError(Exception):
     """
 
     def __str__(self) -> str:
-        return harmless(super().__str__())
+        return harmless(cut(super().__str__(), LONGEST))
 
 
 class SceneError(CrankcheckError):
@@ -70,11 +90,7 @@ class SceneError(CrankcheckError):
     def __init__(self, place: str, faults: Sequence[str]) -> None:
         self.place = place
         self.faults = tuple(faults)
-        lines = [*self.faults[:SHOWN]]
-        if left := len(faults) - len(lines):
-            lines.append(f"and {left} more")
-        where = place.replace("\n", "\\n")  # a line of the message is one of ours
-        super().__init__(f"{where}: " + "\n  ".join([""] * (len(lines) > 1) + lines))
+        super().__init__(listed(place, faults))
 
     def __reduce__(self) -> tuple[type[SceneError], tuple[str, tuple[str, ...]]]:
         """Rebuilt from its parts, in another process too."""

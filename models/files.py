@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TypeVar
@@ -12,20 +9,14 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
-from models.errors import CrankcheckError, SceneError, cut, nearest, suggestion
+from models.errors import CrankcheckError, SceneError, cut, nearest, shown, suggestion
 from models.names import faults_of_names
+from models.regular import UnreadableError, regular_text
 from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
+from models.toml_text import tables
 
 SCENE_FOLDER = Path(__file__).parent / "scenes"
-MOST_BYTES = 200_000
-"""A thousand links take about half of it."""
-DEEPEST = 50
-"""Parts of a key: the time and memory of `tomllib` grow with their square, gigabytes at 50,000."""
-_DEEP_KEY = re.compile(
-    r"""(?<![\w"'\\-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
-    rf"{{{DEEPEST}}}"
-)
 M = TypeVar("M", bound=BaseModel)
 
 
@@ -84,7 +75,7 @@ def scene_texts(names: Iterable[str]) -> dict[str, str]:
     Raises CrankcheckError as `load_scene`.
     """
     texts: dict[str, str] = {}
-    for given in tuple(names) or tuple(shipped()):
+    for given in dict.fromkeys(names) or shipped():
         path = find_scene(given)
         text = read_text(path)
         texts[parse_scene(text, str(path)).name] = text
@@ -93,7 +84,10 @@ def scene_texts(names: Iterable[str]) -> dict[str, str]:
 
 def parse_scene(text: str, place: str) -> Scene:
     """A scene from TOML text; ``place`` names it in messages. Raises SceneError."""
-    raw = _parsed(text, place)
+    try:
+        raw = tables(text)
+    except UnreadableError as error:
+        raise SceneError(place, [str(error)]) from None
     faults: list[str] = []
     table = _validated(SceneTable, raw, "", faults)
     driver = _driver(raw.get("driver"), faults)
@@ -103,38 +97,12 @@ def parse_scene(text: str, place: str) -> Scene:
     return scene_from_table(table, driver, place)
 
 
-def _parsed(text: str, place: str) -> dict[str, object]:
-    """The tables of TOML text. Raises SceneError."""
-    if deep := _DEEP_KEY.search(text):
-        line = text.count("\n", 0, deep.start()) + 1
-        fault = f"line {line}: a key of more than {DEEPEST} parts; the deepest of a scene has 4"
-        raise SceneError(place, [fault])
-    try:
-        return tomllib.loads(text)
-    except RecursionError:
-        why = "lists or tables nested too deep; the deepest of a scene has 4 levels"
-    except tomllib.TOMLDecodeError as error:
-        why = str(error)[:300]
-    except ValueError:  # of `int`, which reads only so many digits
-        why = "a number of more digits than can be read; write it as a float, such as 1e15"
-    raise SceneError(place, [f"not valid TOML: {why}"])
-
-
 def read_text(path: Path) -> str:
     """The text of a scene file. Raises SceneError that says why it could not be read."""
-    if path.is_dir():
-        raise SceneError(str(path), ["a directory; name a scene file in it (.toml)"])
     try:
-        raw = path.read_bytes()
-        if len(raw) > MOST_BYTES:
-            fault = f"{len(raw)} bytes; a scene file has at most {MOST_BYTES}"
-            raise SceneError(str(path), [fault])
-        return raw.decode("utf-8-sig")  # some editors put a byte order mark first
-    except UnicodeDecodeError:
-        raise SceneError(str(path), ["not UTF-8 text; save the file as UTF-8"]) from None
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise SceneError(str(path), [f"cannot be read: {why}; check its permissions"]) from None
+        return regular_text(path)
+    except UnreadableError as error:
+        raise SceneError(str(path), [str(error)]) from None
 
 
 def _driver(raw: object, faults: list[str]) -> DriverTable | None:
@@ -149,10 +117,10 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
     law = raw.get("law", "constant")
     model = DRIVERS.get(law) if isinstance(law, str) else None
     if model is None:
-        faults.append(f"driver.law: found {_short(law)}; use one of {', '.join(DRIVERS)}")
+        faults.append(f"driver.law: found {shown(law)}; use one of {', '.join(DRIVERS)}")
         return None
     if isinstance(raw.get("link"), list):
-        faults.append(f"driver.link: found {_short(raw['link'])}; a scene has one driver, one link")
+        faults.append(f"driver.link: found {shown(raw['link'])}; a scene has one driver, one link")
         return None
     return _validated(model, raw, "driver.", faults)
 
@@ -202,7 +170,7 @@ def _line(
         )
     if kind == "value_error":
         return f"{key or 'scene'}: {message.removeprefix('Value error, ')}"
-    return f"{key}: found {_short(found)}; {message[0].lower()}{message[1:]}"
+    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"
 
 
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
@@ -216,10 +184,3 @@ def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     }
     owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
     return list(owner.model_fields)
-
-
-def _short(found: object) -> str:
-    """What was found, short enough for a message."""
-    if isinstance(found, float) and not math.isfinite(found):
-        return str(found)
-    return cut(repr(found))

@@ -6,11 +6,16 @@ does not have the right shape is left out here, and is a fault of `models.schema
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain, islice
 from typing import Any
 
 from models.errors import cut
 from models.scene import GROUND
+
+LISTED = 12
+"""Names that a message lists."""
 
 
 def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
@@ -28,8 +33,8 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
 
 def _list(names: Iterable[str]) -> str:
     """The first of the names, for a message."""
-    shown = [cut(name) for name in names]
-    return ", ".join(shown[:12]) + (", ..." if len(shown) > 12 else "")
+    shown = [cut(name) for name in islice(names, LISTED + 1)]
+    return ", ".join(shown[:LISTED]) + (", ..." if len(shown) > LISTED else "")
 
 
 def _table(raw: object, key: str) -> Mapping[str, Any]:
@@ -59,11 +64,13 @@ def _sliders(
 ) -> Iterator[str]:
     """Sliders on, of, or at what is not there."""
     everywhere = ground.union(*points.values())
-    blocks = [
-        slider.get("point", name)
+    all_points = _list(sorted(everywhere))
+    points_of = {name: _list(sorted(each)) for name, each in points.items()}
+    blocks = Counter(
+        str(slider.get("point", name))
         for name, slider in sliders.items()
         if isinstance(slider, Mapping) and "link" not in slider
-    ]
+    )
     for name, slider in sliders.items():
         if not isinstance(slider, Mapping):
             continue
@@ -72,17 +79,15 @@ def _sliders(
             continue
         on, link = slider.get("on"), slider.get("link")
         if isinstance(on, str) and on != GROUND and on not in points:
-            yield f"{key}.on: found {cut(on)}; use one of {_list([GROUND, *points])}"
+            yield f"{key}.on: found {cut(on)}; use one of {_list(chain([GROUND], points))}"
         if isinstance(link, str) and link not in points:
             yield f"{key}.link: found {cut(link)}; use one of {_list(points)}"
         elif isinstance(link, str) and link == on:
             yield f"{key}.on: link {cut(link)} slides on itself; name another body"
         elif isinstance(link, str) and point not in points[link]:
-            have = _list(sorted(points[link]))
-            yield f"{key}.point: {cut(link)} has no point {cut(point)}; it has {have}"
-        elif link is None and point not in everywhere and blocks.count(point) < 2:
-            have = _list(sorted(everywhere))
-            yield f"{key}.point: no body has a point {cut(point)}; set point to one of {have}"
+            yield f"{key}.point: {cut(link)} has no point {cut(point)}; it has {points_of[link]}"
+        elif link is None and point not in everywhere and blocks[point] < 2:
+            yield f"{key}.point: no body has a point {cut(point)}; set point to one of {all_points}"
 
 
 def _driver(

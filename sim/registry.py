@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,6 +20,10 @@ ENGINES: Mapping[str, str] = {
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer"]
 """What an engine may lack."""
+
+
+class BrokenEngineError(EngineError):
+    """An engine that is installed, and fails when it is imported."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +43,13 @@ class Declaration:
 
 @dataclass(frozen=True)
 class Availability:
-    """Whether an engine can be used here: its version, or the command that installs it."""
+    """Whether an engine can be used here: its version, or the command that installs it; why not,
+    where it is installed."""
 
     name: str
     version: str | None
     install: str
+    broken: str = ""
 
 
 def declaration(name: str) -> Declaration:
@@ -58,7 +65,8 @@ def engine(name: str) -> Engine:
     Raises
     ------
     EngineError
-        No such engine (the message suggests near names), or its package is not installed.
+        No such engine (the message suggests near names), or its package is not installed, or can
+        not be imported here.
     """
     return cast(Engine, _loaded(name, "engine"))
 
@@ -88,13 +96,33 @@ def _loaded(name: str, part: str) -> object:
     package = declaration(name).package
     try:
         module = importlib.import_module(f"{ENGINES[name]}.{part}", __package__)
-    except (ImportError, AttributeError) as error:
+    except Exception as error:
+        _refuse_broken(name, package)
+        if not isinstance(error, ImportError | AttributeError):
+            raise
         # What a half-removed package leaves of an engine is a module that lacks attributes.
         lacking = error.name if isinstance(error, ImportError) else _module_name(error.obj)
         if (lacking or package).split(".")[0] != package:
             raise
         raise EngineError(f"engine {name}: not installed; {install_command(name)}") from None
     return getattr(module, part.upper())
+
+
+def _refuse_broken(name: str, package: str) -> None:
+    """Import the package of an engine by itself: what fails in that is no fault of ours. Raises
+    BrokenEngineError for a package that is there, and fails."""
+    try:
+        importlib.import_module(package)
+    except Exception as error:
+        if isinstance(error, ModuleNotFoundError) and error.name == package:
+            return  # what imports it says what to do
+        why = f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}"
+        named = [f"{key}={value}" for key, value in os.environ.items() if package.upper() in key]
+        cure = f"look at {', '.join(named)}, or install it again" if named else "install it again"
+        raise BrokenEngineError(
+            f"engine {name}: {package} can not be imported here: {why}; {cure}: "
+            f"{install_command(name)}"
+        ) from None
 
 
 def _module_name(value: object) -> str:
@@ -114,9 +142,10 @@ def available() -> tuple[Availability, ...]:
     """All engines, installed or not."""
     engines = []
     for name in ENGINES:
+        version, broken = None, ""
         try:
-            version: str | None = engine(name).version()
-        except EngineError:
-            version = None
-        engines.append(Availability(name, version, install_command(name)))
+            version = engine(name).version()
+        except EngineError as error:
+            broken = str(error) if isinstance(error, BrokenEngineError) else ""
+        engines.append(Availability(name, version, install_command(name), broken))
     return tuple(engines)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from models.errors import EngineError, nearest
+from models.errors import EngineError, nearest, shown
 from sim.engine import Engine, Profile, Settings, SettingValue
 
 
@@ -47,7 +47,7 @@ def check_choices(settings: Settings, choices: Mapping[str, tuple[str, ...]]) ->
     for name, allowed in choices.items():
         if settings[name] not in allowed:
             raise SettingError(
-                f"setting {name}: found {settings[name]!r}; use {' or '.join(allowed)}"
+                f"setting {name}: found {shown(settings[name])}; use {' or '.join(allowed)}"
             )
 
 
@@ -56,7 +56,7 @@ def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) 
     for name, (least, most) in ranges.items():
         if not least <= float(settings[name]) <= most:
             raise SettingError(
-                f"setting {name}: found {settings[name]!r}; it takes {least:g} to {most:g}"
+                f"setting {name}: found {shown(settings[name])}; it takes {least:g} to {most:g}"
             )
 
 
@@ -66,9 +66,9 @@ def _like(name: str, value: SettingValue, model: SettingValue) -> SettingValue:
     try:
         converted = kind(value)
         exact = isinstance(value, str) or float(converted) == float(value)
-    except ValueError:
+    except (ValueError, OverflowError):
         exact = False
     if exact and not (kind is not str and isinstance(value, str) and not value.strip()):
         return converted
     need = {int: "a whole number", float: "a number", str: "text"}[kind]
-    raise SettingError(f"setting {name}: found {value!r}; it takes {need}, such as {model!r}")
+    raise SettingError(f"setting {name}: found {shown(value)}; it takes {need}, such as {model!r}")

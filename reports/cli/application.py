@@ -15,8 +15,14 @@ from typing import Annotated, Any, NoReturn, TypeVar, get_args, get_type_hints
 import typer
 
 from models.errors import CrankcheckError, harmless
-from reports.output.console import UNWRITABLE, give_up_output, readable_everywhere
-from reports.workers.signals import Stopped, broken_pipe_ends, install, seen
+from reports.cli.broken_package import broken_package
+from reports.output.console import (
+    UNWRITABLE,
+    forget_odd_sizes,
+    give_up_output,
+    readable_everywhere,
+)
+from reports.workers.signals import Stopped, broken_pipe_ends, finish, install, seen
 
 app = typer.Typer(
     name="crankcheck",
@@ -39,22 +45,31 @@ StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]
 Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
-Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0: one per processor.")]
+Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
 """Options that several commands have."""
 
 
 def main() -> None:
     """The entry of the command `crankcheck`."""
-    with guarded():
-        install()
-        broken_pipe_ends(at_once=True)
-        if sys.stdout is None:
-            raise CrankcheckError("standard output is closed; send it to a file, or to /dev/null")
-        readable_everywhere()
+    try:
         try:
-            app()
+            with guarded():
+                install()
+                broken_pipe_ends(at_once=True)
+                if sys.stdout is None:
+                    raise CrankcheckError(
+                        "standard output is closed; send it to a file, or to /dev/null"
+                    )
+                forget_odd_sizes()
+                readable_everywhere()
+                try:
+                    app()
+                finally:
+                    sys.stdout.flush()
         finally:
-            sys.stdout.flush()
+            finish()
+    except Stopped as stopped:  # it came while another end was told, or before all was finished
+        _end(stopped.code, stopped.word)
 
 
 @contextmanager
@@ -79,10 +94,16 @@ def guarded() -> Iterator[None]:
             )
         if os.environ.get(TRACEBACK):
             traceback.print_exc()
-        first = str(error).partition("\n")[0][:300]
+        why = f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}"
+        if package := broken_package(error):
+            _end(
+                BAD_INPUT,
+                f"{package} can not be imported here: {why}; look at the environment variables "
+                "that it reads, or install it again",
+            )
         _end(
             INTERNAL,
-            f"internal error: {type(error).__name__}: {first}; please report it; "
+            f"internal error: {why}; please report it; "
             f"--traceback or {TRACEBACK}=1 shows where it is",
         )
 

@@ -59,7 +59,7 @@ def wanted(engine: str, texts: Sequence[str]) -> list[EngineVersion]:
     for text in texts:
         try:
             versions.add(Version(text))
-        except InvalidVersion:
+        except ValueError:  # InvalidVersion, or a number of very many digits
             raise CrankcheckError(
                 f"version {text[:80]!r}: not a version number; name released versions of "
                 f"{engine}, such as 3.6.0"

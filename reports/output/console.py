@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import sys
 from collections.abc import Sequence
 
@@ -28,6 +29,14 @@ def terminal(stderr: bool = False) -> Terminal:
     stream = sys.stderr if stderr else sys.stdout
     wide = stream is not None and stream.isatty()
     return Terminal(stderr=stderr, width=None if wide else TABLE_WIDTH)
+
+
+def forget_odd_sizes() -> None:
+    """Leave out a size of the terminal that is none: libraries take for a number what is not one,
+    and make lines of any width."""
+    for name in ("COLUMNS", "LINES"):
+        if not re.fullmatch("[1-9][0-9]{0,3}", os.environ.get(name, "80"), re.ASCII):
+            del os.environ[name]
 
 
 def readable_everywhere() -> None:

@@ -1,4 +1,9 @@
-"""The one place that writes files: checked before the work, whole or not at all after it."""
+"""The one place that writes files: checked before the work, whole or not at all after it.
+
+A symbolic link is never followed to what it leads to. One that a user names as a file is refused;
+one that stands where a file of ours goes is replaced, as a file would be. A folder that he names
+may be a link, those of ours in it may not.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +15,8 @@ from pathlib import Path
 
 from models.errors import CrankcheckError
 
+SYSTEM = ("/dev", "/proc")
+"""Where the system has links to what a process reads and writes (`/dev/stdout`, `>(gzip)`)."""
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 can not hold, escaped or not."""
 
@@ -20,24 +27,48 @@ def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
     Raises
     ------
     CrankcheckError
-        An ending that is not one of ``endings``, a folder in its place, no folder to hold it, or
-        no right to write there.
+        An ending that is not one of ``endings``, a link, a folder in its place, no folder to hold
+        it, or no right to write there.
     """
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
         raise CrankcheckError(f"{option} {path}: found {ending}; use {', '.join(endings)}")
     with _looking_at(path, option):
-        if path.is_dir():
+        if not _is_stream(path):
+            refuse_link(path, option)
+    _check_place(path, option)
+
+
+def refuse_link(path: Path, option: str) -> None:
+    """Refuse a symbolic link. Raises CrankcheckError that tells where it leads."""
+    if path.is_symlink():
+        raise CrankcheckError(
+            f"{option} {path}: a link, to {os.path.realpath(path)}; name that itself, or remove "
+            "the link"
+        )
+
+
+def _check_place(path: Path, option: str) -> None:
+    """Refuse the place of a file that could not be written there. Raises CrankcheckError."""
+    with _looking_at(path, option):
+        link = path.is_symlink()
+        if path.is_dir() and not link:
             raise CrankcheckError(f"{option} {path}: a folder; name a file in it")
-        if path.exists():
-            if not os.access(path, os.W_OK):
-                raise CrankcheckError(f"{option} {path}: no right to write it; choose another file")
-            return
+        if path.exists() and not link and not os.access(path, os.W_OK):
+            raise CrankcheckError(f"{option} {path}: no right to write it; choose another file")
         folder = path.parent
         if not folder.is_dir():
             raise CrankcheckError(f"{option} {path}: there is no folder {folder}; create it first")
-        if not os.access(folder, os.W_OK | os.X_OK):
+        if not (_is_stream(path) or os.access(folder, os.W_OK | os.X_OK)):
             raise CrankcheckError(f"{option} {path}: no right to write in {folder}; choose another")
+
+
+def _is_stream(path: Path) -> bool:
+    """Whether it is a device or a pipe, which is written into and not replaced; by a link only
+    where that is one of the system's own."""
+    if path.is_symlink() and not any(map(path.parent.resolve().is_relative_to, SYSTEM)):
+        return False
+    return path.exists() and not (path.is_file() or path.is_dir())
 
 
 def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
@@ -46,6 +77,7 @@ def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
     with _looking_at(path, option):
         nearest = path
         while not nearest.exists() and nearest != nearest.parent:
+            refuse_link(nearest, option)  # to nothing
             nearest = nearest.parent
         if not nearest.is_dir():
             raise CrankcheckError(f"{option} {path}: {nearest} is a file; name a folder")
@@ -54,7 +86,7 @@ def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
                 f"{option} {path}: no right to write in {nearest}; choose another"
             )
     for name in files if nearest == path else ():
-        check_file(path / name, option)
+        _check_place(path / name, option)
 
 
 def check_outputs(
@@ -71,9 +103,9 @@ def check_outputs(
     taken: dict[Path, str] = {}
     for option, path in outputs:
         with _looking_at(path, option):
-            real = path.resolve()
-            device = path.exists() and not path.is_file()  # /dev/stdout takes several
-        if real in taken and not device:
+            real = path.parent.resolve() / path.name
+            several = _is_stream(path)  # /dev/stdout takes them one after the other
+        if real in taken and not several:
             raise CrankcheckError(
                 f"{taken[real]} and {option}: both name {path}; give each a file of its own"
             )
@@ -91,7 +123,7 @@ def _looking_at(path: Path, option: str) -> Iterator[None]:
 
 
 def write(path: Path, content: bytes | str) -> None:
-    """Write a file whole: aside first, then renamed over the old one.
+    """Write a file whole: aside first, then renamed over the old one, or over a link.
 
     Raises
     ------
@@ -100,14 +132,14 @@ def write(path: Path, content: bytes | str) -> None:
     """
     raw = content.encode() if isinstance(content, str) else content
     try:
-        if path.exists() and not path.is_file():  # a device or a pipe can not be renamed over
+        if _is_stream(path):
             path.write_bytes(raw)
             return
-        path = path.resolve()
         path.parent.mkdir(parents=True, exist_ok=True)
         aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")
         try:
-            with aside.open("wb") as file:
+            aside.unlink(missing_ok=True)  # of a process of the same number that was killed
+            with aside.open("xb") as file:  # never what stands there already, or a link
                 file.write(raw)
                 file.flush()
                 os.fsync(file.fileno())  # a name that stands for nothing is all that a crash leaves

@@ -28,7 +28,7 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
         ReachError of the reference, which names group or range.
     """
     scenes: dict[str, Scene] = {}
-    for name in names or shipped():
+    for name in dict.fromkeys(names or shipped()):
         scene = load_scene(name)
         check_names(scene)
         # Whether it has a closed form, and can follow its driver through a period.

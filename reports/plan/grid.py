@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from models.errors import CrankcheckError
-from models.files import scene_texts
+from models.errors import CrankcheckError, few
+from models.files import scene_texts, shipped
 from reports.judge.cell import Cell
+from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines, chosen_scenes
 from reports.plan.key import cell_key, digest, line_key
 from reports.plan.singular import refuse_singular
@@ -16,6 +18,11 @@ from reports.plan.study import Study, Variant
 from sim.engine import SettingValue
 from sim.registry import engine
 from sim.settings import profile_of, resolved
+
+MOST_CELLS = 100_000
+"""A day's work for one machine, and more settings than anybody looks at."""
+ENDLESS = 10**15
+"""Variants beyond which none are counted."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +57,7 @@ class Grid:
 def grid(study: Study) -> Grid:
     """Lay out a study. Raises CrankcheckError for a scene, engine, profile, setting or step that
     can not be run."""
+    refuse_endless(study)
     scenes = chosen_scenes(study.scenes)
     texts = scene_texts(study.scenes)
     variants = [one for variant in study.variants for one in variant.each()]
@@ -81,6 +89,26 @@ def grid(study: Study) -> Grid:
                 key = cell_key(line, cell)
                 tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
     return Grid(tuple(tasks.values()), texts)
+
+
+def refuse_endless(study: Study) -> None:
+    """Refuse more cells than anybody waits for, before they are laid out. Raises CrankcheckError
+    that tells what there are many of."""
+    scenes, steps = len(set(study.scenes)) or len(shipped()), len(study.steps_per_turn)
+    lists = [
+        {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
+        for variant in study.variants
+    ]
+    numbers = [min(math.prod(each.values()), ENDLESS) for each in lists]
+    if (cells := scenes * sum(numbers) * steps) > MOST_CELLS:
+        largest = lists[numbers.index(max(numbers))]
+        several = few((f"{number} of {name}" for name, number in largest.items()), 6)
+        raise CrankcheckError(
+            f"the study asks for {cells:.6g} cells: {told(scenes, 'scene')} x "
+            f"{sum(numbers):.6g} variants"
+            + f" (one has {several}, each with each)" * bool(several)
+            + f" x {steps} steps in a turn; a sweep has at most {MOST_CELLS}: take fewer of them"
+        )
 
 
 def _complete(variant: Variant) -> dict[str, SettingValue]:

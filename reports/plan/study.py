@@ -18,16 +18,16 @@ A list of values makes a variant for each of them, or for each combination of se
 from __future__ import annotations
 
 import itertools
-import tomllib
 from pathlib import Path
 from typing import Annotated, Literal
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, StrictFloat, StrictInt, ValidationError
 from pydantic_core import ErrorDetails
 
-from models.errors import CrankcheckError, suggestion
-from models.files import read_text
+from models.errors import CrankcheckError, cut, listed, shown, suggestion
+from models.regular import UnreadableError, regular_text
+from models.toml_text import tables
+from reports.plan.yaml_text import value
 from sim.engine import SettingValue
 
 DEFAULT = Path(__file__).parent / "studies" / "default.toml"
@@ -48,9 +48,14 @@ class Variant(BaseModel):
         default_factory=dict
     )
 
+    @property
+    def lists(self) -> dict[str, list[StudyValue]]:
+        """The values of each setting."""
+        return {k: v if isinstance(v, list) else [v] for k, v in self.settings.items()}
+
     def each(self) -> list[Variant]:
         """One variant per combination of the listed values, named after them."""
-        lists = {k: v if isinstance(v, list) else [v] for k, v in self.settings.items()}
+        lists = self.lists
         several = [name for name, values in lists.items() if len(values) > 1]
         variants = []
         for values in itertools.product(*lists.values()):
@@ -94,24 +99,22 @@ def load_study(path: Path | None) -> Study:
         raise CrankcheckError(
             f"study {path}: found {kind or 'no ending'}; use .toml, .yaml or .yml"
         )
-    text = read_text(path)
     try:
-        raw = tomllib.loads(text) if kind == ".toml" else yaml.safe_load(text)
-    except (tomllib.TOMLDecodeError, yaml.YAMLError, RecursionError) as error:
-        what = "TOML" if kind == ".toml" else "YAML"
-        first = " ".join(str(error).split())[:300]
-        raise CrankcheckError(f"study {path}: not valid {what}: {first}") from None
+        text = regular_text(path)
+        raw = tables(text) if kind == ".toml" else value(text)
+    except UnreadableError as error:
+        raise CrankcheckError(f"study {path}: {error}") from None
     try:
         return Study.model_validate(raw)
     except ValidationError as error:
-        faults = "\n  ".join(dict.fromkeys(_fault(fault) for fault in error.errors()))
-        raise CrankcheckError(f"study {path}:\n  {faults}") from None
+        faults = list(dict.fromkeys(_fault(fault) for fault in error.errors()))
+        raise CrankcheckError(listed(f"study {path}", faults)) from None
 
 
 def _fault(fault: ErrorDetails) -> str:
     """One fault of a study file: key, what was found, what would work."""
     parts = [str(part) for part in fault["loc"] if not str(part).startswith(("list[", "constr"))]
-    key, message = ".".join(parts) or "study", fault["msg"]
+    key, message = ".".join(map(cut, parts)) or "study", fault["msg"]
     if fault["type"] == "extra_forbidden":
         keys = Variant.model_fields if parts[0] == "variants" else Study.model_fields
         return f"{key}: unknown key; {suggestion(parts[-1], keys, 'known:', 1, 0.6)}"
@@ -119,7 +122,7 @@ def _fault(fault: ErrorDetails) -> str:
         return f"{key}: missing; add it"
     if not parts:
         return "study: a table of scenes, variants and steps_per_turn is needed"
-    return f"{key}: {message[0].lower()}{message[1:]}"
+    return f"{key}: found {shown(fault['input'])}; {message[0].lower()}{message[1:]}"
 
 
 def _short(value: object) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any, Literal, get_args
 from pydantic import TypeAdapter
 
 from models.errors import CrankcheckError
+from models.regular import UnreadableError, regular_bytes
 from reports.output.numbers import finite
 
 Outcome = Literal[
@@ -28,6 +30,10 @@ Outcome = Literal[
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 FORMAT = 1
 FILE = "stability.json"
+MOST_BYTES = 200_000_000
+"""The whole catalogue takes a hundredth of it."""
+BAD = (UnreadableError, ValueError, RecursionError, LookupError, TypeError, AttributeError)
+"""What comes of a file that is not as it was written."""
 
 
 def label(value: float) -> str:
@@ -167,11 +173,15 @@ def read_matrix(folder: Path) -> Matrix:
     Raises
     ------
     CrankcheckError
-        No such file, one that is damaged, or one of another format.
+        No such file, one that is damaged or too large, or one of another format.
     """
     path = folder / FILE
+    if not os.path.lexists(path):
+        raise CrankcheckError(
+            f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"
+        )
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(regular_bytes(path, MOST_BYTES))
         if content["format"] != FORMAT:
             raise CrankcheckError(
                 f"{path}: format {content['format']}; this crankcheck reads format {FORMAT}: run "
@@ -180,12 +190,8 @@ def read_matrix(folder: Path) -> Matrix:
         rows = {key: [_numbers(row) for row in content[key]] for key in ("runs", "critical")}
         parts = {key: content[key] for key in ("facts", "cases", "pictures")}
         return TypeAdapter(Matrix).validate_python(parts | rows)
-    except FileNotFoundError:
-        raise CrankcheckError(
-            f"{folder}: no {FILE} in it; `crankcheck stability -o {folder}` makes one"
-        ) from None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        why = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+    except BAD as error:
+        why = str(error).partition("\n")[0]
         raise CrankcheckError(
             f"{path}: can not be read ({why}); run `crankcheck stability -o {folder}` again"
         ) from None

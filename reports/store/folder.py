@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from reports.store.part import NAME, Part, UnreadableError, open_part
+from models.regular import UnreadableError
+from reports.store.part import NAME, Part, open_part
 from reports.store.schema import TABLES
 
 

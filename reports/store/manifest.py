@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from models.errors import CrankcheckError
+from models.regular import UnreadableError, regular_bytes
 from reports.output.provenance import crankcheck_version
 from reports.plan.key import digest
 from reports.store.damage import command, in_line
-from reports.store.part import UnreadableError, regular_bytes
 from reports.store.schema import FORMAT
 
 MANIFEST = "manifest.json"
+MOST_BYTES = 100_000_000
+"""A sweep of 100,000 cells adds a tenth of it."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def read_manifest(folder: Path) -> Manifest:
         One of another format, which is left alone.
     """
     try:
-        raw = json.loads(regular_bytes(folder / MANIFEST).decode())
+        raw = json.loads(regular_bytes(folder / MANIFEST, MOST_BYTES).decode())
     except (ValueError, RecursionError) as error:
         raise UnreadableError(f"not JSON ({' '.join(str(error).split())[:120]})") from None
     if not isinstance(raw, dict):

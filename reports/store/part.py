@@ -7,7 +7,6 @@ from __future__ import annotations
 import hashlib
 import io
 import re
-import stat
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,16 +15,15 @@ from pathlib import Path
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no stubs
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # as above
 
+from models.regular import UnreadableError, regular_bytes
 from reports.output.write import write
 from reports.store.schema import NESTED
 
 NAME = re.compile(r"(cells|timings)-(\d{20})-(\d+)-([0-9a-f]{16})\.parquet")
 """Table, time [ns], number of rows, and seal."""
 MAGIC = b"PAR1"
-
-
-class UnreadableError(Exception):
-    """A file of a store that can not be read; its text says what is wrong with it."""
+MOST_BYTES = 1_000_000_000
+"""A sweep writes what has come in a second or so, a hundredth of it."""
 
 
 @dataclass(frozen=True)
@@ -74,24 +72,11 @@ def write_part(place: Path, table: str, rows: pa.Table, time_ns: int) -> None:
 
 def open_part(path: Path) -> Part:
     """The part in a file. Raises UnreadableError for one that is not as it was written."""
-    raw = regular_bytes(path)
+    raw = regular_bytes(path, MOST_BYTES)
     if not path.stem.endswith(_seal(raw)):
         whole = raw.endswith(MAGIC)
         raise UnreadableError("not as it was written: its checksum differs" * whole or "cut short")
     return Part(path, pq.ParquetFile(pa.BufferReader(raw)))
-
-
-def regular_bytes(path: Path) -> bytes:
-    """What stands in a file. Raises UnreadableError for what is no file, or may not be read."""
-    try:
-        mode = path.stat().st_mode
-        if not stat.S_ISREG(mode):  # opening a pipe would wait for ever
-            raise UnreadableError("a folder" if stat.S_ISDIR(mode) else "no plain file")
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise UnreadableError("not there") from None
-    except OSError as error:
-        raise UnreadableError(f"can not be read: {error.strerror or error}") from None
 
 
 def _seal(raw: bytes) -> str:

@@ -14,12 +14,12 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
 from models.errors import CrankcheckError
+from models.regular import UnreadableError
 from reports.store.damage import BUSY, Damage, command, notice
 from reports.store.examine import STOPPED, Examined, examine
 from reports.store.folder import has_parts, paths_of
 from reports.store.lock import is_written
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
-from reports.store.part import UnreadableError
 from reports.store.schema import unnested
 from reports.workers.isolated import Limits
 

@@ -11,16 +11,17 @@ from types import TracebackType
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
+from models.regular import UnreadableError
 from reports.describe.frame import motion_frame
 from reports.judge.frames import parquet
-from reports.output.write import check_folder, write
+from reports.output.write import check_folder, refuse_link, write
 from reports.store.examine import examine
 from reports.store.folder import has_parts, paths_of
 from reports.store.lock import locked
 from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.mending import mend
-from reports.store.part import UnreadableError, open_part, write_part
-from reports.store.schema import LOCK, TABLES, table
+from reports.store.part import open_part, write_part
+from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES, table
 
 EVERY_S = 1.0
 """What is lost when the process is killed is the work of so many seconds, at most."""
@@ -35,11 +36,15 @@ class Writer:
     Raises
     ------
     CrankcheckError
-        A folder that is no store, is not to be written, or that another sweep writes to.
+        A folder that is no store, is not to be written, has links for folders, or that another
+        sweep writes to.
     """
 
     def __init__(self, folder: Path, manifest: Manifest) -> None:
         check_folder(folder, "-o")
+        for name in (*TABLES, TRAJECTORIES, DAMAGED):
+            if (folder / name).exists():  # a link to nothing is damaged, and moved away
+                refuse_link(folder / name, "-o")
         self.folder = folder
         self.mended: list[str] = []
         self._waiting: dict[str, list[Row]] = {name: [] for name in TABLES}

@@ -32,7 +32,11 @@ Asked = Mapping[str, object]
 def check_storage(path: Path) -> None:
     """Refuse a file that no search can be kept in, before anything runs. Raises CrankcheckError."""
     check_file(path, "-o", ENDINGS)
-    if not path.exists() or (path.is_file() and path.stat().st_size == 0):
+    if not path.exists():
+        return
+    if not path.is_file():  # a pipe would be waited for
+        raise CrankcheckError(f"-o {path}: no plain file; name a new file")
+    if path.stat().st_size == 0:
         return
     names = _names(path)
     if names is None:
@@ -76,17 +80,36 @@ def study_in(path: Path | None, asked: Asked) -> Iterator[Study]:
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     optuna.logging.disable_default_handler()
     try:
-        # The file of the lock stays: removed, it would let one search lock the old file, one a new.
-        lock = path and FileLock(path.with_name(f".{path.name}.lock"), timeout=0)
-        with lock or contextlib.nullcontext():
+        with _locked(path):
             yield _opened(path, asked)
+    except (StorageInternalError, SQLAlchemyError) as error:
+        why = " ".join(str(error.__cause__ or error).split())[:200]
+        raise CrankcheckError(f"-o {path}: {why}; name another file") from None
+
+
+@contextmanager
+def _locked(path: Path | None) -> Iterator[None]:
+    """The block is done by one search at a time. The file of the lock stays: removed, it would let
+    one search lock the old file, one a new. Raises CrankcheckError."""
+    if path is None:
+        yield
+        return
+    lock = FileLock(path.with_name(f".{path.name}.lock"), timeout=0)
+    try:
+        lock.acquire()
     except Timeout:
         raise CrankcheckError(
             f"-o {path}: another search writes there now; wait for it, or choose another"
         ) from None
-    except (StorageInternalError, SQLAlchemyError) as error:
-        why = " ".join(str(error.__cause__ or error).split())[:200]
-        raise CrankcheckError(f"-o {path}: {why}; name another file") from None
+    except OSError as error:
+        raise CrankcheckError(
+            f"-o {path}: {lock.lock_file} can not be locked: {error.strerror or error}; remove it, "
+            "or choose another place"
+        ) from None
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def _opened(path: Path | None, asked: Asked) -> Study:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -37,22 +38,45 @@ def seen() -> Stopped | None:
 
 def install() -> None:
     """Turn the first signal into `Stopped`; one that is ignored already stays ignored (nohup)."""
+    sys.unraisablehook = _unraisable
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
+
+
+def finish() -> None:
+    """Ignore signals from now on: all is done and told, and Python takes itself down."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _stop(number: int, _frame: FrameType | None) -> None:
     if _waiting is not None:
         _waiting.append(number)
         return
-    for each in SIGNALS:
-        signal.signal(each, signal.SIG_IGN)
-    end = threading.Timer(PATIENCE_S, os._exit, [128 + number])  # a lock may never be released
+    finish()
+    stopped = Stopped(number)
+    _seen.append(stopped)
+    end = threading.Timer(PATIENCE_S, _end_at_once, [stopped])  # a lock may never be released
     end.daemon = True
     end.start()
-    _seen.append(Stopped(number))
-    raise _seen[0]
+    raise stopped
+
+
+def _unraisable(lost: sys.UnraisableHookArgs) -> None:
+    """What is raised where nobody can catch it, as in the end of an object, is told and forgotten;
+    a signal is not to be."""
+    if isinstance(lost.exc_value, Stopped):
+        _end_at_once(lost.exc_value)
+    sys.__unraisablehook__(lost)
+
+
+def _end_at_once(stopped: Stopped) -> None:
+    """The one line, and the end of the process, without unwinding: what it has started ends with
+    its pipes, what it has locked is free, and files are written whole or not at all."""
+    with suppress(OSError):
+        os.write(2, f"crankcheck: {stopped.word}\n".encode())
+    os._exit(stopped.code)
 
 
 def broken_pipe_ends(at_once: bool) -> None:

@@ -185,6 +185,29 @@ def test_a_fault_in_the_files_of_an_engine_is_not_taken_for_a_missing_package(
             engine("wrong")
 
 
+def test_a_package_that_can_not_be_imported_is_no_missing_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "broken_engine"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(
+        "from sim.registry import Declaration\nDECLARATION = Declaration('brkn', 'brkn')\n"
+    )
+    (folder / "engine.py").write_text("import brkn\n")
+    (tmp_path / "brkn.py").write_text("raise RuntimeError('no screen\\nhere')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(registry, "ENGINES", {"broken": "broken_engine"})
+    monkeypatch.setenv("BRKN_GL", "foo")
+    words = (
+        "brkn can not be imported here: RuntimeError: no screen; look at BRKN_GL=foo, or install"
+    )
+    with pytest.raises(EngineError, match=words):
+        engine("broken")
+    (entry,) = registry.available()
+    assert entry.version is None
+    assert words in entry.broken
+
+
 @pytest.mark.parametrize("name", registry.ENGINES)
 def test_what_is_declared_is_there(name: str) -> None:
     for what in registry.declaration(name).offers:

@@ -66,7 +66,7 @@ QUICK = (
 class Ended:
     """How a command ended: exit code, an exception that it let out, output, messages, warnings of
     Python and numpy, files that it left and those that it wrote elsewhere, the outcomes of its
-    cells, time [s], and the peak of memory [byte]."""
+    cells, processor time [s], and the memory [byte] before and at its peak."""
 
     code: int
     escaped: str
@@ -77,6 +77,7 @@ class Ended:
     elsewhere: tuple[str, ...]
     outcomes: tuple[str, ...]
     took_s: float
+    before: int
     peak: int
 
     @property
@@ -106,19 +107,23 @@ class Ended:
         return found
 
 
-def attempt(raw: bytes, *arguments: str, name: str = "scene.toml") -> Ended:
-    """Run the command with ``arguments`` on a file with these bytes, in a folder of its own.
+def attempt(
+    made: bytes | Callable[[Path], object], *arguments: str, name: str = "scene.toml"
+) -> Ended:
+    """Run the command with ``arguments`` on a file with these bytes, or one that is made by that,
+    in a folder of its own.
 
     ``FILE`` and ``OUT`` among the arguments are the file and the folder for what it writes.
     """
     _forget_peak()
+    before = _peak()
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder).resolve()
         (home / "work").mkdir()
-        (home / name).write_bytes(raw)
+        _ = made(home / name) if callable(made) else (home / name).write_bytes(made)
         given = [f"../{name}" if each == "FILE" else each for each in arguments]
         given = [re.sub("^OUT", "../out", each) for each in given]
-        began = time.perf_counter()
+        began = time.process_time()
         with (
             contextlib.chdir(home / "work"),
             _native_errors(home / "native") as native,
@@ -127,7 +132,7 @@ def attempt(raw: bytes, *arguments: str, name: str = "scene.toml") -> Ended:
         ):
             warnings.simplefilter("always")
             code, escaped, output, errors = _run(given)
-        took = time.perf_counter() - began
+        took = time.process_time() - began
         files = [str(path.relative_to(home)) for path in home.rglob("*") if path.is_file()]
         left = sorted(set(files) - {name, "native"})
         return Ended(
@@ -140,6 +145,7 @@ def attempt(raw: bytes, *arguments: str, name: str = "scene.toml") -> Ended:
             elsewhere=(*elsewhere, *(file for file in left if not file.startswith("out"))),
             outcomes=_outcomes(home / "out" / "verify.csv"),
             took_s=took,
+            before=before,
             peak=_peak(),
         )
 

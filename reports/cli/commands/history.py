@@ -19,7 +19,7 @@ from reports.history.verification import kept, key_of, measure, place
 from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
 from reports.output.provenance import provenance
-from reports.output.write import check_folder, write
+from reports.output.write import check_folder, refuse_link, write
 from reports.results.changes.reading import scene_digests
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
@@ -122,6 +122,7 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
         return
     check_folder(request.folder, "-o", FILES)
     for version in versions:
+        refuse_link(request.folder / version.name, "-o")
         check_folder(request.folder / version.name, "-o", verify.IN_FOLDER)
 
 

@@ -37,7 +37,7 @@ def scenes(console: Console) -> None:
 def engines(console: Console, settings: bool) -> None:
     """The engines: version, or the command that installs them; profiles, also with settings."""
     for entry in available():
-        state = entry.version or f"not installed: {entry.install}"
+        state = entry.version or entry.broken or f"not installed: {entry.install}"
         console.print(Text(f"{entry.name}  {state}", "bold" if entry.version else "yellow"))
         if entry.version is None:
             continue

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError, harmless, shown
 from reports.cli.measuring import SweepRequest
 from reports.output.console import tell
 from reports.output.numbers import count
@@ -106,11 +106,13 @@ def _overrides(
         owner, dot, setting = name.strip().partition(".")
         if not (equals and dot and values.strip()):
             raise CrankcheckError(
-                f"--set {text!r}: write it like --set mujoco.iterations=2,10: engine.setting=values"
+                f"--set {shown(text)}: write it like --set mujoco.iterations=2,10: "
+                "engine.setting=values"
             )
         if owner not in engines:
             raise CrankcheckError(
-                f"--set {text!r}: {owner!r} is no engine of this sweep; it has {', '.join(engines)}"
+                f"--set {shown(text)}: {shown(owner)} is no engine of this sweep; it has "
+                f"{', '.join(engines)}"
             )
         several: list[StudyValue] = [value.strip() for value in values.split(",")]
         overrides.setdefault(owner, {})[setting.strip()] = several
@@ -123,7 +125,7 @@ def _steps(text: str | None) -> list[float]:
         return [] if text is None else [float(part) for part in text.split(",")]
     except ValueError:
         raise CrankcheckError(
-            f"--steps-per-turn {text!r}: write numbers with commas between, such as 90,180,360"
+            f"--steps-per-turn {shown(text)}: write numbers with commas between, such as 90,180,360"
         ) from None
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +13,7 @@ from typing import cast
 
 from models.errors import CrankcheckError
 from models.files import scene_texts
+from models.regular import UnreadableError, regular_bytes
 from reports.plan.key import digest
 from reports.results.changes.runs import CellName, CellRow, StoredCell, StoredRun, stored_cell, text
 from reports.store.examine import STOPPED
@@ -19,6 +22,8 @@ from reports.store.manifest import MANIFEST
 from reports.store.reader import read_store
 
 CELLS, FACTS = "verify.csv", "verify.json"
+MOST_BYTES = 100_000_000
+"""Of a file of a verification: a thousand cells take a hundredth of it."""
 WRITERS = "`crankcheck sweep -o` or `crankcheck verify -o`"
 
 
@@ -113,19 +118,24 @@ def _store(folder: Path) -> Contents:
 def _verification(folder: Path) -> Contents:
     path = folder / CELLS
     try:
-        with path.open(encoding="utf-8", newline="") as lines:
-            rows: list[CellRow] = [
-                {key: value for key, value in row.items() if isinstance(key, str)}
-                for row in csv.DictReader(lines)
-            ]
+        lines = io.StringIO(regular_bytes(path, MOST_BYTES).decode(), newline="")
+        rows: list[CellRow] = [
+            {key: value for key, value in row.items() if isinstance(key, str)}
+            for row in csv.DictReader(lines)
+        ]
+    except UnreadableError as error:
+        raise CrankcheckError(f"{path}: {error}; verify again") from None
     except (ValueError, csv.Error) as error:
         raise CrankcheckError(f"{path}: not a CSV file ({error}); verify again") from None
     if not rows:
         raise CrankcheckError(f"{path}: no cells in it; verify again")
     notice: tuple[str, ...] = ()
     try:
-        facts = json.loads((folder / FACTS).read_text(encoding="utf-8"))
-    except FileNotFoundError:  # the cells are enough to compare
+        facts = json.loads(regular_bytes(folder / FACTS, MOST_BYTES))
+    except UnreadableError as error:
+        if os.path.lexists(folder / FACTS):
+            raise CrankcheckError(f"{folder / FACTS}: {error}; verify again") from None
+        # The cells are enough to compare.
         facts, notice = {}, (f"{folder}: no {FACTS}, so {CELLS} can not be checked",)
     except (ValueError, RecursionError) as error:
         raise CrankcheckError(f"{folder / FACTS}: not JSON ({error}); verify again") from None

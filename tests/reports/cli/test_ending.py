@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +13,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from reports.cli import app
+from reports.cli.broken_package import broken_package
 from tests.worlds.command import COMMAND, PYTHON, script
 
 ROOT = Path(__file__).parents[3]
@@ -138,3 +141,36 @@ def test_the_help_says_what_every_exit_code_means() -> None:
     text = " ".join(crank("--help").output.replace("│", " ").split())
     for part in ("0 all within", "1 out of", "2 bad input", "70 a fault", "130 interrupted", "141"):
         assert part in text
+
+
+@POSIX
+@pytest.mark.parametrize(
+    ("args", "variable", "value", "words"),
+    [
+        ("verify tangent", "MUJOCO_GL", "foo", "mujoco can not be imported here: .*MUJOCO_GL: foo"),
+        (
+            "view tangent -o OUT",
+            "MPLBACKEND",
+            "foo",
+            "matplotlib can not be imported here: .*foo",
+        ),
+        ("solve tangent", "NUMPY_MADVISE_HUGEPAGE", "foo", "numpy can not be imported here: .*foo"),
+        ("scenes", "COLUMNS", "9" * 5000, ""),
+        ("scenes", "COLUMNS", "\u00b2", ""),
+        ("scenes", "COLUMNS", "1000000000", ""),
+    ],
+)
+def test_a_variable_that_makes_no_sense_is_no_fault_of_crankcheck(
+    args: str, variable: str, value: str, words: str, tmp_path: Path
+) -> None:
+    line = f"crankcheck {args.replace('OUT', str(tmp_path / 'out.png'))}"
+    code, _, complaint = shell(line, **{variable: value})
+    assert code == (2 if words else 0)
+    assert complaint.count("\n") == bool(words)
+    assert re.search(words, complaint)
+
+
+def test_a_fault_in_what_a_package_is_asked_for_is_one_of_ours() -> None:
+    with pytest.raises(ValueError, match="Expecting value") as raised:
+        json.loads("[")
+    assert broken_package(raised.value) == ""

@@ -1,4 +1,5 @@
-"""Ctrl-C and SIGTERM in a real run with worker processes, at any time and several times."""
+"""Ctrl-C and SIGTERM in a real run with worker processes, at any time and several times; and Ctrl-C
+from the first line of ours that Python runs to the last."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.command import PYTHON
+from tests.worlds.command import COMMAND, PYTHON, script
 from tests.worlds.programs import Start
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals to a group are POSIX")
@@ -87,3 +88,117 @@ def test_ctrl_c_stays_ignored_where_the_parent_ignores_it(programs: Start, tmp_p
     code, _, complaint = ended(programs, tmp_path, GROUP, IMPORTS, times=2, deaf=True)
     assert (code, complaint) == (0, "")
     assert (tmp_path / "out" / "verify.csv").exists()
+
+
+START = """
+import os, signal, sys
+module, number, program, *arguments = sys.argv[1:]
+left = [None] * int(number)
+begun = []
+
+def ours(name):
+    return name.removeprefix("crankcheck.")
+
+def hear(event, details):
+    if event == "import" and details[0] == "crankcheck":
+        begun.append(1)
+    elif event == "import" and begun and left and module in (ours(details[0]), "*"):
+        left.pop()
+        if not left:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.addaudithook(hear)
+if program == "-m":
+    import runpy
+    sys.argv, sys.orig_argv[1:] = ["-m", *arguments], ["-m", "crankcheck", *arguments]
+    runpy.run_module("crankcheck", run_name="__main__", alter_sys=True)
+else:
+    sys.argv = [program, *arguments]
+    exec(compile(open(program).read(), program, "exec"), {"__name__": "__main__"})
+"""
+"""The command, as `python -m` and the program of the wheel start it, with Ctrl-C at an import."""
+EARLY = ("reports.cli", "typer", "rich.console", "reports.cli.application", "reports.cli.commands")
+LATE = ("numpy", "analytic.kinematics", "pydantic", "models.files", "rich.table")
+SOLVE = ("solve", "fourbar-lecture-1", "--at-deg", "90")
+
+
+def started(module: str, number: int, program: str, start: Start) -> tuple[int, str]:
+    """Exit code and complaint where Ctrl-C comes at the import of a module, or at the how manieth
+    of all."""
+    running = start(PYTHON, "-P", "-c", script(START), module, number, program, *SOLVE)
+    _, complaint = running.communicate(timeout=60)
+    return running.returncode, complaint
+
+
+@pytest.mark.parametrize("program", [COMMAND, "-m"], ids=["crankcheck", "-m"])
+@pytest.mark.parametrize("module", [*EARLY, *LATE])
+def test_ctrl_c_during_an_import_ends_in_one_line(
+    module: str, program: str, programs: Start
+) -> None:
+    assert started(module, 1, program, programs) == (130, "crankcheck: interrupted\n")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("program", [COMMAND, "-m"], ids=["crankcheck", "-m"])
+def test_ctrl_c_at_any_import_ends_in_one_line(program: str, programs: Start) -> None:
+    for number in range(1, 10_000, 7):
+        code, complaint = started("*", number, program, programs)
+        if code == 0:
+            break
+        assert (code, complaint) == (130, "crankcheck: interrupted\n"), number
+    assert number > 500
+    assert complaint == ""
+
+
+def test_a_script_that_imports_crankcheck_hears_ctrl_c_as_ever(programs: Start) -> None:
+    code = "import crankcheck, signal; signal.raise_signal(signal.SIGINT)"
+    running = programs(PYTHON, "-P", "-c", code)
+    assert "KeyboardInterrupt" in running.communicate(timeout=60)[1]
+
+
+ENDS = """
+import atexit, os, signal, sys, time
+from crankcheck.__main__ import main
+from reports.cli.commands import listing
+from reports.workers import signals
+
+def strike(*_):
+    os.kill(os.getpid(), signal.SIGINT)
+
+class Dies:
+    def __del__(self):
+        strike()
+
+def lost(*_):
+    Dies()
+    time.sleep(60.0)
+
+def swallowed(*_):
+    signals.PATIENCE_S = 0.1
+    try:
+        strike()
+    except BaseException:
+        time.sleep(60.0)
+
+def finished(*_):
+    atexit.register(strike)
+
+def told(*_):
+    sys.stdout.flush = strike
+
+listing.scenes = {end}
+sys.argv = ["crankcheck", "scenes"]
+main()
+"""
+
+
+@pytest.mark.parametrize(("end", "code"), [
+    ("lost", 130), ("swallowed", 130), ("told", 130), ("finished", 0),
+])  # fmt: skip
+def test_ctrl_c_is_neither_lost_nor_told_with_a_traceback(
+    end: str, code: int, programs: Start
+) -> None:
+    running = programs(PYTHON, "-P", "-c", script(ENDS.format(end=end)))
+    _, complaint = running.communicate(timeout=60)
+    assert complaint == ("crankcheck: interrupted\n" if code else "")
+    assert running.returncode == code

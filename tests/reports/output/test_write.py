@@ -39,13 +39,61 @@ def test_a_write_that_fails_leaves_the_old_file_and_no_other(
     assert list(tmp_path.iterdir()) == [target]
 
 
-def test_a_link_keeps_pointing_at_the_file_that_is_written(tmp_path: Path) -> None:
-    real, link = tmp_path / "real.csv", tmp_path / "link.csv"
-    real.write_text("old")
-    link.symlink_to(real)
+@pytest.mark.parametrize("target", ["other.csv", "nothing", "folder", "/dev/null"])
+def test_a_link_is_refused_where_it_is_named_and_replaced_in_a_folder(
+    target: str, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "other.csv").write_text("of another")
+    link = tmp_path / "out" / "link.csv"
+    link.parent.mkdir()
+    link.symlink_to(tmp_path / target)
+    with pytest.raises(CrankcheckError, match=rf"--csv .*: a link, to .*{target}; name that"):
+        check_file(link, "--csv")
+    check_folder(link.parent, "-o", [link.name])
+    check_outputs({}, link.parent, [link.name])
     write(link, "new")
-    assert link.is_symlink()
-    assert real.read_text() == "new"
+    assert not link.is_symlink()
+    assert (tmp_path / "other.csv").read_text() == "of another"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "other.csv", "out"]
+
+
+def test_a_file_of_several_names_is_changed_under_one_of_them(tmp_path: Path) -> None:
+    (tmp_path / "other").write_text("of another")
+    (tmp_path / "out").hardlink_to(tmp_path / "other")
+    write(tmp_path / "out", "new")
+    assert (tmp_path / "other").read_text() == "of another"
+
+
+def test_a_link_where_it_is_written_aside_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "other").write_text("of another")
+    (tmp_path / f".out.{os.getpid()}.tmp").symlink_to(tmp_path / "other")
+    write(tmp_path / "out", "new")
+    assert (tmp_path / "other").read_text() == "of another"
+    assert (tmp_path / "out").read_text() == "new"
+
+
+def test_a_folder_may_be_a_link_but_not_to_nothing(tmp_path: Path) -> None:
+    (tmp_path / "real").mkdir()
+    for name in ("real", "nothing"):
+        (tmp_path / f"to {name}").symlink_to(tmp_path / name)
+    check_folder(tmp_path / "to real", "-o", ["out.csv"])
+    write(tmp_path / "to real" / "out.csv", "new")
+    assert (tmp_path / "real" / "out.csv").read_text() == "new"
+    for deeper in ("", "deeper"):
+        with pytest.raises(CrankcheckError, match=r"-o .*to nothing: a link, to .*nothing; name"):
+            check_folder(tmp_path / "to nothing" / deeper, "-o")
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="no such links here")
+def test_what_the_shell_made_a_pipe_of_is_written_into() -> None:
+    read, into = os.pipe()
+    path = Path(f"/dev/fd/{into}")
+    check_file(path, "--csv")
+    write(path, "new")
+    os.close(into)
+    assert os.read(read, 9) == b"new"
+    os.close(read)
 
 
 @pytest.mark.skipif(not Path("/dev/null").exists(), reason="no devices here")
@@ -112,9 +160,9 @@ def test_a_file_of_a_folder_that_may_not_be_replaced_is_refused(
 
 def test_one_file_for_two_outputs_is_refused_unless_it_is_a_device(tmp_path: Path) -> None:
     link = tmp_path / "link"
-    link.symlink_to(tmp_path / "out")
+    link.symlink_to(tmp_path)
     with pytest.raises(CrankcheckError, match="--csv and --json: both name"):
-        check_outputs({"--csv": tmp_path / "out", "--json": link, "--junit": None})
+        check_outputs({"--csv": tmp_path / "out", "--json": link / "out", "--junit": None})
     with pytest.raises(CrankcheckError, match="--csv and -o: both name"):
         check_outputs({"--csv": tmp_path / "out"}, tmp_path, ["out"])
     check_outputs({"--csv": Path("/dev/null"), "--json": Path("/dev/null")})

@@ -164,7 +164,7 @@ def test_a_faulty_study_file_is_named_with_its_fault(
 
 
 def test_a_study_file_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(CrankcheckError, match="cannot be read"):
+    with pytest.raises(CrankcheckError, match="not there; name a plain text file"):
         load_study(tmp_path / "none.toml")
 
 

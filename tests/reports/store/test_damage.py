@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
@@ -145,14 +146,14 @@ def test_another_format_is_refused_in_a_line_and_not_written_to(
 def test_an_unreadable_file_is_damaged_too(
     store: Path, whole: Path, swept: Sweep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    locked, read = first(store, "cells"), Path.read_bytes
+    locked, opened = first(store, "cells"), os.open
 
-    def refused(path: Path) -> bytes:  # chmod does not keep root out
+    def refused(path: Path, *rest: int) -> int:  # chmod does not keep root out
         if path == locked:
             raise PermissionError(13, "Permission denied", str(path))
-        return read(path)
+        return opened(path, *rest)
 
-    monkeypatch.setattr(Path, "read_bytes", refused)
+    monkeypatch.setattr(os, "open", refused)
     found = read_store(store)
     assert len(found.cells) == 2
     assert "can not be read: Permission denied; 2 cells missing" in "\n".join(found.notice)

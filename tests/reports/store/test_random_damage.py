@@ -12,9 +12,10 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
+from models.regular import UnreadableError
 from reports.cli.commands.report import run_report
 from reports.store.manifest import MANIFEST
-from reports.store.part import UnreadableError, open_part
+from reports.store.part import open_part
 from reports.store.reader import Stored, read_store
 from tests.reports.store.damages import first
 

@@ -1,0 +1,197 @@
+"""What no command reads: each is refused with exit code 2 and one message, which names the place,
+the limit, what was found and what would work, as soon and in as little memory as a misspelt key."""
+
+from __future__ import annotations
+
+import os
+import re
+import socket
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from models.files import shipped
+from reports.workers.isolated import Isolated, Limits, Lost
+from tests.worlds.fuzzing import Ended, attempt
+
+SOONER_S, LESS = 1.0, 60_000_000
+"""Processor time and memory [byte], beyond those of a misspelt key."""
+SCENE = shipped()["fourbar-lecture-1"].read_text(encoding="utf-8")
+STUDY = """scenes = ["fourbar-lecture-1"]
+steps_per_turn = [90]
+[[variants]]
+engine = "mujoco"
+profile = "tuned"
+"""
+SOLVE, SWEEP = "solve FILE", "sweep -o OUT --study FILE"
+Made = bytes | Callable[[Path], object]
+
+
+def sparse(path: Path) -> None:
+    """A file of 3 GB that takes no room."""
+    with path.open("wb") as file:
+        file.truncate(3_000_000_000)
+
+
+def bound(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as open_:
+        open_.bind(os.path.relpath(path))  # such a name is short
+
+
+def speed(value: str) -> bytes:
+    """The scene with something else for its speed."""
+    return SCENE.replace("speed_rad_s = ", f"speed_rad_s = {value} #").encode()
+
+
+def settings(number: int, length: int) -> bytes:
+    """A study with so many settings that each take so many values."""
+    values = list(range(1, length + 1))
+    lists = "".join(f"s{each} = {values}\n" for each in range(number))
+    return f"{STUDY}[variants.settings]\n{lists}".encode()
+
+
+def nested(levels: int, each: int) -> bytes:
+    """YAML whose every line stands for the one before several times."""
+    lines = [f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * each)}]" for k in range(1, levels)]
+    return "\n".join(["a0: &a0 [x]", *lines]).encode()
+
+
+SPECIAL: dict[str, tuple[Callable[[Path], object], str]] = {
+    "3 GB": (sparse, "3000000000 bytes; at most 200000 are read"),
+    "endless": (partial(os.symlink, "/dev/zero"), "a device, no plain file"),
+    "pipe": (os.mkfifo, "a pipe, no plain file"),
+    "socket": (bound, "a socket, no plain file"),
+    "folder": (os.mkdir, "a folder; name a plain text file of at most 200000 bytes"),
+    "link to nothing": (partial(os.symlink, "nothing"), "neither a shipped scene|not there"),
+}
+BOTH: dict[str, tuple[str, str]] = {
+    "key of 60,000 dots": ("a." * 60_000 + "a = 1", r"line 1: a key of more than 50 parts"),
+    "quoted key of many parts": ('"a".' * 40_000 + "a = 1", r"line 1: a key of more than 50 parts"),
+    "brackets": ("a = " + "[" * 60_000, "lists or tables nested too deep, by more than 50"),
+    "braces": ("a = " + "{a=" * 60_000, "lists or tables nested too deep|keys; at most 20000"),
+    "deep keys in deep tables": (
+        "a = " + ("{" + "a." * 49 + "a = ") * 50 + "1" + "}" * 50,
+        "lists nested too deep, by more than 50",
+    ),
+    "very many keys": ("".join(f"a{k}=1\n" for k in range(22_000)), "22000 keys; at most 20000"),
+    "many keys": ("".join(f"a{k}=1\n" for k in range(18_000)), r"unknown key.*and \d+ more"),
+    "tables": ("[[a]]\n" * 33_000, "a: unknown key"),
+    "integer of 5000 digits": ("turns = " + "9" * 5000, "line 1: a number of more digits than"),
+    "integer of 4000 digits": ("turns = " + "9" * 4000, "turns: a whole number of 13288 bits"),
+    "hexadecimal of many digits": ("turns = 0x" + "f" * 9000, "turns: a whole number of 36000 bi"),
+    "date": ("turns = 1979-05-27", "turns: "),
+    "control character": ("turns = '\0'", "not valid TOML: Found invalid character"),
+    "long text": ("turns = '" + "x" * 190_000 + "'", "turns: "),
+}
+YAML: dict[str, tuple[bytes, str]] = {
+    "integer of 5000 digits": (
+        b"turns: " + b"9" * 5000,
+        r"line 1, column 8: found 9+\.\.\.",
+    ),
+    "hexadecimal": (b"turns: 0x" + b"f" * 9000, "turns: a whole number of 36000 bits; use less"),
+    "no digits": (b"turns: 0x_", "found 0x_; it can not be read as int"),
+    "degrees": (b"turns: " + b":".join([b"59"] * 20_000), "turns: a whole number of 1181"),
+    "date": (b"turns: 2020-12-25", "turns: found '2020-12-25'; input should be a valid number"),
+    "date that is none": (b"turns: 2020-13-45", "turns: found '2020-13-45'; input should be"),
+    "date as a key": (b"2020-12-25: 1", "2020-12-25: unknown key; known: scenes"),
+    "date that is none as a key": (b"2020-13-45: 1", "2020-13-45: unknown key; known: scenes"),
+    "number as a key": (b"1: 1", "1: found 1; keys should be strings"),
+    "number of many digits as a key": (b"? 0x" + b"f" * 9000 + b"\n: 1", "whole number of 36000"),
+    "billion laughs": (nested(10, 9), "line 5, column .*: more than 5000 values, those of an al"),
+    "itself": (b"scenes: &a [*a]", "line 1, column 13: an alias for what it stands in; name"),
+    "texts": (b"a: &a " + b"x" * 99_000 + b"\nb: [" + b"*a," * 33_000 + b"]", "more than 5000 val"),
+    "brackets": (b"a: " + b"[" * 90_000, "line 1, column 23: values nested more than 20 deep"),
+    "steps": ("".join(" " * k + "a:\n" for k in range(600)).encode(), "nested more than 20 deep"),
+    "dashes": (b"- " * 90_000, "nested more than 20 deep"),
+    "many keys": ("".join(f"a{k}: 1\n" for k in range(18_000)).encode(), "more than 5000 values"),
+    "few keys": ("".join(f"a{k}: 1\n" for k in range(2000)).encode(), "unknown key.*and 1982 more"),
+    "tag": (b"turns: !!python/object:os.system x", "could not determine a constructor"),
+    "tag of a date": (b"turns: !!timestamp x", "could not determine a constructor"),
+    "tag of a truth": (b"turns: !!bool x", "line 1, column 8: found x; it can not be read as bool"),
+    "list as a key": (b"[a]: 1", "found unhashable key"),
+    "long text": (
+        b"turns: " + b"x" * 190_000,
+        r"turns: found 'x+\.\.\.; input should be",
+    ),
+    "NUL": (b"a: \0", "not valid YAML: unacceptable character"),
+    "two": (b"a: 1\n---\nb: 2", "expected a single document"),
+    "nothing": (b"", "a table of scenes, variants and steps_per_turn is needed"),
+}
+OPTIONS = {
+    "solve fourbar-lecture-1 --turns 1e12": "1.2e.13 samples; at most 1000000",
+    "solve fourbar-lecture-1 --steps-per-turn 1000000000": "1e.09 samples; at most 1000000",
+    "verify fourbar-lecture-1 --turns 1e9": "7.2e.11 steps of .*; at most 300000 are logged",
+    f"sweep fourbar-lecture-1 -o OUT --set mujoco.iterations={'9' * 5000}": r"found .9+\.\.\.;",
+    "sweep -o OUT --steps-per-turn " + ",".join(map(str, range(90, 20_000))): "at most 100000",
+    f"history mujoco {'9' * 5000}": "not a version number",
+    "tune fourbar-lecture-1 --engine mujoco --target 1e-6 --budget 1000000000": "1 to 100000",
+}  # fmt: skip
+
+
+def cases() -> Iterator[tuple[str, str, Made, str, str]]:
+    """Name, name of the file, what is in it, command, and words of the message."""
+    for ending, command in ((".toml", SOLVE), (".toml", SWEEP), (".yaml", SWEEP)):
+        verb = f"{command.split()[0]} {ending}"
+        for name, (make, words) in SPECIAL.items():
+            yield f"{verb} {name}", f"it{ending}", make, command, words
+        yield f"{verb} UTF-16", f"it{ending}", STUDY.encode("utf-16"), command, "not UTF-8 text"
+    for name, (text, words) in BOTH.items():
+        yield f"solve {name}", "it.toml", text.encode(), SOLVE, words
+        yield f"sweep {name}", "it.toml", text.encode(), SWEEP, words
+    for name, (raw, words) in YAML.items():
+        yield f"sweep YAML {name}", "it.yaml", raw, SWEEP, words
+    for line, words in OPTIONS.items():
+        yield line[:70], "it.toml", b"", line, words
+    yield "1e400", "it.toml", speed("1e400"), SOLVE, "driver.speed_rad_s: found inf; input should"
+    many = "".join(f"s{k} = {{ on = 'x' }}\n" for k in range(9000)).encode()
+    yield "sliders", "it.toml", b"[sliders]\n" + many, SOLVE, "sliders: found .* at most 1000 items"
+    words = "asks for 1e.08 cells: 1 scene x 1e.08 variants .*100 of s0, 100 of s1.*; a sweep has"
+    yield "variants", "it.toml", settings(4, 100), SWEEP, words
+    yield "more variants", "it.toml", settings(6000, 2), SWEEP, "at most 100000: take fewer"
+    yield "study of repeats", "it.toml", STUDY.replace("[90]", f"{[90.0] * 10_000}").encode() + (
+        STUDY[STUDY.index("[[") :] * 11
+    ).encode(), SWEEP, "120000 cells: 1 scene x 12 variants x 10000 steps in a turn"  # fmt: skip
+
+
+CASES = {name: case for name, *case in cases()}
+
+
+@pytest.fixture(scope="module")
+def apart() -> Iterator[Isolated[Ended]]:
+    """A process that bad input is tried in: it may hang, or fill memory."""
+    process: Isolated[Ended] = Isolated(Limits(time_s=30.0, memory_gb=2.0))
+    yield process
+    process.close()
+
+
+@pytest.fixture(scope="module")
+def misspelt(apart: Isolated[Ended]) -> dict[str, float]:
+    """Processor time [s] of a misspelt key, by command, where all is imported already."""
+    ends = {}
+    for command, text in ((SOLVE, SCENE), (SWEEP, STUDY)):
+        raw = text.replace("e", "ee", 1).encode()
+        for _ in range(2):
+            ended = apart.call(attempt, raw, *command.split())
+            assert isinstance(ended, Ended)
+            assert ended.code == 2
+        ends[command] = ended.took_s
+    return ends
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_is_refused_at_once_with_one_message(
+    name: str, apart: Isolated[Ended], misspelt: dict[str, float]
+) -> None:
+    file, made, command, words = CASES[name]
+    ended = apart.call(partial(attempt, name=file), made, *command.split())
+    assert not isinstance(ended, Lost), ended
+    assert ended.faults == []
+    assert ended.code == 2
+    assert ended.errors.count("crankcheck: ") == 1
+    assert len(ended.errors) < 9000
+    assert re.search(words, ended.errors, re.DOTALL), ended.errors[:500]
+    assert ended.files == ()
+    assert ended.took_s < misspelt.get(command, 0.1) + SOONER_S
+    assert ended.peak - ended.before < LESS
