@@ -52,5 +52,7 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
 def _departures(series: Series, even: NDArray[np.inexact]) -> dict[tuple[BodyKind, str], float]:
     """The largest distance of each series (T,) from what the columns ``even`` (T, n) add up to."""
     moved = np.stack(list(series.values()), axis=-1)
-    weights, *_ = np.linalg.lstsq(even, moved, rcond=None)
+    # The normal equations of two or three columns: a hundredth of the time of a decomposition.
+    across = even.conj().T
+    weights = np.linalg.solve(across @ even, across @ moved)
     return dict(zip(series, np.max(np.abs(moved - even @ weights), axis=0).tolist(), strict=True))
