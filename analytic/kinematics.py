@@ -29,9 +29,10 @@ from analytic.structure.mobility import analyse
 from analytic.turns.cells import Look
 from analytic.turns.count import Counter, Turns
 from models.array import Array
-from models.errors import CrankcheckError, ReachError
+from models.errors import ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
+from models.samples import beside, samples
 from models.scene import KEPT, Same, Scene
 
 CHUNK = 12288
@@ -44,9 +45,9 @@ def solve(
     scene: Scene,
     time_s: Array,
     *,
-    links: Iterable[str] | None = None,
-    points: Iterable[str] | None = None,
-    sliders: Iterable[str] | None = None,
+    links: str | Iterable[str] | None = None,
+    points: str | Iterable[str] | None = None,
+    sliders: str | Iterable[str] | None = None,
     bound: bool = True,
 ) -> Motion:
     """The motion of a scene at the given times.
@@ -57,8 +58,8 @@ def solve(
         The mechanism with its driver's law.
     time_s : Array
         Times [s], shape (T,).
-    links, points, sliders : Iterable[str] or None
-        What to return; None is all, () is none.
+    links, points, sliders : str, Iterable[str] or None
+        What to return, by one name or several; None is all, () is none.
     bound : bool
         Carry error bounds (about three times the work).
 
@@ -76,8 +77,10 @@ def solve(
     ReachError
         The law leads to a driver angle in which the mechanism cannot be assembled; the message
         names the reachable range.
+    CrankcheckError
+        Times that are no numbers, a name that the scene has not.
     """
-    time_s = _samples(time_s)
+    time_s = samples(time_s, "time_s")
     law = scene.driver.law
 
     def driver(span: slice) -> Driven:
@@ -105,20 +108,20 @@ def solve_driven(
     alpha: Array,
     time_s: Array | None = None,
     *,
-    links: Iterable[str] | None = None,
-    points: Iterable[str] | None = None,
-    sliders: Iterable[str] | None = None,
+    links: str | Iterable[str] | None = None,
+    points: str | Iterable[str] | None = None,
+    sliders: str | Iterable[str] | None = None,
     bound: bool = True,
 ) -> Motion:
     """The motion of a scene whose driver has the given angles, rates and accelerations.
 
     As `solve`, but for driver angles [rad], rates [rad/s] and accelerations [rad/s^2], shape (T,),
-    that are taken as exact: the geometry at the angle that an engine logged, say. ``time_s`` only
-    labels the samples.
+    that are taken as exact: the geometry at the angle that an engine logged, say. One rate, or one
+    acceleration, counts for all samples. ``time_s`` only labels the samples.
     """
-    theta = _samples(theta)
-    omega, alpha = np.broadcast_to(omega, theta.shape), np.broadcast_to(alpha, theta.shape)
-    labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
+    theta = samples(theta, "theta")
+    omega, alpha = beside(omega, theta, "omega", "theta"), beside(alpha, theta, "alpha", "theta")
+    labels = beside(0.0 if time_s is None else time_s, theta, "time_s", "theta")
 
     def driver(span: slice) -> Driven:
         error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
@@ -138,19 +141,6 @@ def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
     if isinstance(law, ConstantSpeed):
         return law.angle(t), law.speed_rad_s, STEADY
     return law.at(t)
-
-
-def _samples(values: Array) -> Array:
-    """The sample values as a finite array of shape (T,), T at least 1."""
-    values = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if values.ndim != 1 or len(values) == 0:
-        raise CrankcheckError(f"samples of shape {values.shape}; give one dimension, at least one")
-    with np.errstate(invalid="ignore", over="ignore"):
-        total = float(values.sum())  # finite sums are the quick way to see that all are
-    if not math.isfinite(total) and not np.isfinite(values).all():
-        index = int(np.flatnonzero(~np.isfinite(values))[0])
-        raise CrankcheckError(f"sample {index} is {values[index]}; samples are finite numbers")
-    return values
 
 
 def repeats_after(scene: Scene) -> float:

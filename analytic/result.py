@@ -16,6 +16,7 @@ from analytic.turns.count import Counter
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
+from models.one_or_more import names_in
 from models.scene import Scene
 
 
@@ -30,9 +31,9 @@ class Selection:
     @staticmethod
     def of(
         scene: Scene,
-        links: Iterable[str] | None,
-        points: Iterable[str] | None,
-        sliders: Iterable[str] | None,
+        links: str | Iterable[str] | None,
+        points: str | Iterable[str] | None,
+        sliders: str | Iterable[str] | None,
     ) -> Selection:
         """The chosen names, all of a kind for None. Raises CrankcheckError for an unknown one."""
         carriers = {point: bodies[0] for point, bodies in scene.pins.items()}
@@ -45,8 +46,10 @@ class Selection:
         )
 
 
-def _chosen(what: str, names: Iterable[str] | None, known: Mapping[str, object]) -> tuple[str, ...]:
-    chosen = tuple(known) if names is None else tuple(names)
+def _chosen(
+    what: str, names: str | Iterable[str] | None, known: Mapping[str, object]
+) -> tuple[str, ...]:
+    chosen = tuple(known) if names is None else names_in(names, f"{what}s")
     for name in chosen:
         if name not in known:
             have = ", ".join(known) or "none"

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from models.assemble import scene_from_table
 from models.errors import CrankcheckError, SceneError, cut, nearest, shown, suggestion
 from models.names import faults_of_names
+from models.one_or_more import names_in
 from models.regular import UnreadableError, regular_text
 from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
@@ -69,13 +70,13 @@ def read_scene(path: Path) -> Scene:
     return parse_scene(read_text(path), str(path))
 
 
-def scene_texts(names: Iterable[str]) -> dict[str, str]:
+def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
     """The text of each scene's file, by the scene's own name; of all shipped ones for none.
 
     Raises CrankcheckError as `load_scene`.
     """
     texts: dict[str, str] = {}
-    for given in dict.fromkeys(names) or shipped():
+    for given in dict.fromkeys(names_in(names, "scenes")) or shipped():
         path = find_scene(given)
         text = read_text(path)
         texts[parse_scene(text, str(path)).name] = text

@@ -23,8 +23,12 @@ class Law(ABC):
 
     def __post_init__(self) -> None:
         for name, number in vars(self).items():
-            if not math.isfinite(number):
-                raise ValueError(f"{name} is {number}: a law of motion needs finite numbers")
+            try:
+                finite = math.isfinite(number)
+            except (TypeError, OverflowError):
+                finite = False
+            if not finite:
+                raise ValueError(f"{name} is {number!r:.60}: a law of motion needs finite numbers")
 
     @property
     @abstractmethod

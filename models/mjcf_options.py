@@ -25,7 +25,7 @@ class Writing:
     positions.
     """
 
-    close: tuple[str, ...] = ()
+    close: str | tuple[str, ...] = ()
     option: Attributes = field(default_factory=dict)
     flag: Attributes = field(default_factory=dict)
     connect: Attributes = field(default_factory=dict)

@@ -17,6 +17,7 @@ from typing import Literal
 from models.errors import EngineError
 from models.joints import Prism, Slot, bodies, joints, local_point, turned
 from models.motion import State
+from models.one_or_more import names_in
 from models.poses import Frame, along, frames, mass_of, mass_ratio
 from models.scene import GROUND, Point, Scene, Slider
 
@@ -108,7 +109,9 @@ class _Groups:
         return True
 
 
-def plan(scene: Scene, state: State, close: Sequence[str] = (), *, delay_s: float = 0.0) -> Tree:
+def plan(
+    scene: Scene, state: State, close: str | Sequence[str] = (), *, delay_s: float = 0.0
+) -> Tree:
     """The tree of a scene at an assembled state, with the loops closed at pins.
 
     The rates of the coordinates are those of ``delay_s`` later (see `models.poses.frames`).
@@ -119,6 +122,7 @@ def plan(scene: Scene, state: State, close: Sequence[str] = (), *, delay_s: floa
         A pin in ``close`` that does not exist or cannot close a loop; a slider that would have to
         close a loop and so needs a mass; a body that hangs on nothing.
     """
+    close = names_in(close, "close")
     _check_close(scene, close)
     together, at_point = _Groups(), _Groups()
     edges: list[_Edge] = []

@@ -8,11 +8,12 @@ import statistics
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
 from models.array import Array
-from models.errors import EngineError
+from models.errors import EngineError, shown
 from models.motion import State
 from models.scene import Scene
 from sim.check import refuse_other_model
@@ -210,6 +211,9 @@ def _chunks(steps: int, every: int) -> list[int]:
 
 def _check_steps(scene: Scene, period: float, dt_s: float, steps: int, every: int) -> None:
     """Refuse steps that mean nothing; ``period`` is the time that they have to resolve [s]."""
+    for name, number in (("dt", dt_s), ("steps", steps), ("every", every)):
+        if not isinstance(number, Real):
+            raise EngineError(f"{name}: found {shown(number)}; it takes a number")
     if not (np.isfinite(dt_s) and dt_s > 0.0):
         raise EngineError(f"dt: found {dt_s:g} s; it takes a step above 0")
     if period / dt_s < LEAST_STEPS_PER_PERIOD * (1 - 1e-12):

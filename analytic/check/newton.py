@@ -23,6 +23,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import local_point
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.samples import samples
 from models.scene import GROUND, Point, Scene, Slider
 
 LONGEST_STEP_RAD = 0.05
@@ -58,14 +59,16 @@ def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
     Raises
     ------
     CrankcheckError
-        Newton's method does not converge from the guess, or the Jacobian is singular on the way.
+        Newton's method does not converge from the guess, or the Jacobian is singular on the way;
+        times that are no numbers.
     """
     system = Constraints(scene)
     law = scene.driver.law
     q = np.array([c for body in system.bodies for c in guess.bodies[body]])
     positions, rates, seconds = [], [], []
     before: float | None = None
-    for t in np.asarray(time_s, dtype=np.float64):
+    time_s = samples(time_s, "time_s")
+    for t in time_s:
         theta, omega, alpha = (float(a[0]) for a in law.at(np.array([t])))
         start = theta if before is None else before
         for angle in _stations(start, theta):
@@ -81,8 +84,8 @@ def solve(scene: Scene, time_s: Array, guess: Guess) -> Motion:
         positions.append(q)
         rates.append(qd)
         seconds.append(_solved(system, q, system.gamma(q, qd, alpha), theta))
-    samples = _Samples(system, np.array(positions), np.array(rates), np.array(seconds))
-    return samples.motion(np.asarray(time_s, dtype=np.float64))
+    solved = _Samples(system, np.array(positions), np.array(rates), np.array(seconds))
+    return solved.motion(time_s)
 
 
 def _stations(start: float, end: float) -> Array:

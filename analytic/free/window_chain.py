@@ -23,6 +23,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion
+from models.samples import samples
 from models.window_chain import UPRIGHT, Chain
 
 
@@ -122,7 +123,9 @@ class ChainMotion:
         return 2.0 * chain.mass_kg * chain.gravity_m_s2 * chain.length_m * self.weight
 
     def motion(self, time_s: Array) -> Motion:
-        """The motion of all rods and pins."""
+        """The motion of all rods and pins at times [s], (T,). Raises CrankcheckError for times that
+        are no numbers."""
+        time_s = samples(time_s, "time_s")
         theta, omega, alpha = self.at(time_s)
         rest = np.zeros_like(theta)
         turning, shifting = LinkMotion(theta, omega, alpha), LinkMotion(rest, rest, rest)

@@ -82,6 +82,11 @@ class Pairs:
         shared = (pair for pair in self._of[a] if b in self._ends[pair])
         return [pair for pair in shared if known.isdisjoint(self._ends[pair])]
 
+    def partners(self, body: str, known: set[str]) -> set[str]:
+        """The bodies that share a pair with a body which is none to known ones."""
+        free = (self._ends[pair] for pair in self._of.get(body, ()))
+        return {name for ends in free if known.isdisjoint(ends) for name in ends} - {body}
+
     def neighbours(self, body: str) -> set[str]:
         """The bodies that share a pair with a body."""
         return {name for pair in self._of[body] for name in self._ends[pair]} - {body}
@@ -111,7 +116,7 @@ def _dyads(outer: Mapping[str, list[JointKey]], known: set[str], pairs: Pairs) -
     """The class II groups that can be placed next, in the order of the bodies."""
     ready = {body: place for place, (body, ends) in enumerate(outer.items()) if len(ends) == 1}
     for a in ready:
-        later = [b for b in pairs.neighbours(a) & ready.keys() if ready[b] > ready[a]]
+        later = [b for b in pairs.partners(a, known) & ready.keys() if ready[b] > ready[a]]
         for b in sorted(later, key=ready.__getitem__):
             inner = pairs.inner(a, b, known)
             group = _dyad(a, b, outer[a][0], inner[0], outer[b][0]) if len(inner) == 1 else None

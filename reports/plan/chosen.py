@@ -9,6 +9,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
 from models.files import load_scene, shipped
+from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from sim.registry import ENGINES, engine
@@ -18,7 +19,7 @@ LOOKS = 721
 PROFILES = ("tuned", "as-shipped")
 
 
-def chosen_scenes(names: Sequence[str]) -> list[Scene]:
+def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
     """The named scenes, each once; all shipped ones where none is named.
 
     Raises
@@ -28,7 +29,7 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
         ReachError of the reference, which names group or range.
     """
     scenes: dict[str, Scene] = {}
-    for name in dict.fromkeys(names or shipped()):
+    for name in dict.fromkeys(names_in(names, "scenes") or shipped()):
         scene = load_scene(name)
         check_names(scene)
         # Whether it has a closed form, and can follow its driver through a period.
@@ -41,15 +42,15 @@ def chosen_scenes(names: Sequence[str]) -> list[Scene]:
     return list(scenes.values())
 
 
-def chosen_engines(names: Sequence[str]) -> list[str]:
+def chosen_engines(names: str | Sequence[str]) -> list[str]:
     """The named engines, installed all of them; all there are where none is named."""
-    engines = list(dict.fromkeys(names or ENGINES))
+    engines = list(dict.fromkeys(names_in(names, "engines") or ENGINES))
     for name in engines:
         engine(name).version()
     return engines
 
 
-def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
+def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:
     """Profiles with whether they are gated: those named are; by default `tuned` alone is.
 
     Raises
@@ -57,6 +58,7 @@ def chosen_profiles(names: Sequence[str], engines: Iterable[str]) -> list[tuple[
     CrankcheckError
         A profile that one of the engines lacks; the message suggests the near ones.
     """
+    names = names_in(names, "profiles")
     for name in names:
         for each in engines:
             profiles = list(engine(each).profiles)

@@ -147,6 +147,10 @@ def cases() -> Iterator[tuple[str, str, Made, str, str]]:
     yield "1e400", "it.toml", speed("1e400"), SOLVE, "driver.speed_rad_s: found inf; input should"
     many = "".join(f"s{k} = {{ on = 'x' }}\n" for k in range(9000)).encode()
     yield "sliders", "it.toml", b"[sliders]\n" + many, SOLVE, "sliders: found .* at most 1000 items"
+    star = "".join(f"[links.l{k}.points]\nA = [0.0, 0.0]\nB{k} = [0.1, 0.0]\n" for k in range(999))
+    head = "name = 'a'\nsource = 'b'\n[ground.points]\nA = [0.0, 0.0]\n"
+    driver = "[driver]\nlink = 'l0'\nspeed_rad_s = 1.0\n"
+    yield "links on a pin", "it.toml", f"{head}{driver}{star}".encode(), SOLVE, "mobility W = .*999"
     words = "asks for 1e.08 cells: 1 scene x 1e.08 variants .*100 of s0, 100 of s1.*; a sweep has"
     yield "variants", "it.toml", settings(4, 100), SWEEP, words
     yield "more variants", "it.toml", settings(6000, 2), SWEEP, "at most 100000: take fewer"

@@ -141,7 +141,7 @@ def test_ctrl_c_during_an_import_ends_in_one_line(
 @pytest.mark.slow
 @pytest.mark.parametrize("program", [COMMAND, "-m"], ids=["crankcheck", "-m"])
 def test_ctrl_c_at_any_import_ends_in_one_line(program: str, programs: Start) -> None:
-    for number in range(1, 10_000, 7):
+    for number in range(1, 10_000, 17):
         code, complaint = started("*", number, program, programs)
         if code == 0:
             break

@@ -213,7 +213,7 @@ MISTAKES = {
     "junit below a file": ([*ONE, "--junit", __file__ + "/j.xml"], ["--junit", "no folder"]),
     "csv is a folder": ([*ONE, "--csv", str(Path(__file__).parent)], ["--csv", "a folder"]),
     "folder is a file": ([*ONE, "-o", __file__], ["-o", "is a file; name a folder"]),
-    "scene is a folder": (["verify", str(Path(__file__).parent)], ["a directory"]),
+    "scene is a folder": (["verify", str(Path(__file__).parent)], ["a folder"]),
     "negative jobs": ([*ONE, "--jobs", "-1"], ["--jobs", "greater than or equal to 0"]),
     "unknown option": ([*ONE, "--toll", "angle=1"], ["--toll"]),
     "unknown command": (["verfy"], ["verfy"]),

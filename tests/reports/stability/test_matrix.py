@@ -61,6 +61,7 @@ def test_a_number_that_is_missing_is_still_missing(matrix: Matrix, tmp_path: Pat
         lambda text: "",
         lambda text: text[: len(text) // 2],
         lambda text: "[]",
+        lambda text: "[" * 100_000,
         lambda text: json.dumps(json.loads(text) | {"format": 99}),
         lambda text: json.dumps({"format": 1, "facts": {}}),
         lambda text: text.replace('"outcome"', '"ending"'),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -113,6 +114,12 @@ def in_place(relative: str, make: Change) -> Change:
     return change
 
 
+def huge(path: Path) -> None:
+    """3 GB, which take no room."""
+    with path.open("wb") as file:
+        file.truncate(3_000_000_000)
+
+
 def loop(path: Path) -> None:
     path.symlink_to(path.name)
 
@@ -177,6 +184,11 @@ CASES = {
     "folder": Case(in_place("cells/*", Path.mkdir), "parquet: a folder; 2 cells", 2, gate=2),
     "manifest folder": Case(
         in_place("manifest.json", Path.mkdir), "manifest.json: a folder", 0, gate=2
+    ),
+    "pipe": Case(in_place("cells/*", os.mkfifo), "a pipe, no plain file; 2 cells", 2, gate=2),
+    "manifest pipe": Case(in_place("manifest.json", os.mkfifo), "json: a pipe", 0, gate=2),
+    "manifest too large": Case(
+        in_place("manifest.json", huge), "3000000000 bytes; at most 100000000 are", 0, gate=2
     ),
     "loop": Case(in_place("cells/*", loop), "Too many levels of symbolic links", 2, gate=2),
     "manifest loop": Case(in_place("manifest.json", loop), "Too many levels", 0, gate=2),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sqlite3
 import sys
 from pathlib import Path
@@ -58,6 +59,12 @@ def test_a_file_of_something_else_is_refused_and_left_alone(tmp_path: Path) -> N
     with pytest.raises(CrankcheckError, match="holds something else; name a new file"):
         check_storage(path)
     assert path.read_text(encoding="utf-8") == "my notes"
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.db")
+    with pytest.raises(CrankcheckError, match="no plain file; name a new file"):
+        check_storage(tmp_path / "pipe.db")
 
 
 def test_a_database_of_something_else_is_refused(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -118,6 +119,14 @@ def without(*names: str) -> Callable[[Path], None]:
     return change
 
 
+def piped(name: str) -> Callable[[Path], None]:
+    def change(folder: Path) -> None:
+        (folder / name).unlink()
+        os.mkfifo(folder / name)
+
+    return change
+
+
 SPOILT: dict[str, tuple[Callable[[Path], None], str]] = {
     "empty file": (spoil("verify.csv", ""), "no cells in it"),
     "other table": (spoil("verify.csv", "a,b\n1,2\n"), "no column 'engine'"),
@@ -129,6 +138,9 @@ SPOILT: dict[str, tuple[Callable[[Path], None], str]] = {
     "settings": (column("settings", "[1]"), r"settings '\[1\]'"),
     "facts": (spoil("verify.json", "{"), "verify.json: not JSON"),
     "list of facts": (spoil("verify.json", "[]"), "verify.json: no facts"),
+    "deep facts": (spoil("verify.json", "[" * 100_000), "verify.json: not JSON"),
+    "facts from a pipe": (piped("verify.json"), "verify.json: a pipe, no plain file; verify again"),
+    "cells from a pipe": (piped("verify.csv"), "no stored run there"),
     "two kinds": (spoil("manifest.json", "{}"), "holds a sweep .* and a verification"),
     "not text": (lambda f: (f / "verify.csv").write_bytes(b"\xff\xfe\x00") and None, "not a CSV"),
 }
