@@ -34,6 +34,8 @@ from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import KEPT, Same, Scene
 
+SINES = 2 * EPS
+"""What a direction is off by for the rounding of sine and cosine [rad]."""
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
 Driven = tuple[Array, Real, Real, AngleError | None]
@@ -83,16 +85,7 @@ def solve(
     def driver(span: slice) -> Driven:
         t = time_s[span]
         theta, omega, alpha = _law_at(law, t)
-        if not bound:
-            return theta, omega, alpha, None
-        age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
-        peak = law.peak_speed_rad_s
-        error = AngleError(
-            4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
-            4 * EPS * peak * (1.0 + age),
-            4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
-        )
-        return theta, omega, alpha, error
+        return theta, omega, alpha, _rounding_of(law, t, theta) if bound else None
 
     ready = _prepared(Same(scene))
     return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
@@ -121,7 +114,7 @@ def solve_driven(
     labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
 
     def driver(span: slice) -> Driven:
-        error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
+        error = AngleError(SINES, 0.0, 0.0) if bound else None
         return theta[span], omega[span], alpha[span], error
 
     ready = _prepared(Same(scene))
@@ -138,6 +131,21 @@ def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
     if isinstance(law, ConstantSpeed):
         return law.angle(t), law.speed_rad_s, STEADY
     return law.at(t)
+
+
+def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
+    """What rounding does to a law at times ``t``, where it has the angles ``theta``."""
+    peak = law.peak_speed_rad_s
+    if isinstance(law, ConstantSpeed):
+        # A product, a sum, and the degrees of the start; its speed is what it was told to be.
+        angle = 0.5 * (np.abs(theta) + peak * np.abs(t)) + law.offset_rad
+        return AngleError(EPS * angle + SINES, 0.0, 0.0)
+    age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
+    return AngleError(
+        4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)) + SINES,
+        4 * EPS * peak * (1.0 + age),
+        4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
+    )
 
 
 def _samples(values: Array) -> Array:

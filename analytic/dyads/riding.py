@@ -36,7 +36,7 @@ def rounding_of_angles(*angles: float) -> float:
 
     The sum may be small where they are large; what is lost is that of the large ones.
     """
-    return 4 * EPS * (1.0 + sum(map(abs, angles)))
+    return EPS * (3.0 + 1.5 * sum(map(abs, angles)))
 
 
 def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
@@ -46,7 +46,7 @@ def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> floa
     ``onto`` is what they were added to; 0 where there was nothing to add.
     """
     length = sum(math.hypot(*v) for v in vectors)
-    return EPS * (4.0 * (1.0 + angle) * length + math.hypot(*onto)) if length else 0.0
+    return EPS * ((3.0 + 1.5 * angle) * length + math.hypot(*onto)) if length else 0.0
 
 
 def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointError:
@@ -171,7 +171,8 @@ class RidingLine:
         along = body.unit(self.angle)
         error = body.error
         if error is not None:
-            error = replace(error, theta=error.theta + rounding_of_angles(self.angle))
+            rounding = rounding_of_angles(self.angle) if self.angle else EPS  # else its length
+            error = replace(error, theta=error.theta + rounding)
         point = body.point(self.base)
         if self.slack and error is not None and point.error is not None:
             point = replace(point, error=_loosened(point.error, self.slack, body))
@@ -189,7 +190,7 @@ def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
     """The displacement behind a point that leads it; ``slack`` bounds the rounding of the lead."""
     error = found.error
     if error is not None and slack:
-        rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + slack
+        rounding = EPS * (abs(lead) + np.abs(found.s)) + slack
         error = replace(error, displacement=error.displacement + rounding)
     return replace(found, s=found.s - lead, error=error)
 
@@ -207,11 +208,11 @@ def riding_point(line: MovingLine, found: Sliding) -> PointKinematics:
     place, drift, shove = line.errors(s, speed, e.displacement, e.speed)
     sizes = line.sizes(s, speed)
     error = PointError(
-        place + e.displacement + 6 * EPS * sizes[0],
-        drift + e.speed + np.abs(speed) * line.error.theta + 6 * EPS * (sizes[1] + np.abs(speed)),
+        place + e.displacement + 2 * EPS * sizes[0],
+        drift + e.speed + np.abs(speed) * line.error.theta + 3 * EPS * (sizes[1] + np.abs(speed)),
         shove
         + e.acceleration
         + np.abs(found.acceleration) * line.error.theta
-        + 8 * EPS * (sizes[2] + np.abs(found.acceleration)),
+        + 4 * EPS * (sizes[2] + np.abs(found.acceleration)),
     )
     return PointKinematics(p, v, a, error)
