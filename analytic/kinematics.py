@@ -21,7 +21,7 @@ from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import OpenError
-from analytic.dyads.plane import EPS, STEADY, AngleError, Real
+from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import MotionArrays, Selection
@@ -34,8 +34,6 @@ from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.scene import KEPT, Same, Scene
 
-SINES = 2 * EPS
-"""What a direction is off by for the rounding of sine and cosine [rad]."""
 CHUNK = 12288
 """Samples solved at a time: their intermediate arrays fit the second-level cache."""
 Driven = tuple[Array, Real, Real, AngleError | None]
@@ -68,8 +66,8 @@ def solve(
     -------
     Motion
         Angles of links go on continuously with the driver's angle, the same whatever samples
-        are asked for: in (-pi, pi] at time 0, and counted on from there. Sliders count from
-        ``through_m``.
+        are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
+        to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
 
     Raises
     ------
@@ -106,15 +104,15 @@ def solve_driven(
     """The motion of a scene whose driver has the given angles, rates and accelerations.
 
     As `solve`, but for driver angles [rad], rates [rad/s] and accelerations [rad/s^2], shape (T,),
-    that are taken as exact: the geometry at the angle that an engine logged, say. ``time_s`` only
-    labels the samples.
+    that are taken as exact: the geometry at the angle that an engine logged, say. Whole turns are
+    counted from the angle that the scene's law has at time 0. ``time_s`` only labels the samples.
     """
     theta = _samples(theta)
     omega, alpha = np.broadcast_to(omega, theta.shape), np.broadcast_to(alpha, theta.shape)
     labels = np.zeros_like(theta) if time_s is None else np.asarray(time_s, dtype=np.float64)
 
     def driver(span: slice) -> Driven:
-        error = AngleError(SINES, 0.0, 0.0) if bound else None
+        error = EXACT_ANGLE if bound else None
         return theta[span], omega[span], alpha[span], error
 
     ready = _prepared(Same(scene))
@@ -139,10 +137,10 @@ def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
     if isinstance(law, ConstantSpeed):
         # A product, a sum, and the degrees of the start; its speed is what it was told to be.
         angle = 0.5 * (np.abs(theta) + peak * np.abs(t)) + law.offset_rad
-        return AngleError(EPS * angle + SINES, 0.0, 0.0)
+        return AngleError(EPS * angle, 0.0, 0.0)
     age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
     return AngleError(
-        4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)) + SINES,
+        4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
         4 * EPS * peak * (1.0 + age),
         4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
     )
