@@ -120,8 +120,8 @@ class Look:
         parts = (2.0 * np.arange(PARTS) + 1.0) / PARTS - 1.0
         while True:
             wide = cells.unsure & (cells.half > np.where(cells.is_open, OPEN, NARROWEST))
-            count = wide.size + PARTS * np.count_nonzero(wide)
-            if not wide.any() or count * len(self.scene.links) > MOST:
+            many = wide.size + PARTS * int(np.count_nonzero(wide))
+            if not wide.any() or many * len(self.scene.links) > MOST:
                 return cells
             middle, halves = cells.middle[wide, None], cells.half[wide, None]
             inside: Array = (middle + halves * parts).ravel()
