@@ -21,7 +21,7 @@ from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import OpenError
-from analytic.dyads.plane import EPS, STEADY, AngleError, Real
+from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import MotionArrays, Selection
@@ -67,8 +67,8 @@ def solve(
     -------
     Motion
         Angles of links go on continuously with the driver's angle, the same whatever samples
-        are asked for: in (-pi, pi] at time 0, and counted on from there. Sliders count from
-        ``through_m``.
+        are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
+        to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
 
     Raises
     ------
@@ -86,16 +86,7 @@ def solve(
     def driver(span: slice) -> Driven:
         t = time_s[span]
         theta, omega, alpha = _law_at(law, t)
-        if not bound:
-            return theta, omega, alpha, None
-        age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
-        peak = law.peak_speed_rad_s
-        error = AngleError(
-            4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
-            4 * EPS * peak * (1.0 + age),
-            4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
-        )
-        return theta, omega, alpha, error
+        return theta, omega, alpha, _rounding_of(law, t, theta) if bound else None
 
     ready = _prepared(Same(scene))
     return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
@@ -117,14 +108,15 @@ def solve_driven(
 
     As `solve`, but for driver angles [rad], rates [rad/s] and accelerations [rad/s^2], shape (T,),
     that are taken as exact: the geometry at the angle that an engine logged, say. One rate, or one
-    acceleration, counts for all samples. ``time_s`` only labels the samples.
+    acceleration, counts for all samples. Whole turns are counted from the angle that the scene's
+    law has at time 0. ``time_s`` only labels the samples.
     """
     theta = samples(theta, "theta")
     omega, alpha = beside(omega, theta, "omega", "theta"), beside(alpha, theta, "alpha", "theta")
     labels = beside(0.0 if time_s is None else time_s, theta, "time_s", "theta")
 
     def driver(span: slice) -> Driven:
-        error = AngleError(4 * EPS * np.abs(theta[span]), 0.0, 0.0) if bound else None
+        error = EXACT_ANGLE if bound else None
         return theta[span], omega[span], alpha[span], error
 
     ready = _prepared(Same(scene))
@@ -141,6 +133,21 @@ def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
     if isinstance(law, ConstantSpeed):
         return law.angle(t), law.speed_rad_s, STEADY
     return law.at(t)
+
+
+def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
+    """What rounding does to a law at times ``t``, where it has the angles ``theta``."""
+    peak = law.peak_speed_rad_s
+    if isinstance(law, ConstantSpeed):
+        # A product, a sum, and the degrees of the start; its speed is what it was told to be.
+        angle = 0.5 * (np.abs(theta) + peak * np.abs(t)) + law.offset_rad
+        return AngleError(EPS * angle, 0.0, 0.0)
+    age = np.abs(t) * law.fastest_rad_s + abs(law.phase_rad)
+    return AngleError(
+        4 * EPS * (np.abs(theta) + law.offset_rad + peak * np.abs(t)),
+        4 * EPS * peak * (1.0 + age),
+        4 * EPS * peak * law.fastest_rad_s * (1.0 + age),
+    )
 
 
 def repeats_after(scene: Scene) -> float:

@@ -150,7 +150,7 @@ class MotionArrays:
                 counter.count(name, track.value[span])
         if self.certified and body.error is not None:
             e = body.error
-            limit = e.theta + 2 * EPS * (np.abs(track.value[span]) + math.pi)
+            limit = e.theta + 2 * EPS * (np.abs(track.value[span]) + 2.0)
             # Where little is sure of the angle the count of its turns is not sure either.
             limit = np.where(e.theta > SURE, math.tau, limit)
             self.link_bounds[name].put_bounds(span, limit, e.omega, e.alpha)

@@ -73,8 +73,8 @@ class Chain:
         """The chain, to be left free; its driver has the place and the speed of the start.
 
         Driven at rocker0 by `analytic.kinematics.solve` it goes through the flat position up to
-        N = 6. Longer chains are refused at any angle: there each dyad is in a change point with
-        all before it, and from the seventh on that is lost in their rounding.
+        N = 6, one of 7 is refused there, and longer ones at any angle: each dyad is in a change
+        point with all before it, and from the eighth on that is lost in their rounding.
         """
         links = [self._rod("rocker0", "A0", "B0")]
         for i, coupler in enumerate(self.couplers()):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
 
 from analytic.dyads.parts import Closure, Dyad, First, Second, Sliding
 from analytic.dyads.plane import (
+    EPS,
     AngleError,
     BodyKinematics,
     PointKinematics,
@@ -21,6 +22,9 @@ from analytic.dyads.plane import (
 from models.array import Array
 from models.joints import local_point
 from models.scene import GROUND, Scene
+
+SINES = 2 * EPS
+"""What the driver's direction is off by for the rounding of sine and cosine [rad]."""
 
 
 class Passage(Protocol):
@@ -65,6 +69,8 @@ class Chunk:
         pivot = scene.driver_pivot
         local = scene.links[scene.driver.link].points[pivot]
         anchor = fixed_point(scene.ground[pivot])
+        if error is not None:
+            error = replace(error, theta=error.theta + SINES)
         driver = BodyKinematics(
             local, anchor, Vec(np.cos(theta), np.sin(theta)), omega, alpha, error, theta
         )

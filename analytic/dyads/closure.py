@@ -9,10 +9,11 @@ so that one determinant, c1 x c2, carries the conditioning of all three levels.
 
 The certificate is a posteriori. The residual of the computed position, plus the rounding of its
 evaluation, plus the errors of the inputs, is a bound on f at the exact inputs; multiplied by the
-inverse of the Jacobian it bounds the error of the unknowns to first order, and twice that bounds it
-fully as long as the curvature of f over that distance spends no more than the residual itself
-(Newton-Kantorovich). Where that fails the dyad is within about the square root of rounding of its
-toggle: each dyad then gives the width of its fold, and rates are not certain at all (infinite).
+inverse of the Jacobian it bounds the error of the unknowns to first order, and up to twice that
+bounds it fully as long as the curvature of f over that distance spends no more than the residual
+itself (Newton-Kantorovich). Where that fails the dyad is within about the square root of rounding
+of its toggle: each dyad then gives the width of its fold, and rates are not certain at all
+(infinite).
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ import numpy as np
 
 from analytic.dyads.plane import EPS, Real, Vec
 
-ROUNDING = 8 * EPS
-"""Rounding of one evaluated loop equation, over the sum of the lengths of its terms."""
+ROUNDING = 3 * EPS
+"""Rounding of the rates that solve a loop equation, over the sum of the lengths of its terms: a
+cross product takes 1, the quotient and the terms on its right side another 2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,9 @@ class Curvature:
 class Certificate:
     """Error bounds of a dyad's unknowns at position level, and the way to those above it.
 
-    ``e1``, ``e2`` bound the unknowns; ``d1``, ``d2`` bound the columns of the Jacobian.
+    ``e1``, ``e2`` bound the unknowns; ``d1``, ``d2`` bound the columns of the Jacobian. ``skew`` is
+    what rounding may put between the determinant that rates are divided by and that of the columns,
+    where it is more than `ROUNDING` of their lengths.
     """
 
     jacobian: Jacobian
@@ -66,6 +70,7 @@ class Certificate:
     e2: Real
     d1: Real
     d2: Real
+    skew: Real = 0.0
 
     def above(self, q1: Real, q2: Real, error_of_b: Real, size_of_b: Real) -> tuple[Real, Real]:
         """Bounds on rates (or accelerations) q1, q2 that solve the loop with right side b.
@@ -78,12 +83,12 @@ class Certificate:
         residual = (
             error_of_b + a1 * self.d1 + a2 * self.d2 + ROUNDING * (size_of_b + n1 * a1 + n2 * a2)
         )
-        lost = self.d1 * n2 + n1 * self.d2 + self.d1 * self.d2 + 4 * EPS * n1 * n2
+        lost = self.d1 * n2 + n1 * self.d2 + self.d1 * self.d2 + 4 * EPS * n1 * n2 + self.skew
         left = np.abs(self.jacobian.det) - lost
         # What comes from a singular dyad before this one may be 0 times infinity: not certain.
         sure = (left > 0.0) & (residual < np.inf)
-        e1 = np.where(sure, (n2 + self.d2) * residual / left, np.inf)
-        e2 = np.where(sure, (n1 + self.d1) * residual / left, np.inf)
+        e1 = np.where(sure, ((n2 + self.d2) * residual + a1 * self.skew) / left, np.inf)
+        e2 = np.where(sure, ((n1 + self.d1) * residual + a2 * self.skew) / left, np.inf)
         return e1, e2
 
 
@@ -113,8 +118,11 @@ def certify(
     n1, n2 = jacobian.c1.norm(), jacobian.c2.norm()
     inverse = 1.0 / np.maximum(np.abs(jacobian.det) - lost, 0.0)
     e1, e2 = n2 * residual * inverse, n1 * residual * inverse
-    valid = 4.0 * curvature.remainder(e1, e2) <= residual
-    e1, e2 = 2.0 * e1, 2.0 * e2
+    share = 4.0 * curvature.remainder(e1, e2) / residual
+    valid = share <= 1.0
+    # The error is at most x times the first order, where x = 1 + (share / 4) x^2.
+    grown = 1.01 + share
+    e1, e2 = grown * e1, grown * e2
     if np.all(valid):
         return e1, e2
     fold1, fold2 = folds()

@@ -188,7 +188,8 @@ class BodyKinematics:
         return PointKinematics(motion.p, motion.v, motion.a, error)
 
     def _point_error(self, motion: PointKinematics, r: float) -> PointError:
-        """The anchor's errors, those of the rotation over the arm, and the rounding of the sums."""
+        """The anchor's errors, those of the rotation over the arm, and the rounding: half a unit of
+        the sum, and of the arm that of its coordinates, of turning it, and of its rates."""
         assert self.error is not None
         assert self.anchor.error is not None
         e, at = self.error, self.anchor.error
@@ -196,13 +197,13 @@ class BodyKinematics:
         speed, pull = r * rate, r * (gain + rate * rate)
         change = e.alpha + e.omega * (2 * rate + e.omega)
         return PointError(
-            at.position + r * e.theta + 4 * EPS * (motion.p.norm() + self.anchor.p.norm() + r),
+            at.position + r * e.theta + EPS * (0.5 * motion.p.norm() + 3.0 * r),
             at.velocity
             + r * (e.omega + (rate + e.omega) * e.theta)
-            + 4 * EPS * (motion.v.norm() + self.anchor.v.norm() + speed),
+            + EPS * (0.5 * motion.v.norm() + 4.0 * speed),
             at.acceleration
             + r * (change + (gain + rate * rate + change) * e.theta)
-            + 6 * EPS * (motion.a.norm() + self.anchor.a.norm() + pull),
+            + EPS * (0.5 * motion.a.norm() + 5.0 * pull),
         )
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Closure, Dyad, MovingLine, OpenError, SlideError, Sliding
 from analytic.dyads.plane import EPS
 
@@ -78,7 +78,7 @@ def _errors(
     gap = (line1.at(s1) - line2.at(s2)).norm()
     place = line1.errors(s1, v1, 0.0, 0.0)[0] + line2.errors(s2, v2, 0.0, 0.0)[0]
     sizes1, sizes2 = line1.sizes(s1, v1), line2.sizes(s2, v2)
-    residual = gap + place + ROUNDING * (sizes1[0] + sizes2[0])
+    residual = gap + place + 2 * EPS * (sizes1[0] + sizes2[0])
     # The loop is linear in s1, s2, but its lines turn with the errors of their bodies; that share
     # is in the residual, and in the columns below.
     turn1, turn2 = line1.error.theta + 2 * EPS, line2.error.theta + 2 * EPS

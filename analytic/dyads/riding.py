@@ -32,21 +32,26 @@ def total(*points: Point) -> Point:
 
 
 def rounding_of_angles(*angles: float) -> float:
-    """Rounding of the direction of a sum of constant angles [rad], each known to its last digit.
+    """Rounding of the direction of a sum of constant angles [rad]; 0 where all are.
 
-    The sum may be small where they are large; what is lost is that of the large ones.
+    Within a turn they may come from degrees, which are rounded to radians; larger ones are as they
+    were given. The sum may be small where they are large: what is lost is that of the large ones.
     """
-    return 4 * EPS * (1.0 + sum(map(abs, angles)))
+    sizes = [abs(angle) for angle in angles if angle]
+    if not sizes:
+        return 0.0
+    summed = sum(sizes) if len(sizes) > 1 else 0.0
+    return EPS * (3.0 + sum(min(size, math.tau) for size in sizes) + summed)
 
 
-def rounding_of(angle: float, *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
-    """Rounding of a place worked out by turning constant vectors by angles that come to ``angle``,
-    all taken as positive [m].
+def rounding_of(angles: tuple[float, ...], *vectors: Point, onto: Point = (0.0, 0.0)) -> float:
+    """Rounding of a place worked out by turning constant vectors by sums of the angles [m].
 
     ``onto`` is what they were added to; 0 where there was nothing to add.
     """
     length = sum(math.hypot(*v) for v in vectors)
-    return EPS * (4.0 * (1.0 + angle) * length + math.hypot(*onto)) if length else 0.0
+    turning = rounding_of_angles(*angles) + 2 * EPS
+    return turning * length + EPS * math.hypot(*onto) if length else 0.0
 
 
 def _loosened(error: PointError, slack: float, body: BodyKinematics) -> PointError:
@@ -126,9 +131,8 @@ class RidingLine:
 
     The line goes through ``base`` at ``angle`` in the known body's frame; the slider's
     displacement is ``sign`` times the coordinate on this line. The unknown body keeps the angle
-    ``follow`` to the known one, the sum of angles that all taken as positive come to ``angles``,
-    and its point ``rider`` (in its own frame) is the one on the line. ``slack`` bounds the rounding
-    of ``base`` where that was worked out [m].
+    ``follow`` to the known one, the sum of ``angles``, and its point ``rider`` (in its own frame)
+    is the one on the line. ``slack`` bounds the rounding of ``base`` where that was worked out [m].
     """
 
     known: str
@@ -136,7 +140,7 @@ class RidingLine:
     angle: float
     sign: int
     follow: float
-    angles: float
+    angles: tuple[float, float]
     rider: Point
     slack: float = 0.0
 
@@ -147,23 +151,24 @@ class RidingLine:
         body = sliding_body(slider)
         pin = placed.local(body, slider.point)
         line, angle = slider.direction_rad, slider.angle_rad
-        angles = abs(line) + abs(angle)
         if slider.on in placed.known:
-            return RidingLine(slider.on, slider.through_m, line, 1, line + angle, angles, pin)
-        return RidingLine(body, pin, -angle, -1, -line - angle, angles, slider.through_m)
+            both = (line, angle)
+            return RidingLine(slider.on, slider.through_m, line, 1, line + angle, both, pin)
+        both = (-line, -angle)
+        return RidingLine(body, pin, -angle, -1, -line - angle, both, slider.through_m)
 
     def through(self, local: Point) -> tuple[RidingLine, float]:
         """The parallel line of another point of the unknown body, and that point's lead on it."""
         away = less(local, self.rider)
         lead, aside = turned(away, self.follow - self.angle)
         base = total(self.base, turned((0.0, aside), self.angle))
-        slack = rounding_of(self.angles + 2.0 * abs(self.angle), away, onto=base)
+        slack = rounding_of((*self.angles, self.angle, self.angle), away, onto=base)
         return replace(self, base=base, rider=local, slack=slack), lead
 
     @property
     def rounding(self) -> float:
         """Rounding of the angle that the unknown body keeps [rad]."""
-        return rounding_of_angles(self.angles) if self.angles else 0.0
+        return rounding_of_angles(*self.angles)
 
     def line(self, chunk: Chunk) -> MovingLine:
         """The line in motion."""
@@ -171,7 +176,8 @@ class RidingLine:
         along = body.unit(self.angle)
         error = body.error
         if error is not None:
-            error = replace(error, theta=error.theta + rounding_of_angles(self.angle))
+            rounding = rounding_of_angles(self.angle) + EPS  # that of its length
+            error = replace(error, theta=error.theta + rounding)
         point = body.point(self.base)
         if self.slack and error is not None and point.error is not None:
             point = replace(point, error=_loosened(point.error, self.slack, body))
@@ -189,7 +195,7 @@ def without_lead(found: Sliding, lead: float, slack: float) -> Sliding:
     """The displacement behind a point that leads it; ``slack`` bounds the rounding of the lead."""
     error = found.error
     if error is not None and slack:
-        rounding = 4 * EPS * (abs(lead) + np.abs(found.s)) + slack
+        rounding = EPS * (abs(lead) + np.abs(found.s)) + slack
         error = replace(error, displacement=error.displacement + rounding)
     return replace(found, s=found.s - lead, error=error)
 
@@ -207,11 +213,11 @@ def riding_point(line: MovingLine, found: Sliding) -> PointKinematics:
     place, drift, shove = line.errors(s, speed, e.displacement, e.speed)
     sizes = line.sizes(s, speed)
     error = PointError(
-        place + e.displacement + 6 * EPS * sizes[0],
-        drift + e.speed + np.abs(speed) * line.error.theta + 6 * EPS * (sizes[1] + np.abs(speed)),
+        place + e.displacement + 2 * EPS * sizes[0],
+        drift + e.speed + np.abs(speed) * line.error.theta + 3 * EPS * (sizes[1] + np.abs(speed)),
         shove
         + e.acceleration
         + np.abs(found.acceleration) * line.error.theta
-        + 8 * EPS * (sizes[2] + np.abs(found.acceleration)),
+        + 4 * EPS * (sizes[2] + np.abs(found.acceleration)),
     )
     return PointKinematics(p, v, a, error)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Dyad, SlideError, Sliding, Turning, closing_root
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
@@ -98,8 +98,8 @@ def _errors(
     w, v = np.abs(turning.omega), np.abs(sliding.speed)
     arm = np.hypot(s, offset)
     gap = (p1.p - p2.p - along * s - along.perp() * offset).norm()
-    size = p1.p.norm() + p2.p.norm() + 2.0 * (np.abs(s) + abs(offset))
-    residual = gap + p1.error.position + p2.error.position + ROUNDING * size
+    # Half a unit of the distance of the pins, and what the line's direction is longer than 1 by.
+    residual = gap + p1.error.position + p2.error.position + 5 * EPS * (np.abs(s) + abs(offset))
 
     def folds() -> tuple[Real, Real]:
         fold: Real = 2.0 * np.abs(s) + 2.0 * np.sqrt(residual * (arm + residual))
@@ -120,4 +120,4 @@ def _errors(
         p1.error.acceleration + p2.error.acceleration + swing + coriolis,
         p1.a.norm() + p2.a.norm() + w * w * arm + 2.0 * w * v,
     )
-    return AngleError(t + 4 * EPS, r, g), SlideError(es, ev, ea)
+    return AngleError(t + 6 * EPS, r, g), SlideError(es, ev, ea)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Dyad, MovingLine, SlideError, Sliding, Turning, closing_root
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
@@ -97,8 +97,8 @@ def _errors(
     s, speed, w = sliding.s, sliding.speed, np.abs(turning.omega)
     gap = (p1.p + turning.turn * length - line.at(s)).norm()
     place, _, _ = line.errors(s, speed, 0.0, 0.0)
-    size = p1.p.norm() + 2.0 * length + 2.0 * line.sizes(s, speed)[0]
-    residual = gap + p1.error.position + place + ROUNDING * size
+    size = p1.p.norm() + 5.0 * length + 1.5 * line.sizes(s, speed)[0]
+    residual = gap + p1.error.position + place + EPS * size
     # The line turns with the error of its body: about the pin itself this opens nothing, yet it
     # moves the toggle.
     turn = line.error.theta + 2 * EPS
@@ -122,4 +122,4 @@ def _errors(
         p1.error.acceleration + shove + pull,
         p1.a.norm() + length * w * w + line.sizes(s, speed)[2],
     )
-    return AngleError(t + 4 * EPS, r, g), SlideError(es, ev, ea)
+    return AngleError(t + 6 * EPS, r, g), SlideError(es, ev, ea)

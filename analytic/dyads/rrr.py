@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.dyads.closure import ROUNDING, Certificate, Curvature, Jacobian, certify
+from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
 from analytic.dyads.parts import Dyad, Turning, closing_root
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 
@@ -117,15 +117,17 @@ def _errors(
     assert p2.error is not None
     first, second = dyad.first, dyad.second
     l1, l2 = first.length, second.length
-    gap = (p1.p + first.turn - p2.p - second.turn).norm()
-    # The computed vectors are not quite as long as the links; the residual has to see that too.
-    gap = gap + np.abs(first.turn.norm() - l1) + np.abs(second.turn.norm() - l2)
-    size = p1.p.norm() + p2.p.norm() + 2.0 * (l1 + l2)
-    residual = gap + p1.error.position + p2.error.position + ROUNDING * size
+    # The computed vectors close but for the rounding of their difference; they are not quite as
+    # long as the links, whose lengths are rounded too.
+    off1, off2 = np.abs(first.turn.norm() - l1), np.abs(second.turn.norm() - l2)
+    residual = off1 + off2 + p1.error.position + p2.error.position + 4 * EPS * (l1 + l2)
+    # The determinant comes from Heron's area, the columns from a vector that is d turned.
+    skew = 2 * EPS * l1 * apart
+    curvature = Curvature(l1, 0.0, l2)
     t1, t2 = certify(
-        jacobian, residual, Curvature(l1, 0.0, l2), lambda: _folds(jacobian, residual, apart, dyad)
+        jacobian, residual, curvature, lambda: _folds(jacobian, residual, apart, dyad), skew
     )
-    certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2)
+    certificate = Certificate(jacobian, t1, t2, l1 * t1, l2 * t2, skew)
     w1, w2 = np.abs(first.omega), np.abs(second.omega)
     r1, r2 = certificate.above(
         w1, w2, p1.error.velocity + p2.error.velocity, p1.v.norm() + p2.v.norm()
@@ -137,6 +139,7 @@ def _errors(
         p1.error.acceleration + p2.error.acceleration + pulls,
         p1.a.norm() + p2.a.norm() + l1 * w1 * w1 + l2 * w2 * w2,
     )
+    t1, t2 = t1 + off1 / l1, t2 + off2 / l2  # what hangs on a link takes its vector, length and all
     return AngleError(t1 + 4 * EPS, r1, a1), AngleError(t2 + 4 * EPS, r2, a2)
 
 

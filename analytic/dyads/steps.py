@@ -134,10 +134,9 @@ class RPRStep:
         reach = turned(less(tip, self.local1), slider.angle_rad)
         self.lead, self.offset = foot[0] - reach[0], foot[1] - reach[1]
         line, angle = slider.direction_rad, slider.angle_rad
-        self.slack = rounding_of(abs(line) + abs(angle), foot, reach)
+        self.slack = rounding_of((line, angle), foot, reach)
         self.back1, self.back2 = direction(-angle), direction(line)
-        self.rounding1 = rounding_of_angles(angle) if angle else 0.0
-        self.rounding2 = rounding_of_angles(line) if line else 0.0
+        self.rounding1, self.rounding2 = rounding_of_angles(angle), rounding_of_angles(line)
 
     def advance(self, chunk: Chunk) -> None:
         p1, p2 = chunk.point(self.hold1, self.pin1), chunk.point(self.hold2, self.pin2)
@@ -189,16 +188,16 @@ class RPPStep:
         self.outer = RidingLine.of(placed, group.outer2)
         inner = RidingLine.of(replace(placed, known=frozenset({group.second})), group.inner)
         # Everything below is in the frame of the known body, in which both lines keep their angle.
-        angles = self.outer.angles + inner.angles
-        self.follow, self.rounding = self.outer.follow + inner.follow, rounding_of_angles(angles)
+        angles = (*self.outer.angles, *inner.angles)
+        self.follow, self.rounding = self.outer.follow + inner.follow, rounding_of_angles(*angles)
         offset = turned(less(inner.base, self.outer.rider), self.outer.follow)
         arm = turned(less(self.local, inner.rider), self.follow)
         base = total(self.outer.base, offset, arm)
-        slack = rounding_of(self.outer.angles + angles, offset, arm, onto=base)
+        slack = rounding_of(angles, offset, arm, onto=base)
         self.through = replace(self.outer, base=base, slack=slack)
         self.inner = inner
         self.between = direction(self.outer.follow + inner.angle - self.outer.angle)
-        self.apart = rounding_of_angles(self.outer.angles, inner.angle, self.outer.angle)
+        self.apart = rounding_of_angles(*self.outer.angles, inner.angle, self.outer.angle)
 
     def advance(self, chunk: Chunk) -> None:
         g = self.group

@@ -36,8 +36,9 @@ CELLS = 64
 """Cells of a turn of the driver, before any is divided."""
 PARTS = 4
 """A cell is divided into so many."""
-MOST = 1 << 15
-"""No more cells than this: a chain of six dyads takes up to some 20,000."""
+MOST = 1 << 18
+"""No more cells than this over the number of links: a chain of six dyads takes up to 20,000 cells.
+Beyond, some may not be sure, and their angles are joined to the nearest."""
 NARROWEST = 1e-11
 """Half of a cell [rad] that is not divided, though a mechanism that runs through infinity there
 leaves it unsure."""
@@ -119,7 +120,8 @@ class Look:
         parts = (2.0 * np.arange(PARTS) + 1.0) / PARTS - 1.0
         while True:
             wide = cells.unsure & (cells.half > np.where(cells.is_open, OPEN, NARROWEST))
-            if not wide.any() or wide.size + PARTS * np.count_nonzero(wide) > MOST:
+            many = wide.size + PARTS * int(np.count_nonzero(wide))
+            if not wide.any() or many * len(self.scene.links) > MOST:
                 return cells
             middle, halves = cells.middle[wide, None], cells.half[wide, None]
             inside: Array = (middle + halves * parts).ravel()

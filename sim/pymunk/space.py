@@ -170,7 +170,10 @@ def _slide(
         rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
         constraints.append(rail.joint())
     if isinstance(slide, Prism) and slider.on != GROUND:
-        constraints.append(pymunk.GearJoint(guide, body, sliding_angle(slider), 1.0))
+        # A gear counts whole turns, and each of the two bodies comes with some of its own.
+        kept = sliding_angle(slider)
+        kept += math.tau * round((body.angle - guide.angle - kept) / math.tau)
+        constraints.append(pymunk.GearJoint(guide, body, kept, 1.0))
     return constraints
 
 

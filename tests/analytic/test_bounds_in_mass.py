@@ -30,6 +30,8 @@ QUANTITIES = {
     "points": ("position", "velocity", "acceleration"),
     "sliders": ("displacement", "speed", "rate of speed"),
 }
+LOOSE = {"position": 40.0, "velocity": 50.0, "acceleration": 80.0, "alpha": 300.0}
+"""What the bounds may be over the errors; of those that are exact, none."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,19 @@ def test_errors_stay_below_their_bounds_at_thousands_of_samples() -> None:
     _hold(range(15))
 
 
+def test_bounds_are_within_a_few_tens_of_the_errors() -> None:
+    """Medians within the first turn; they grow with what is derived from what."""
+    loose: dict[str, list[Array]] = {name: [] for name in LOOSE}
+    for number in range(25):
+        for row in held(number):
+            if row.quantity in LOOSE:
+                known = np.flatnonzero((row.error > 0.0) & np.isfinite(row.bound))
+                known = known[known < SAMPLES // 3]
+                loose[row.quantity].append(row.bound[known] / row.error[known])
+    for name, most in LOOSE.items():
+        assert np.median(np.concatenate(loose[name])) < most, name
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(10))
 def test_errors_stay_below_their_bounds_at_300_000_samples(part: int) -> None:
@@ -112,16 +127,23 @@ def test_long_doubles_agree_with_fifty_digits(number: int) -> None:
     assert motion.bound is not None
     wide, chain = WideChain(scene, turned.given).solve(motion), Chain(scene)
     for i, t in enumerate(motion.time_s):
+        fastest = max(abs(float(link.omega[i])) for link in motion.links.values())
         exact = chain.solve(float(t), coordinates(scene, motion, i))
         for kind in QUANTITIES:
             for body, truth in getattr(exact, kind).items():
                 found, limit = getattr(wide, kind)[body], getattr(motion.bound, kind)[body]
                 for own, other in zip(_jets(found), _jets(truth), strict=True):
-                    for name, most in zip(LEVELS, vars(limit).values(), strict=True):
-                        apart = _digits(getattr(own, name), i) - getattr(other, name)
-                        if kind == "links" and name == "value":
-                            apart -= 2 * mp.pi * mp.nint(apart / (2 * mp.pi))
-                        assert abs(apart) <= 1e-3 * most[i] + OWN
+                    apart = _apart(own, other, i, turning=kind == "links")
+                    for k, most in enumerate(vars(limit).values()):
+                        assert apart[k] <= 1e-3 * most[i] + 16 * OWN * fastest**k
+
+
+def _apart(own: Jet, other: Jet, i: int, *, turning: bool) -> list[mpf]:
+    """How far two are apart at a sample, angles but for whole turns."""
+    apart = [_digits(getattr(own, name), i) - getattr(other, name) for name in LEVELS]
+    if turning:
+        apart[0] -= 2 * mp.pi * mp.nint(apart[0] / (2 * mp.pi))
+    return [abs(each) for each in apart]
 
 
 def _jets(exact: Jet | Place) -> list[Jet]:

@@ -335,12 +335,14 @@ def test_a_law_that_rests_in_a_change_point_starts_on_the_branch_that_it_goes_to
 
 
 def test_a_chain_of_windows_is_followed_through_flat_up_to_six() -> None:
-    """As `models.window_chain` says; longer ones are refused at any angle."""
-    theta = np.array([1.5, 0.5, -0.5])
+    """As `models.window_chain` says; one more is not, and longer ones are refused at any angle."""
+    theta = np.array([1.5, 0.5, 0.0, -0.5])
     motion = driven(Chain(6).scene(), theta)
     assert np.allclose(motion.links["rocker6"].theta, theta, rtol=0, atol=1e-9)
-    for count in (7, 8, 40):
-        with pytest.raises(CrankcheckError, match=r"B7 is singular .*: change a length$"):
+    with pytest.raises(CrankcheckError, match=r"B7 is in a change point with no smooth motion"):
+        driven(Chain(7).scene(), theta)
+    for count in (8, 40):
+        with pytest.raises(CrankcheckError, match=r"B8 is singular .*: change a length$"):
             driven(Chain(count).scene(), theta[:1])
 
 

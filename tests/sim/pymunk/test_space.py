@@ -11,7 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene, shipped
+from models.files import load_scene, parse_scene, shipped
 from models.motion import State
 from models.scene import Scene
 from sim.pymunk.space import build
@@ -111,3 +111,33 @@ def test_a_free_link_without_mass_is_named_but_a_prescribed_crank_needs_none() -
     build(bare("crank"), state)
     with pytest.raises(EngineError, match="crank: mass_kg 0"):
         build(bare("crank"), state, servo=True)
+
+
+@pytest.mark.parametrize("line", [20.0, 200.0, 340.0])
+def test_a_gear_holds_a_sliding_link_where_it_starts_whole_turns_or_not(line: float) -> None:
+    """The angles of links, and of a line and a link on it, are counted each for itself."""
+    scene = parse_scene(DIE.format(line=line, lean=340.0 - line), "test")
+    for time_s in np.linspace(0.0, scene.driver.law.period_s, 7):
+        model = build(scene, start_of(scene, float(time_s)))
+        (gear,) = (c for c in model.space.constraints if isinstance(c, pymunk.GearJoint))
+        assert gear.b.angle - gear.a.angle - gear.phase == pytest.approx(0.0, abs=1e-12)
+
+
+DIE = """
+name = "die"
+source = "test"
+[ground]
+points = {{ A = [0.0, 0.0], C = [0.0, -0.3] }}
+[links]
+crank = {{ bar = ["A", "B"], length_m = 0.1 }}
+lever = {{ bar = ["C", "E"], length_m = 0.5 }}
+die = {{ bar = ["B", "F"], length_m = 0.05 }}
+[sliders.B]
+on = "lever"
+link = "die"
+direction_deg = {line}
+angle_deg = {lean}
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+"""
