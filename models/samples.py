@@ -33,7 +33,8 @@ def numbers(values: ArrayLike, what: str) -> Array:
             raw = np.reshape([float(each) for each in raw.ravel()], raw.shape)
         return np.array(raw, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise _no_numbers(what, cut(str(error), 200), "give floats") from None
+        found = f"what is no number ({cut(str(error), 200)})"
+        raise _no_numbers(what, found, "give floats") from None
 
 
 def samples(values: ArrayLike, what: str = "samples") -> Array:
