@@ -10,13 +10,13 @@ from models.scene import Scene
 from sim.engine import Settings
 from sim.registry import capability, declaration
 
-Remedies = Callable[[Scene, State], Sequence[Settings]]
-"""Settings to put in the place of a profile's, for a scene that is assembled at a state; those that
-cost least first."""
+Remedies = Callable[[Scene, State, Settings], Sequence[Settings]]
+"""Settings to put in the place of some of a complete set that failed, for a scene that is assembled
+at a state; those that cost least first."""
 
 
-def remedies(engine: str, scene: Scene, state: State) -> Sequence[Settings]:
+def remedies(engine: str, scene: Scene, state: State, settings: Settings) -> Sequence[Settings]:
     """Those of an engine; none where it offers none. Raises EngineError as `capability` does."""
     if "remedies" not in declaration(engine).offers:
         return ()
-    return cast(Remedies, capability(engine, "remedies"))(scene, state)
+    return cast(Remedies, capability(engine, "remedies"))(scene, state, settings)

@@ -29,7 +29,7 @@ from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track, lacking
-from reports.compare.uneven import uneven
+from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import Role, Source
 
@@ -83,6 +83,7 @@ def compare(beside: Beside | None) -> Errors | None:
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
     jolt = jolts(scene, reference)
+    far = uneven(scene, reference, at.driver_rad)
     return Errors(
         rows=(
             *_whole(beside, at, "drive"),
@@ -106,7 +107,8 @@ def compare(beside: Beside | None) -> Errors | None:
         worst_jolt=float(np.max(jolt)),
         mass_ratio=mass_ratio(scene),
         starts_in_passage=bool(np.any(at.passed[: _settled(at)])),
-        uneven=uneven(scene, reference, at.driver_rad),
+        uneven=far,
+        uneven_rates=unevenly_turned(scene, far),
     )
 
 

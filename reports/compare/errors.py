@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -84,7 +84,8 @@ class Errors:
     over a step, as a pure number (`analytic.forces.jolts`), ``worst_jolt`` the most of it over the
     run, and ``mass_ratio`` the mass of the heaviest body over that of the lightest.
     ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
-    how far bodies depart from moving evenly with the driver (`reports.compare.uneven`).
+    how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
+    rates do too (`reports.compare.uneven`).
     """
 
     rows: tuple[Error, ...]
@@ -103,6 +104,7 @@ class Errors:
     mass_ratio: float = 1.0
     starts_in_passage: bool = False
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
+    uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -8,6 +8,8 @@ links and sliders, from the ellipse that its pin could draw for points.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,10 +45,26 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
         for name, point in reference.points.items()
     }
     far = {
-        **_departures(straight, np.stack([ones, driver_rad], axis=-1)),
+        **_departures(straight, np.stack([ones, driver_rad - np.mean(driver_rad)], axis=-1)),
         **_departures(round_, np.stack([ones, turn, turn.conj()], axis=-1)),
     }
     return {body: min(size, 1.0) for body, size in far.items() if size > EVEN}
+
+
+def unevenly_turned(
+    scene: Scene, uneven: Mapping[tuple[BodyKind, str], float]
+) -> frozenset[tuple[BodyKind, str]]:
+    """Of the uneven bodies those whose rates are too: links, and what is carried by such a link or
+    slides on it. What rides on links that all turn evenly has the right speed in an engine."""
+    links = {name for kind, name in uneven if kind == "link"}
+    carried = {point for name in links for point in scene.links[name].points}
+    slides = {
+        name
+        for name, slider in scene.sliders.items()
+        if slider.on in links or slider.link in links or slider.point in carried
+    }
+    turned: dict[BodyKind, set[str]] = {"link": links, "point": carried, "slider": slides}
+    return frozenset(body for body in uneven if body[1] in turned[body[0]])
 
 
 def _departures(series: Series, even: NDArray[np.inexact]) -> dict[tuple[BodyKind, str], float]:

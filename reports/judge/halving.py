@@ -140,7 +140,8 @@ def _copied(
         if places and places in seen:
             texts.append(f"finer run: asked for {at}, the places are those of {seen[places]}")
         seen.setdefault(places, at)
-        near = too_good(own, errors.uneven, errors.step_rad / number, "integrated", order)
+        finer = replace(errors, rows=tuple(own), step_rad=errors.step_rad / number)
+        near = too_good(finer, "integrated", order)
         if near and number > 1:
             texts.append(
                 f"finer run: at {at} {near[0].quantity} of {near[0].body} is off by "

@@ -17,7 +17,7 @@ from analytic.kinematics import solve
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
 from reports.judge.cell import CellRunner
-from sim.engine import Run, Session
+from sim.engine import Run, Session, Settings
 from sim.registry import available, engine, offering
 from sim.run import run
 from sim.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
@@ -40,7 +40,7 @@ class Fault:
     that is there or not; ``whole`` sizes are whole numbers. ``rule`` is the one that must fail,
     with the words ``says`` in what it says. ``scenes`` are where it is planted; ``needs`` says
     of an engine whether it can have it. A ``finer`` fault needs runs at half and a quarter of the
-    step to be seen.
+    step to be seen. ``settings`` are those that its cell asks an engine for, on top of the profile.
     """
 
     group: FaultGroup
@@ -55,6 +55,7 @@ class Fault:
     needs: Callable[[str], bool] = lambda _: True
     whole: bool = False
     finer: bool = False
+    settings: Callable[[str], Settings] = lambda _: {}
     shown: Callable[[float], str] | None = None
 
     @property

@@ -91,6 +91,16 @@ def _velocity(scene: Scene, done: Run) -> Run:
     return with_link(done, name, omega=omega)
 
 
+def _speeds(scene: Scene, done: Run) -> Run:
+    """All points and sliders have the velocities of the closed form, likewise."""
+    assert done.velocity_time_s is not None
+    own = moved(done)
+    true = solve(scene, done.velocity_time_s, bound=False)
+    points = {n: replace(m, velocity=true.points[n].velocity) for n, m in own.points.items()}
+    sliders = {n: replace(m, speed=true.sliders[n].speed) for n, m in own.sliders.items()}
+    return replace(done, motion=replace(own, points=points, sliders=sliders))
+
+
 def _shut(_: Scene, done: Run) -> Run:
     """No joint is open."""
     return replace(done, gaps={name: np.zeros_like(gap) for name, gap in done.gaps.items()})
@@ -152,6 +162,7 @@ FAULTS = (
         scenes=(SLIDER, SHAPER),
     ),
     _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity)),
+    _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds)),
     _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut)),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(_to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(_noisy), 1e-7, "rad, L"),

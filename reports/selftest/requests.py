@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ from sim.registry import available, engine, offering
 from sim.run import run, setup
 from sim.spoil import WrongSetting, spoiler
 
+PROFILE = "tuned"
+"""The profile of all runs that faults are planted in."""
 DEGREES = 10
 """Of a turn, where that is all that is run."""
 THIN, LATER = 8, 10
@@ -76,6 +79,14 @@ def _given(change: Callable[[Scene, str, Mapping[str, Any]], Mapping[str, Any]])
 def _other_setting(_: Scene, name: str, _options: Mapping[str, Any]) -> dict[str, Any]:
     first = _wrong(name)[0]
     return {"settings": spoiler(name).wrong_settings[first](1.0)}
+
+
+def _one_more(name: str) -> dict[str, Any]:
+    """A setting that is a whole number, one more than profile tuned has it; none where there is no
+    such setting."""
+    tuned = engine(name).profiles[PROFILE].settings
+    whole = (n for n, setting in tuned.items() if type(setting.value) is int)
+    return {n: int(tuned[n].value) + 1 for n in islice(whole, 1)}
 
 
 def _ten_degrees(_: Scene, _name: str, options: Mapping[str, Any]) -> dict[str, Any]:
@@ -172,6 +183,14 @@ FAULTS = (
         plant=_given(_other_setting),
         says=("setting ",),
         needs=lambda name: bool(_wrong(name)),
+    ),
+    _fault(
+        "setting-dropped",
+        "the settings of the cell, left out",
+        plant=_given(lambda *_: {"settings": None}),
+        says=("setting ",),
+        settings=_one_more,
+        needs=lambda name: bool(_one_more(name)),
     ),
     _fault("version-other", "another version", plant=_of_another_version, says=("version: ",)),
     _fault(

@@ -14,7 +14,8 @@ from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
 from reports.selftest.fault import Fault
-from reports.selftest.trial import PROFILE, STEPS, FaultTrial, Passed, Verdict, passes
+from reports.selftest.requests import PROFILE
+from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
 """Columns of a terminal that have room for what a fault is."""
@@ -115,7 +116,11 @@ def _unseen(passed: Sequence[Passed]) -> Table:
     for one in passed:
         failed = dict.fromkeys(rule for rules in one.failed.values() for rule in rules)
         reason = f"Seen all the same, by {', '.join(failed)}." if failed else one.unseen.reason
-        table.add_row(one.name, one.unseen.what, reason)
+        if one.nothing:
+            reason = (
+                f"Nothing was planted in {' and '.join(one.nothing)}: every error is as before."
+            )
+        table.add_row(one.unseen.name, one.unseen.what, Text(reason, "red" * bool(one.nothing)))
     return table
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 from models.files import load_scene
@@ -17,13 +17,13 @@ from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, Fault
+from reports.selftest.requests import PROFILE
 from reports.selftest.unseen import UNSEEN, Unseen
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
 from sim.registry import ENGINES
 
 STEPS = 360
-PROFILE = "tuned"
 DECADES = 12
 """How many powers of ten below the planted size are looked at."""
 CLOSE = 1.1
@@ -106,30 +106,27 @@ def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = 
 
 @dataclass(frozen=True)
 class Passed:
-    """Something that need not be seen, by name, and by engine the rules that fail all the same."""
+    """Something that need not be seen, by engine the rules that fail all the same, and the engines
+    in which nothing was planted."""
 
-    name: str
+    unseen: Unseen
     failed: Mapping[str, tuple[str, ...]]
-
-    @property
-    def unseen(self) -> Unseen:
-        return next(each for each in UNSEEN if each.name == self.name)
+    nothing: tuple[str, ...]
 
 
-def unseen(engines: Sequence[str], scene: str = FOURBAR, steps: int = STEPS) -> list[Passed]:
+def passed_by(engines: Sequence[str], scene: str = FOURBAR, steps: int = STEPS) -> list[Passed]:
     """Plant what need not be seen, in one scene."""
-    cells = {name: _cell(load_scene(scene), name, steps, converge=False) for name in engines}
-    return [
-        Passed(
-            each.name,
-            {
-                name: tuple(f.rule for f in examined(cell, each.plant(1.0))[0].failures)
-                for name, cell in cells.items()
-                if each.possible(name)
-            },
-        )
-        for each in UNSEEN
-    ]
+    return [_passed(each, load_scene(scene), engines, steps) for each in UNSEEN]
+
+
+def _passed(each: Unseen, scene: Scene, engines: Sequence[str], steps: int) -> Passed:
+    failed, nothing = {}, []
+    for name in filter(each.needs, engines):
+        cell = _cell(scene, name, steps, converge=False)
+        full, none = (examined(cell, each.plant(size))[0] for size in (1.0, 0.0))
+        failed[name] = tuple(finding.rule for finding in full.failures)
+        nothing += [name] * (each.shows and full.errors == none.errors)
+    return Passed(each, failed, tuple(nothing))
 
 
 def tried_all(
@@ -153,6 +150,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
 
     def planted(size: float) -> Checked:
         cell = _cell(scene, engine, steps, converge=fault.finer)
+        cell = replace(cell, settings=fault.settings(engine))
         return examined(cell, fault.plant(size))[0]
 
     full, none = planted(fault.planted), planted(0.0)

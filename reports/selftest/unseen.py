@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,20 +24,18 @@ from sim.run import run, setup
 
 @dataclass(frozen=True)
 class Unseen:
-    """Something that is not as it should be, passes every rule, and why that is right."""
+    """Something that is not as it should be, passes every rule, and why that is right.
+
+    ``needs`` says of an engine whether it can have it; where ``shows`` the errors are others with
+    it, if only in their last digits: else nothing was planted.
+    """
 
     name: str
     what: str
     reason: str
     plant: Plant
-
-    def possible(self, name: str) -> bool:
-        """Whether an engine can have it."""
-        if self.name == "all-renamed":
-            other = other_engine(name)
-            silent = not engine(name).reports_accelerations
-            return other is not None and (silent or engine(other).reports_accelerations)
-        return self.name != "gravity-midway" or name in offering("spoiler")
+    needs: Callable[[str], bool] = lambda _: True
+    shows: bool = True
 
 
 def _heavier(scene: Scene, share: float) -> Scene:
@@ -59,6 +58,12 @@ def _all_renamed(size: float) -> CellRunner:
         return replace(done, **vars(asked), settings=held)
 
     return runner
+
+
+def _as_silent(name: str) -> bool:
+    """Whether there is another engine that reports what this one does."""
+    other, silent = other_engine(name), not engine(name).reports_accelerations
+    return other is not None and (silent or engine(other).reports_accelerations)
 
 
 def _tenth(scene: Scene, done: Run, size: float) -> Run:
@@ -104,6 +109,12 @@ def _even_taken(scene: Scene, done: Run, size: float) -> Run:
     return replace(done, motion=replace(own, points=points)) if size else done
 
 
+def _one_shut(_: Scene, done: Run, size: float) -> Run:
+    first, *others = sorted(done.gaps, key=lambda name: float(done.gaps[name].max()))
+    shut = {first: (1.0 - size) * done.gaps[first]} if others else {}
+    return replace(done, gaps={**done.gaps, **shut})
+
+
 def _cheaper(_: Scene, done: Run, size: float) -> Run:
     cost = done.cost or Cost(0.0, 0, logged=True)
     return replace(done, cost=replace(cost, wall_s=cost.wall_s * (1.0 - 0.5 * size)))
@@ -125,6 +136,7 @@ UNSEEN = (
         "gravity is switched on in mid-run",
         f"{_NO_FORCES} Gravity at the start is refused (gravity-left-on).",
         after_a_third(lambda tools, session, size: tools.pull(session, 9.81 * size)),
+        needs=lambda name: name in offering("spoiler"),
     ),
     Unseen(
         "error-tenth",
@@ -138,6 +150,15 @@ UNSEEN = (
         "the crank's pin, from the reference",
         "What moves evenly with the crank comes out right to rounding in an engine as well.",
         in_log(_even_taken),
+        shows=False,  # where the engine has those very numbers
+    ),
+    Unseen(
+        "gap-shut",
+        "one gap of several is 0, as in truth",
+        "An engine may hold some of its joints exactly, by the coordinates that it has; it is the "
+        "widest gap that is looked at (too-good-gaps).",
+        in_log(_one_shut),
+        shows=False,
     ),
     Unseen(
         "all-renamed",
@@ -145,6 +166,7 @@ UNSEEN = (
         "Numbers within every limit, from a run that says in every word and setting what was asked "
         "for, are as good as those of that run; one false word is seen (engine-renamed).",
         _all_renamed,
+        needs=_as_silent,
     ),
     Unseen(
         "turns-counted",
@@ -152,11 +174,13 @@ UNSEEN = (
         "Engines count turns from where they like; one that is gained or lost on the way is seen "
         "(whole-turn).",
         in_log(_turns_counted),
+        shows=False,
     ),
     Unseen(
         "cost-halved",
         "half the time that the run took",
         "Times are advice, measured apart, and judged by nothing.",
         in_log(_cheaper),
+        shows=False,
     ),
 )

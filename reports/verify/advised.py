@@ -11,7 +11,9 @@ from reports.compare.beside import truth_of
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import PLACES, RATES, TUNABLE, judge
 from sim.engine import Settings
+from sim.registry import engine
 from sim.remedies import remedies
+from sim.settings import profile_of, resolved
 
 HELPS = 3.0
 """How many times less error makes a remedy; less than that may be chance."""
@@ -25,7 +27,9 @@ def advised(cell: Cell) -> Checked:
     checked = check(cell)
     if not _mendable(checked):
         return checked
-    choices = remedies(cell.engine, cell.scene, truth_of(Same(cell.scene)).start)
+    adapter = engine(cell.engine)
+    settings = resolved(profile_of(adapter, cell.profile), cell.settings)
+    choices = remedies(cell.engine, cell.scene, truth_of(Same(cell.scene)).start, settings)
     if not choices:
         return checked
     checked = replace(checked, remedy=_remedy(checked, choices))

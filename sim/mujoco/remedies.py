@@ -20,10 +20,17 @@ STIFFER: tuple[Settings, ...] = ({"solref_timeconst_steps": 2}, {"solref_damprat
 """6 and 4 times as stiff as profile tuned; more than that RK4 does not resolve."""
 
 
-def mujoco_remedies(scene: Scene, state: State) -> list[Settings]:
-    """Closings first: they cost nothing."""
+def mujoco_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
+    """Closings first: they cost nothing. What is as stiff already is left out."""
     elsewhere = islice(closings(scene, state), MOST_CLOSINGS)
-    return [*({"close": "+".join(pins)} for pins in elsewhere), *STIFFER]
+    stiffer = [
+        each
+        for each in STIFFER
+        if all(float(value) < float(settings[name]) for name, value in each.items())
+    ]
+    closed = str(settings["close"])
+    other = ("+".join(pins) for pins in elsewhere)
+    return [*({"close": pins} for pins in other if pins != closed), *stiffer]
 
 
 REMEDIES: Remedies = mujoco_remedies

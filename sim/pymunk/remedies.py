@@ -10,9 +10,9 @@ from sim.remedies import Remedies
 ITERATIONS = (300, 700, 2000)
 
 
-def pymunk_remedies(scene: Scene, state: State) -> list[Settings]:
-    """More iterations than profile tuned has, whatever the scene."""
-    return [{"iterations": count} for count in ITERATIONS]
+def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
+    """More iterations than there were, whatever the scene."""
+    return [{"iterations": count} for count in ITERATIONS if count > int(settings["iterations"])]
 
 
 REMEDIES: Remedies = pymunk_remedies

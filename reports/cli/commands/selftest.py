@@ -15,17 +15,17 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
+from reports.selftest.requests import PROFILE
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
-    PROFILE,
     STEPS,
     Passed,
     Verdict,
     healthy,
+    passed_by,
     passes,
     sites,
     tried_all,
-    unseen,
 )
 from sim.registry import engine, offering
 
@@ -33,7 +33,8 @@ IN_FOLDER = ("selftest.csv", "selftest.json")
 
 
 def selftest(request: SelftestRequest, console: Console, progress: Console) -> int:
-    """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes.
+    """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or plants
+    nothing, and where nothing is planted of what need not be seen.
     Raises CrankcheckError for an unknown engine or fault, and an output that can not be written."""
     engines = chosen_engines(request.engines)
     faults = chosen_faults(request.faults, engines)
@@ -46,13 +47,13 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
         names = [fault.name for fault in faults]
         verdicts = tried_all(names, engines, request.jobs, lambda _: bar.advance(task))
     sound = [healthy(scene, name) for scene, name in sites(faults, engines)]
-    passed = [] if request.faults else unseen(engines)
+    passed = [] if request.faults else passed_by(engines)
     facts = provenance({name: engine(name).version() for name in engines})
     try:
         _write(request, verdicts, sound, passed, facts)
     finally:  # a full disk costs the file, and not the verdict with it
         show(console, sound, verdicts, engines, facts, passed)
-    return int(not all(one.caught for one in verdicts))
+    return int(not all(one.caught for one in verdicts) or any(one.nothing for one in passed))
 
 
 def _write(
@@ -94,10 +95,11 @@ def _json(
         "places": list(rows),
         "not_seen": [
             {
-                "name": one.name,
+                "name": one.unseen.name,
                 "what": one.unseen.what,
                 "reason": one.unseen.reason,
                 "failed": dict(one.failed),
+                "planted_nothing_in": list(one.nothing),
             }
             for one in passed
         ],

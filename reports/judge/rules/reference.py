@@ -34,7 +34,7 @@ class TwoComputations:
         if errors is None:
             return None
         placing, order = evidence.placing, evidence.order
-        found = too_good(errors.rows, errors.uneven, errors.step_rad, placing, order)
+        found = too_good(errors, placing, order)
         rows = [
             row
             for row in errors.rows

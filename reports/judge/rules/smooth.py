@@ -32,7 +32,7 @@ class ErrorSmooth:
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
-        if errors is None or errors.step_rad > DENSE_RAD:
+        if errors is None or evidence.status != "ok" or errors.step_rad > DENSE_RAD:
             return None
         found = _roughest(errors)
         if found is None:

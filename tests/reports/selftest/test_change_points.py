@@ -23,6 +23,7 @@ NO_FAULT_THERE = {
     "too-good-link": EVEN,
     "too-good-point": EVEN,
     "too-good-velocity": EVEN,
+    "too-good-speeds": EVEN,
     "too-good-gaps": EVEN,
     "too-good-crank": EVEN,
     "too-good-finer": EVEN,

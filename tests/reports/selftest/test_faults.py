@@ -10,7 +10,7 @@ import pytest
 from reports.judge.rules import RULES
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER
-from reports.selftest.trial import Verdict, healthy, passes, tried, unseen
+from reports.selftest.trial import Verdict, healthy, passed_by, passes, tried
 
 ENGINES = ("mujoco", "pymunk")
 NO_FAULT_OF_A_RUN = {"CC112"}
@@ -91,9 +91,10 @@ def test_every_rule_has_a_fault_that_it_must_catch() -> None:
 
 
 def test_what_need_not_be_seen_is_not_seen() -> None:
-    for one in unseen(ENGINES):
+    for one in passed_by(ENGINES):
         assert one.failed
         assert set(one.failed.values()) == {()}, one
+        assert one.nothing == ()
 
 
 @pytest.mark.parametrize("group", ["request", "reference"])

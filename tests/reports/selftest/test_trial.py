@@ -12,6 +12,7 @@ from reports.judge.rules.rule import Evidence, Finding
 from reports.selftest import trial
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.fault import FOURBAR, Fault
+from reports.selftest.unseen import UNSEEN
 from reports.workers.isolated import Lost
 
 SPIKE = FAULTS["spike"]
@@ -144,3 +145,10 @@ def test_a_fault_that_plants_nothing_fails_and_says_so(monkeypatch: pytest.Monke
     assert [place.nothing for place in verdict.places] == [True]
     other = planted(replace(SPIKE, rule="CC102"), monkeypatch)
     assert [place.nothing for place in other.places] == [False]
+
+
+def test_what_need_not_be_seen_and_plants_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    idle = replace(UNSEEN[0], plant=lambda _: UNSEEN[0].plant(0.0))
+    monkeypatch.setattr(trial, "UNSEEN", (UNSEEN[0], idle))
+    planted_, nothing = trial.passed_by(("mujoco",))
+    assert (planted_.nothing, nothing.nothing) == ((), ("mujoco",))
