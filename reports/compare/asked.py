@@ -7,11 +7,10 @@ from dataclasses import fields
 
 from models.motion import State
 from models.scene import Scene
+from sim.check import SAME
 from sim.engine import Run, Settings, SettingValue, Setup
 
-AT_START = 1e-9
-"""What a body may be off by at its start: what `sim.check` grants the model in an engine."""
-SAME = 1e-12
+ROUNDING = 1e-12
 """A relative difference that is rounding: of a number that is worked out in another order."""
 
 
@@ -69,7 +68,7 @@ def _elsewhere(run: Run, scene: Scene, state: State) -> list[str]:
             ("slider", "L", slides),
         )
         for name, by in each.items()
-        if by > AT_START
+        if by > SAME
     }
     return [f"start: {body} begins {by:.2g} {unit} off" for body, (by, unit) in far.items()]
 
@@ -85,4 +84,4 @@ def _short(value: object) -> str:
 def _equal(found: SettingValue | None, asked: SettingValue) -> bool:
     if found is None or isinstance(found, str) or isinstance(asked, str):
         return found == asked
-    return math.isclose(found, asked, rel_tol=SAME)
+    return math.isclose(found, asked, rel_tol=ROUNDING)

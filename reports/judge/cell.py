@@ -19,7 +19,7 @@ from reports.judge.halving import followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
-from sim.engine import Drive, Run, SettingValue
+from sim.engine import Drive, Engine, Run, SettingValue
 from sim.registry import engine
 from sim.run import run, setup
 
@@ -54,21 +54,6 @@ class Cell:
     @property
     def label(self) -> str:
         return f"{self.scene.name}, {self.engine}, {self.profile}"
-
-    @property
-    def named(self) -> tuple[str, str]:
-        """Engine and profile."""
-        return self.engine, self.profile
-
-    def options(self, finer: int) -> dict[str, Any]:
-        """What a run takes, with the step cut into ``finer`` parts, logged at the same instants."""
-        return {
-            "dt_s": self.dt_s / finer,
-            "steps": self.steps * finer,
-            "every": finer,
-            "drive": self.drive,
-            "settings": self.settings,
-        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,9 +101,8 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
-        state = truth.start
-        adapter = engine(cell.engine)
-        done = runner(cell.scene, state, *cell.named, **cell.options(1))
+        runs = _Runs(cell, truth.start, engine(cell.engine), runner)
+        done = runs.run(1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
@@ -131,31 +115,22 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", _left(errors.departure)
-    in_force = limits(cell.scene, errors, cell.tolerance) if errors else {}
-    unasked = _unasked(cell, state, 1, done)
-    seen = None
+    adapter, seen = runs.adapter, None
     if cell.converge and errors:
-
-        def rerun(finer: int) -> Run:
-            again = runner(cell.scene, state, *cell.named, **cell.options(finer))
-            unasked.extend(_unasked(cell, state, finer, again))
-            return again
-
-        seen = followed(
-            truth, cell.dt_s, errors, cell.tolerance, rerun, adapter.placing, adapter.order
-        )
+        nature = adapter.placing, adapter.order
+        seen = followed(truth, cell.dt_s, errors, cell.tolerance, runs.run, *nature)
     evidence = Evidence(
         status=status,
         reason=reason,
         stopped_at_s=done.stopped_at_s,
         errors=errors,
-        limits=in_force,
+        limits=limits(cell.scene, errors, cell.tolerance) if errors else {},
         convergence=seen,
         gated=cell.gated,
         profile=cell.profile,
         placing=adapter.placing,
         order=adapter.order,
-        unasked=tuple(unasked),
+        unasked=tuple(runs.unasked),
     )
     checked = Checked(
         **vars(evidence),
@@ -168,12 +143,33 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
     return checked, done
 
 
-def _unasked(cell: Cell, state: State, finer: int, done: Run) -> list[str]:
-    """What a run, with the step cut into ``finer`` parts, says of itself that was not asked for."""
-    asked = setup(cell.scene, state, *cell.named, **cell.options(finer))
-    held = engine(cell.engine).holds(asked.asked, asked.dt_s, asked.drive)
-    at = f"finer run, dt / {finer}: " if finer > 1 else ""
-    return [at + text for text in not_asked_for(done, asked, held, cell.scene, state)]
+@dataclass(frozen=True)
+class _Runs:
+    """The runs of a cell from one state, and what they say of themselves that was not asked for."""
+
+    cell: Cell
+    state: State
+    adapter: Engine
+    runner: CellRunner
+    unasked: list[str] = field(default_factory=list)
+
+    def run(self, finer: int) -> Run:
+        """The cell with its step cut into ``finer`` parts, logged at the same instants."""
+        cell, names = self.cell, (self.cell.engine, self.cell.profile)
+        options: dict[str, Any] = {
+            "dt_s": cell.dt_s / finer,
+            "steps": cell.steps * finer,
+            "every": finer,
+            "drive": cell.drive,
+            "settings": cell.settings,
+        }
+        done = self.runner(cell.scene, self.state, *names, **options)
+        asked = setup(cell.scene, self.state, *names, **options)
+        held = self.adapter.holds(asked.asked, asked.dt_s, asked.drive)
+        texts = not_asked_for(done, asked, held, cell.scene, self.state)
+        at = f"finer run, dt / {finer}: " if finer > 1 else ""
+        self.unasked.extend(at + text for text in texts)
+        return done
 
 
 def _left(departure: Departure) -> str:
