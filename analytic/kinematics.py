@@ -69,6 +69,8 @@ def solve(
         Angles of links go on continuously with the driver's angle, the same whatever samples
         are asked for: in (-pi, pi] at time 0, and counted on from there; a link that keeps an angle
         to the ground or to the driver is that much ahead of it. Sliders count from ``through_m``.
+        In chains of more than some six dyads whole turns are counted to the nearest angle, which
+        bounds of angles take as right (`analytic.turns.cells.MOST`).
 
     Raises
     ------

@@ -105,11 +105,13 @@ class Closure:
     ``root`` is what its branch is the sign of, None for a dyad of one assembly; 0 where it is
     singular. ``short_m``, given for a stretched solution only, is by how much the dyad is short of
     closing [m] (negative: it closes), less half of ``rounding_m``, what rounding may open it by.
+    Short by more than ``slack_m`` it closes nowhere within the bounds of its inputs.
     """
 
     root: Real | None
     short_m: Real | None = None
     rounding_m: Real = 0.0
+    slack_m: Real = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +129,13 @@ class Dyad(Generic[First, Second]):
         return replace(self, first=one, second=other)
 
 
+def uncertain(one: PointKinematics, other: PointKinematics) -> Real:
+    """What the distance of two points may be wrong by [m]; 0 where they carry no bounds."""
+    if one.error is None or other.error is None:
+        return 0.0
+    return one.error.position + other.error.position
+
+
 class OpenError(Exception):
     """The dyad cannot be assembled at some samples.
 
@@ -139,7 +148,7 @@ class OpenError(Exception):
 
 
 def closing_root(
-    square: Real, shortage: Callable[[], tuple[Real, Real]], stretch: bool
+    square: Real, shortage: Callable[[], tuple[Real, Real, Real]], stretch: bool
 ) -> tuple[Real, Closure]:
     """The square root of what closure leaves, 0 where rounding has taken it below 0.
 
@@ -148,8 +157,9 @@ def closing_root(
     square : Array or float
         Positive where the dyad closes.
     shortage : Callable
-        By how much the dyad is short of closing [m] (negative: it closes), and the sum of the
-        lengths and coordinates that this is the difference of; asked for only where it matters.
+        By how much the dyad is short of closing [m] (negative: it closes), the sum of the lengths
+        and coordinates that this is the difference of, and what the errors of its inputs may change
+        it by; asked for only where it matters.
     stretch : bool
         Solve the dyad as if stretched where it is open, instead of raising.
 
@@ -165,12 +175,12 @@ def closing_root(
     """
     if stretch:
         # A little less is let pass than when solving, so that the ends of a range can be solved.
-        short, scale = shortage()
+        short, scale, slack = shortage()
         rounding = CLOSED * scale
         root = np.sqrt(np.maximum(square, 0.0))
-        return root, Closure(root, short - 0.5 * rounding, rounding)
+        return root, Closure(root, short - 0.5 * rounding, rounding, slack + rounding)
     if np.min(square) < 0.0:
-        short, scale = shortage()
+        short, scale, _ = shortage()
         if np.any(short > CLOSED * scale):
             raise OpenError(np.broadcast_to(np.asarray(short), np.shape(square)))
         root = np.sqrt(np.maximum(square, 0.0))

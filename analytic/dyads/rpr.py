@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, SlideError, Sliding, Turning, closing_root
+from analytic.dyads.parts import Dyad, SlideError, Sliding, Turning, closing_root, uncertain
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 
@@ -62,9 +62,10 @@ def solve(
     d2 = d.square()
     square = d2 - offset * offset if offset else d2
 
-    def shortage() -> tuple[Real, Real]:
+    def shortage() -> tuple[Real, Real, Real]:
         apart = np.sqrt(d2)
-        return abs(offset) - apart, abs(offset) + apart + p1.p.norm() + p2.p.norm()
+        scale = abs(offset) + apart + p1.p.norm() + p2.p.norm()
+        return abs(offset) - apart, scale, uncertain(p1, p2)
 
     root, closure = closing_root(square, shortage, stretch)
     s = branch * root

@@ -15,7 +15,15 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, MovingLine, SlideError, Sliding, Turning, closing_root
+from analytic.dyads.parts import (
+    Dyad,
+    MovingLine,
+    SlideError,
+    Sliding,
+    Turning,
+    closing_root,
+    uncertain,
+)
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real
 
 
@@ -62,9 +70,10 @@ def solve(
     height = line.along.cross(away)  # of the line over P1, to the left of e
     square = (length - height) * (length + height)
 
-    def shortage() -> tuple[Real, Real]:
+    def shortage() -> tuple[Real, Real, Real]:
         scale = np.abs(height) + length + p1.p.norm() + line.point.p.norm()
-        return np.abs(height) - length, scale
+        turn = 0.0 if line.error is None else line.error.theta * away.norm()
+        return np.abs(height) - length, scale, uncertain(p1, line.point) + turn
 
     root, closure = closing_root(square, shortage, stretch)
     reach = branch * root

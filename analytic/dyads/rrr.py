@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.dyads.closure import Certificate, Curvature, Jacobian, certify
-from analytic.dyads.parts import Dyad, Turning, closing_root
+from analytic.dyads.parts import Dyad, Turning, closing_root, uncertain
 from analytic.dyads.plane import EPS, AngleError, PointKinematics, Real, Vec
 
 
@@ -67,10 +67,11 @@ def solve(
     square = outer - d2
     square *= d2 - inner
 
-    def shortage() -> tuple[Real, Real]:
+    def shortage() -> tuple[Real, Real, Real]:
         apart = np.sqrt(d2)
         scale = apart + l1 + l2 + p1.p.norm() + p2.p.norm()
-        return np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart), scale
+        short = np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart)
+        return short, scale, uncertain(p1, p2)
 
     root, closure = closing_root(square, shortage, stretch)
     with np.errstate(divide="ignore", invalid="ignore"):

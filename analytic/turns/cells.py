@@ -38,12 +38,14 @@ PARTS = 4
 """A cell is divided into so many."""
 MOST = 1 << 18
 """No more cells than this over the number of links: a chain of six dyads takes up to 20,000 cells.
-Beyond, some may not be sure, and their angles are joined to the nearest."""
+Beyond, some may not be sure, and their angles are joined to the nearest, unproven.
+Bounds of angles do not say so: a whole turn for all that comes after would say nothing of them."""
 NARROWEST = 1e-11
 """Half of a cell [rad] that is not divided, though a mechanism that runs through infinity there
 leaves it unsure."""
 OPEN = 4e-3
-"""The same where the mechanism cannot be assembled, so that nobody asks."""
+"""The same where the mechanism can be assembled nowhere in the cell, so that nobody asks: open in
+the middle is not enough, as all of a narrow reachable range may lie beside it."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,8 @@ class Cells:
     """Cells in the order of their driver angles.
 
     By cell: its middle and half its width [rad], the angle of each link in the middle (stretched
-    where the mechanism is open) but for whole turns, how far from there any link may be, and
-    whether the mechanism is open.
+    where the mechanism is open) but for whole turns, how far from there any link may be wherever in
+    the cell the mechanism closes, and whether it is open all over the cell.
     """
 
     middle: Array
@@ -108,8 +110,9 @@ class Look:
                 angle = np.arctan2(body.turn.y, body.turn.x)
                 angles[name] = np.nan_to_num(np.broadcast_to(angle, middle.shape))
                 spread = np.maximum(spread, np.nan_to_num(body.error.theta, nan=np.inf))
-        for short in chunk.shortage.values():
-            is_open |= np.asarray(short > 0.0)
+        for key, short in chunk.shortage.items():
+            closure = chunk.closures.get(key)  # none of a redundant link, whose misfit is net
+            is_open |= np.asarray(short > (closure.slack_m if closure else 0.0))
         return Cells(middle, half, angles, spread, is_open)
 
     def divided(self, start: float, period: float) -> Cells:
