@@ -55,7 +55,7 @@ def _accelerating(law: Accelerating, theta: float, *, clockwise: bool) -> tuple[
         way = math.copysign(math.tau, alpha)
         same = theta + way * math.ceil(-turned / way)
         raise ValueError(
-            f"never comes there; it comes to the same position at {math.degrees(same):.6g} deg"
+            f"never comes there; it comes to the same driver angle at {math.degrees(same):.6g} deg"
         )
     if clockwise and not down:
         raise ValueError("does not turn clockwise there; leave out --clockwise")

@@ -53,7 +53,9 @@ def samples(values: ArrayLike, what: str = "samples") -> Array:
 def beside(values: ArrayLike, like: Array, what: str, beside_what: str) -> Array:
     """As `numbers`, a single one repeated, in the shape of others. Raises CrankcheckError."""
     found = numbers(values, what)
-    if found.ndim and found.shape != like.shape:
+    if found.size == 1:
+        found = found.reshape(())
+    elif found.shape != like.shape:
         raise CrankcheckError(
             f"{what} of shape {found.shape}, {beside_what} of {like.shape}; give as many of them, "
             "or a single one"

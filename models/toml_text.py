@@ -8,27 +8,35 @@ import tomllib
 from models.parsed import DEEPEST, MOST_KEYS, refuse_extreme
 from models.regular import UnreadableError
 
-_DEEP_KEY = re.compile(
-    r"""(?<![\w"'\\-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
-    rf"{{{DEEPEST}}}"
-)
+_PART = re.compile(r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')""")
+_DOT = r"[ \t]*+\.[ \t]*+"
+_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART.pattern}{_DOT}){{{DEEPEST}}}", re.MULTILINE)
+_PARTS = rf"({_PART.pattern}(?:{_DOT}{_PART.pattern})*+)[ \t]*+"
+_KEY = re.compile(rf"(?:^|[{{,])[ \t]*+{_PARTS}=|^[ \t]*+\[\[?+[ \t]*+{_PARTS}\]", re.MULTILINE)
+"""A key with its value, or the header of a table."""
 _LONG_NUMBER = re.compile(r"\d[\d_]{3000,}")
 
 
 def tables(text: str) -> dict[str, object]:
     """The tables of TOML text. Raises UnreadableError, with the line where it is known, for what is
     no TOML, or has too many keys, too deep ones, or numbers of too many digits."""
-    if (keys := text.count("=")) > MOST_KEYS:
-        raise UnreadableError(f"{keys} keys; at most {MOST_KEYS} are read")
     if deep := _DEEP_KEY.search(text):
         raise UnreadableError(
-            f"line {_line(text, deep)}: a key of more than {DEEPEST} parts; the deepest of a "
-            "scene has 4"
+            f"line {_line(text, deep)}: a key of more than {DEEPEST} parts; the deepest of scenes "
+            "and studies has 4"
+        )
+    if (keys := sum(len(_PART.findall(key[0])) for key in _KEY.finditer(text))) > MOST_KEYS:
+        raise UnreadableError(
+            f"{keys} keys, those of headers and the parts between dots counted; at most "
+            f"{MOST_KEYS} are read"
         )
     try:
         raw = tomllib.loads(text)
     except RecursionError:
-        why = f"lists or tables nested too deep, by more than {DEEPEST}; a scene nests them 4 deep"
+        why = (
+            f"lists or tables nested too deep, by more than {DEEPEST}; scenes and studies nest "
+            "them 4 deep"
+        )
     except tomllib.TOMLDecodeError as error:
         why = str(error)[:300]
     except ValueError:  # of `int`, which reads only so many digits

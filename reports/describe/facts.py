@@ -43,15 +43,17 @@ class SpeedFacts:
     rows: Mapping[str, str]
 
 
-def speed_facts(scene: Scene, along: Sequence[Along] = ()) -> SpeedFacts | None:
+def speed_facts(
+    scene: Scene, along: Sequence[Along] = (), *, clockwise: bool = False
+) -> SpeedFacts | None:
     """The largest and smallest speeds of links, sliders and points along directions, at the
     driver's angles at which they have no acceleration; None where a cycle of the mechanism has
-    none."""
+    none. ``clockwise`` turns a driver of one speed round, as in `models.passing`."""
     try:
         every = extreme_speeds(scene, _outputs(scene, along))
     except CrankcheckError:
         return None  # it does not turn fully, or passes a singular position
-    pace = _pace(scene.driver.law)
+    pace = _pace(scene.driver.law, clockwise=clockwise)
     rows = {
         _called(output): ", ".join(_speed(one, pace, _turns(scene, output)) for one in found)
         for output, found in every.items()
@@ -69,9 +71,10 @@ class _Pace:
     units: tuple[str, str] = (" rad/s", " m/s")
 
 
-def _pace(law: Law) -> _Pace:
+def _pace(law: Law, *, clockwise: bool) -> _Pace:
     if isinstance(law, ConstantSpeed | FromRest):
-        return _Pace(law.speed_rad_s, f", driver at {law.speed_rad_s:g} rad/s")
+        speed = -abs(law.speed_rad_s) if clockwise else law.speed_rad_s
+        return _Pace(speed, f", driver at {speed:g} rad/s")
     if isinstance(law, Oscillating):
         return _Pace(abs(law.frequency_rad_s), "")
     return _Pace(1.0, " over that of a driver of constant speed", ("", " m"))
@@ -93,12 +96,16 @@ def _grashof(bar: FourBar) -> str:
 
 
 def _travels(scene: Scene, along: Sequence[Along]) -> Iterator[str]:
-    """One line per output that goes back and forth."""
+    """One line per output that goes back and forth, and per point that was asked for."""
     try:
         every = travels(scene, _outputs(scene, along))
     except CrankcheckError:
-        return  # the driver does not turn fully, or the mechanism passes a singular position
+        why = "the driver goes through no whole cycle, or a singular position lies in it"
+        yield from (f"{_called(one)}: no stroke: {why}" for one in dict.fromkeys(along))
+        return
     for output, travel in every.items():
+        if isinstance(output, Along) and not isinstance(travel, Travel):
+            yield f"{_called(output)}: does not move"  # what moves along a line turns back on it
         if not isinstance(travel, Travel) or output == scene.driver.link:
             continue  # it turns fully, stands still, or is told of as the driver
         turns = _turns(scene, output)

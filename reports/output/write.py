@@ -10,13 +10,15 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from models.errors import CrankcheckError
 
-SYSTEM = ("/dev", "/proc")
-"""Where the system has links to what a process reads and writes (`/dev/stdout`, `>(gzip)`)."""
+DEVICES, PROCESSES = Path("/dev"), Path("/proc")
+"""Where the system has links to what a process reads and writes (`/dev/stdout`, `>(gzip)`); users
+have theirs in folders of the first (`/dev/shm`), not in it."""
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 can not hold, escaped or not."""
 
@@ -64,11 +66,27 @@ def _check_place(path: Path, option: str) -> None:
 
 
 def _is_stream(path: Path) -> bool:
-    """Whether it is a device or a pipe, which is written into and not replaced; by a link only
-    where that is one of the system's own."""
-    if path.is_symlink() and not any(map(path.parent.resolve().is_relative_to, SYSTEM)):
+    """Whether it is a device or a pipe, which is written into and not replaced; or a link of the
+    system's own, whatever file that leads to."""
+    if not path.exists() or path.is_dir():
         return False
-    return path.exists() and not (path.is_file() or path.is_dir())
+    folder = path.parent.resolve()
+    if path.is_symlink():
+        return folder == DEVICES or folder.is_relative_to(PROCESSES)
+    return not path.is_file()
+
+
+def _write_into(stream: Path, raw: bytes) -> None:
+    """Write into a stream; into one that this process has open already, where that stands: what
+    was written there before stays, and what is written next comes after."""
+    if stream.is_symlink() and stream.parent.resolve() == DEVICES:
+        stream = stream.parent / stream.readlink()  # /dev/stdout: /proc/self/fd/1
+    if stream.parent.resolve() == Path("/proc/self/fd").resolve():
+        sys.stdout.flush()
+        with os.fdopen(os.dup(int(stream.name)), "wb") as file:
+            file.write(raw)
+    else:
+        stream.write_bytes(raw)
 
 
 def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
@@ -133,7 +151,7 @@ def write(path: Path, content: bytes | str) -> None:
     raw = content.encode() if isinstance(content, str) else content
     try:
         if _is_stream(path):
-            path.write_bytes(raw)
+            _write_into(path, raw)
             return
         path.parent.mkdir(parents=True, exist_ok=True)
         aside = path.with_name(f".{path.name[:100]}.{os.getpid()}.tmp")

@@ -12,14 +12,15 @@ import yaml
 from yaml.constructor import ConstructorError
 
 from models.errors import cut
-from models.parsed import refuse_extreme
+from models.parsed import DEEPEST, refuse_extreme
 from models.regular import UnreadableError
 
 MOST_VALUES = 5_000
 """Each counted as often as it is named by an alias: ten lines can stand for a billion values."""
 LONG = 40
 """Characters of a text that count as one value more."""
-DEEPEST = 20
+DIGITS = 100
+"""Characters of a number. One to the base 60 takes time with the square of them."""
 TOO_MANY = f"more than {MOST_VALUES} values, those of an alias counted each time; leave some out"
 TOO_DEEP = f"values nested more than {DEEPEST} deep; a study nests them 5 deep"
 IN_ITSELF = "an alias for what it stands in; name something before it"
@@ -29,8 +30,10 @@ KINDS = ("bool", "float", "int", "map", "merge", "null", "seq", "str")
 def value(text: str) -> object:
     """What YAML text says. Raises UnreadableError, with the line, for what is no YAML, or has too
     many values, too deep ones, or numbers of too many digits."""
+    loader = None
     try:
-        found: object = yaml.load(text, Loader=_Loader)  # a SafeLoader
+        loader = _Loader(text)  # which looks for control characters
+        found: object = loader.get_single_data()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
@@ -38,6 +41,13 @@ def value(text: str) -> object:
         raise UnreadableError(f"not valid YAML: {where}{cut(why, 200)}") from None
     except yaml.YAMLError as error:
         raise UnreadableError(f"not valid YAML: {' '.join(str(error).split())[:200]}") from None
+    except (ValueError, OverflowError):  # of `chr` and `int`, by what only scans
+        assert loader is not None
+        mark = loader.get_mark()
+        raise UnreadableError(
+            f"not valid YAML: line {mark.line + 1}, column {mark.column + 1}: an escape that is no "
+            "character, or a number of too many digits; write another"
+        ) from None
     refuse_extreme(found)
     return found
 
@@ -77,11 +87,20 @@ class _Loader(yaml.SafeLoader):
             raise ConstructorError(None, None, TOO_MANY, mark)
         return node
 
+    def construct_scalar(self, node: Any) -> Any:
+        """The text of a value, which a number is made of if it is short."""
+        text: str = super().construct_scalar(node)
+        if node.tag.rpartition(":")[2] in ("int", "float") and len(text) > DIGITS:
+            why = f"found {cut(text)}, a number of {len(text)} characters; use at most {DIGITS}"
+            raise ConstructorError(None, None, why, node.start_mark)
+        text.encode()  # half a character raises ValueError
+        return text
+
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         """A value; a text that its tag does not fit is a fault of the file."""
         try:
             return super().construct_object(node, deep)
-        except (ValueError, KeyError):
+        except (ValueError, LookupError):
             kind = node.tag.rpartition(":")[2]
             why = f"found {cut(str(node.value))}; it can not be read as {kind}, write another"
             raise ConstructorError(None, None, why, node.start_mark) from None

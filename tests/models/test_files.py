@@ -226,11 +226,11 @@ def test_names_of_any_shape_are_faults_with_short_messages(table: str) -> None:
 @pytest.mark.parametrize("part", ["a.", '"a".', "'a' . ", r'"a\".b".', "a\t.", "-."])
 @pytest.mark.parametrize("head", ["", " ", "[", "[[ ", "x = { "])
 def test_key_of_very_many_parts_is_a_fault_before_it_fills_memory(head: str, part: str) -> None:
-    with pytest.raises(SceneError, match="line 2: a key of more than 50 parts"):
+    with pytest.raises(SceneError, match="line 2: a key of more than 10 parts"):
         parse_scene("# deep\n" + head + 1000 * part, "file.toml")
 
 
-@pytest.mark.parametrize("text", ['"\\' * 90_000, "x." * 49 + "\n", "a" + " " * 190_000], ids=len)
+@pytest.mark.parametrize("text", ['"\\' * 90_000, "x." * 9 + "\n", "a" + " " * 190_000], ids=len)
 def test_a_file_without_a_deep_key_is_looked_through_at_once(text: str) -> None:
     began = time.process_time()
     with pytest.raises(SceneError, match="not valid TOML"):

@@ -90,7 +90,8 @@ def test_numbers_of_any_kind_are_taken() -> None:
 def test_rates_of_another_number_are_refused(name: str) -> None:
     given = {"omega": TIMES, "alpha": TIMES, "time_s": TIMES}
     solve_driven(SCENE, TIMES, **given)
-    solve_driven(SCENE, TIMES, **given | {name: 1.0})
+    for single in (1.0, [1.0], np.ones((1, 1))):
+        solve_driven(SCENE, TIMES, **given | {name: single})
     with pytest.raises(CrankcheckError, match=rf"^{name} of shape \(2,\), theta of \(3,\); give"):
         solve_driven(SCENE, TIMES, **given | {name: TIMES[:2]})
     with pytest.raises(CrankcheckError, match=f"^{name}: found .*'x'"):

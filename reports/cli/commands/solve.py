@@ -64,7 +64,7 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         console.print(told, highlight=False, markup=False)
         return
     console.print(heading(scene, structure, along), highlight=False, markup=False)
-    if (speeds := speed_facts(scene, along)) and speeds.rows:
+    if (speeds := speed_facts(scene, along, clockwise=request.clockwise)) and speeds.rows:
         console.print(speed_table(speeds), "")
     if request.at_deg is not None:
         for table in position_tables(scene, cleaned(motion)):

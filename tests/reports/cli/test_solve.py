@@ -194,7 +194,7 @@ def test_a_crank_of_steady_acceleration_has_the_speed_of_the_angle(
     assert float(row[4]) == 5.0
     result = crank("solve", str(path), "--at-deg", "80")
     assert result.exit_code == 2
-    assert "never comes there; it comes to the same position at 440 deg" in result.stderr
+    assert "never comes there; it comes to the same driver angle at 440 deg" in result.stderr
 
 
 def test_stroke_time_ratio_and_extreme_speeds_are_shown(crank: Crank) -> None:
@@ -203,6 +203,30 @@ def test_stroke_time_ratio_and_extreme_speeds_are_shown(crank: Crank) -> None:
     assert re.search(r"E along 0 deg: stroke 0\.\d+ m, time ratio 1\.55215", output)
     assert re.search(r"lever +2\.5 rad/s at 90 deg, -5 rad/s at 270 deg", output)
     assert re.search(r"E along 0 deg +-?\d.* m/s at \d", output)
+
+
+def test_extreme_speeds_are_of_the_way_the_driver_turns(crank: Crank) -> None:
+    output = crank("solve", "whitworth", "--at-deg", "90", "--clockwise").output
+    assert "extreme speeds, driver at -10 rad/s" in output
+    assert re.search(r"lever +-6\.66667 rad/s at 90 deg, -20 rad/s at 270 deg", output)
+    assert float(links(output)["lever"][3]) == pytest.approx(-20.0 / 3.0, rel=1e-7)
+    output = crank("solve", "tangent", "--at-deg", "20", "--clockwise").output
+    forth = crank("solve", "tangent", "--at-deg", "20").output
+    assert re.findall(".* at .* deg", output) == re.findall(".* at .* deg", forth)  # it does both
+
+
+def test_a_point_without_a_stroke_says_why(crank: Crank, tmp_path: Path) -> None:
+    output = crank("solve", "whitworth", "--along", "A:30").output
+    assert output.count("A along 30 deg") == 1
+    assert "\nA along 30 deg: does not move\n" in output
+    output = crank("solve", "slider-crank-central", "--along", "C:90").output
+    assert "\nC along 90 deg: does not move\n" in output  # it slides along 0 deg
+    text = shipped()["fourbar-double-rocker"].read_text(encoding="utf-8")
+    path = tmp_path / "turns.toml"
+    turns = re.sub(r"law = (.+\n)+", "speed_rad_s = 10.0\n", text)
+    path.write_text(turns, encoding="utf-8")
+    output = crank("solve", str(path), "--at-deg", "40", "--along", "C:30").output
+    assert "\nC along 30 deg: no stroke: the driver goes through no whole cycle, or" in output
 
 
 def test_the_coriolis_component_is_shown_of_blocks_on_moving_guides(crank: Crank) -> None:

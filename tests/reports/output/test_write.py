@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -94,6 +97,44 @@ def test_what_the_shell_made_a_pipe_of_is_written_into() -> None:
     os.close(into)
     assert os.read(read, 9) == b"new"
     os.close(read)
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="no such links here")
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"])
+def test_what_the_shell_made_a_file_of_is_written_into(name: str, tmp_path: Path) -> None:
+    """In its turn: what the process prints there before and after stays."""
+    code = f"""
+from pathlib import Path
+from reports.output.write import check_outputs, write
+print("before")
+check_outputs({{"--csv": Path("{name}"), "--json": Path("{name}")}})
+write(Path("{name}"), "new\\n")
+write(Path("{name}"), "newer\\n")
+print("after")
+"""
+    with (tmp_path / "out").open("w") as out:
+        subprocess.run([sys.executable, "-c", code], stdout=out, check=True)
+    assert (tmp_path / "out").read_text().split() == ["before", "new", "newer", "after"]
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize("name", ["/proc/self/cwd", "/dev/fd"])
+def test_a_folder_that_the_system_has_a_link_to_is_no_stream(name: str) -> None:
+    if not Path(name).is_symlink():
+        pytest.skip("no such link here")
+    with pytest.raises(CrankcheckError, match=f"--csv {name}: a link, to .*; name that itself"):
+        check_file(Path(name), "--csv")
+
+
+@pytest.mark.skipif(not os.access("/dev/shm", os.W_OK), reason="no such folder here")
+def test_a_link_of_a_user_among_those_of_the_system_is_refused(tmp_path: Path) -> None:
+    with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+        for target in (tmp_path / "other", Path("/dev/null")):
+            link = Path(folder) / target.name
+            link.symlink_to(target)
+            target.touch()
+            with pytest.raises(CrankcheckError, match=r"--csv .*: a link, to .*; name"):
+                check_file(link, "--csv")
 
 
 @pytest.mark.skipif(not Path("/dev/null").exists(), reason="no devices here")
