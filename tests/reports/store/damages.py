@@ -12,6 +12,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from reports.store.manifest import MOST_BYTES
 from reports.store.part import write_part
 
 Change = Callable[[Path], object]
@@ -115,9 +116,9 @@ def in_place(relative: str, make: Change) -> Change:
 
 
 def huge(path: Path) -> None:
-    """3 GB, which take no room."""
+    """A byte more than is read, which takes no room."""
     with path.open("wb") as file:
-        file.truncate(3_000_000_000)
+        file.truncate(MOST_BYTES + 1)
 
 
 def loop(path: Path) -> None:
@@ -188,7 +189,10 @@ CASES = {
     "pipe": Case(in_place("cells/*", os.mkfifo), "a pipe, no plain file; 2 cells", 2, gate=2),
     "manifest pipe": Case(in_place("manifest.json", os.mkfifo), "json: a pipe", 0, gate=2),
     "manifest too large": Case(
-        in_place("manifest.json", huge), "3000000000 bytes; at most 100000000 are", 0, gate=2
+        in_place("manifest.json", huge),
+        f"{MOST_BYTES + 1} bytes; at most {MOST_BYTES} are",
+        0,
+        gate=2,
     ),
     "loop": Case(in_place("cells/*", loop), "Too many levels of symbolic links", 2, gate=2),
     "manifest loop": Case(in_place("manifest.json", loop), "Too many levels", 0, gate=2),
