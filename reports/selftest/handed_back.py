@@ -15,7 +15,7 @@ from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, in_log, switched
-from reports.selftest.logs import last, moved, with_link
+from reports.selftest.logs import last, moved, noisy, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
 
@@ -65,14 +65,6 @@ def _spoilt(change: Callable[[Array, float], Array]) -> Plant:
         return replace(done, motion=motion, velocity_time_s=None, acceleration_time_s=None)
 
     return in_log(changed)
-
-
-def _to_digits(series: Array, size: float) -> Array:
-    return np.rint(series / size) * size
-
-
-def _noisy(series: Array, size: float) -> Array:
-    return series + size * np.random.default_rng(SEED).standard_normal(series.shape)
 
 
 def _one_link(scene: Scene, done: Run) -> Run:
@@ -146,7 +138,6 @@ def _finer_handed_back(size: float) -> CellRunner:
     return runner
 
 
-SEED = 20_261_122
 _fault = partial(Fault, "reference", scenes=(FOURBAR, SLIDER, SHAPER))
 FAULTS = (
     _fault("too-good", "the reference, handed back", "CC111", switched(_handed_back)),
@@ -164,8 +155,8 @@ FAULTS = (
     _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity)),
     _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds)),
     _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut)),
-    _fault("too-good-rounded", "to few digits", "CC118", _spoilt(_to_digits), 1e-7, "rad, L"),
-    _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(_noisy), 1e-7, "rad, L"),
+    _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
+    _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
     _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank)),
     _fault(
         "too-good-finer",

@@ -14,6 +14,7 @@ from models.scene import Scene
 from sim.engine import Run
 
 Rows = slice | Array | NDArray[np.intp]
+SEED = 20240229
 WHEN = 100
 """The sample that is spoilt where one is: well within the run, behind the start."""
 
@@ -53,6 +54,17 @@ def spoilt(series: Array, at: int | slice, value: float) -> Array:
     wrong = series.copy()
     wrong[at] += value
     return wrong
+
+
+def to_digits(series: Array, size: float) -> Array:
+    """The series in multiples of a size."""
+    return np.asarray(np.rint(series / size) * size if size else series)
+
+
+def noisy(series: Array, size: float) -> Array:
+    """The series with noise (normal), the same at every call."""
+    noise = np.random.default_rng(SEED).standard_normal(series.shape)
+    return np.asarray(series + size * noise)
 
 
 def every_series(done: Run, change: Callable[[Array], Array]) -> Run:

@@ -13,7 +13,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, switched
 from reports.selftest.logs import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
@@ -106,33 +106,22 @@ def _started_later(scene: Scene, _: str, options: Mapping[str, Any]) -> dict[str
     return {"state": solve(scene, later, bound=False).state()}
 
 
-def _of_another_version(size: float) -> CellRunner:
-    def runner(*args: Any, **options: Any) -> Run:
-        done = run(*args, **options)
-        return replace(done, version=f"{done.version}.1") if size else done
-
-    return runner
+def _of_another_version(_: Scene, done: Run) -> Run:
+    return replace(done, version=f"{done.version}.1")
 
 
-def _silent(size: float) -> CellRunner:
+def _silent(_: Scene, done: Run) -> Run:
     """Accelerations are NaN, and said to be none that the engine has."""
-
-    def runner(*args: Any, **options: Any) -> Run:
-        done = run(*args, **options)
-        if not size:
-            return done
-        motion = moved(done)
-        none = np.full_like(motion.time_s, np.nan)
-        links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
-        points = {
-            name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
-            for name, point in motion.points.items()
-        }
-        sliders = {n: replace(slider, acceleration=none) for n, slider in motion.sliders.items()}
-        mute = replace(motion, links=links, points=points, sliders=sliders)
-        return replace(done, motion=mute, reports_accelerations=False)
-
-    return runner
+    motion = moved(done)
+    none = np.full_like(motion.time_s, np.nan)
+    links = {name: replace(link, alpha=none) for name, link in motion.links.items()}
+    points = {
+        name: replace(point, acceleration=np.full_like(point.acceleration, np.nan))
+        for name, point in motion.points.items()
+    }
+    sliders = {n: replace(slider, acceleration=none) for n, slider in motion.sliders.items()}
+    mute = replace(motion, links=links, points=points, sliders=sliders)
+    return replace(done, motion=mute, reports_accelerations=False)
 
 
 def _the_first_again(size: float) -> CellRunner:
@@ -192,7 +181,9 @@ FAULTS = (
         settings=_one_more,
         needs=lambda name: bool(_one_more(name)),
     ),
-    _fault("version-other", "another version", plant=_of_another_version, says=("version: ",)),
+    _fault(
+        "version-other", "another version", plant=switched(_of_another_version), says=("version: ",)
+    ),
     _fault(
         "drive-other",
         "a servo drives, and says so",
@@ -206,7 +197,7 @@ FAULTS = (
     _fault(
         "accelerations-kept",
         "accelerations that are kept back",
-        plant=_silent,
+        plant=switched(_silent),
         says=("reports_accelerations: asked for True",),
         needs=lambda name: engine(name).reports_accelerations,
     ),

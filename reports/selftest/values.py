@@ -10,13 +10,22 @@ import numpy as np
 from models.array import Array
 from models.scene import Scene
 from reports.selftest.fault import Fault, Plant, in_log
-from reports.selftest.logs import WHEN, every_series, last, moved, output, spoilt, with_link
+from reports.selftest.logs import (
+    WHEN,
+    every_series,
+    last,
+    moved,
+    noisy,
+    output,
+    spoilt,
+    to_digits,
+    with_link,
+)
 from sim.engine import Run
 from sim.spoil import rounded
 
 Distortion = Callable[[Array, float], Array]
 """A series, changed by a size."""
-SEED = 20240229
 AFTER = slice(WHEN, None)
 START = slice(5, 39)
 """Samples of the start, in which an engine takes up its pins."""
@@ -77,14 +86,6 @@ def _wrapped(theta: Array) -> Array:
     return np.asarray(np.remainder(theta + np.pi, 2 * np.pi) - np.pi)
 
 
-def _noisy(theta: Array, size: float) -> Array:
-    return theta + size * np.random.default_rng(SEED).standard_normal(len(theta))
-
-
-def _to_digits(theta: Array, size: float) -> Array:
-    return np.rint(theta / size) * size if size else theta
-
-
 def _rpm(omega: Array) -> Array:
     return omega * 30.0 / np.pi
 
@@ -109,8 +110,8 @@ FAULTS = (
         2.0**-24,
         "of it",
     ),
-    _fault("rounded-log", "an angle of few digits", "CC114", _angle(_to_digits), 1e-5, "rad"),
-    _fault("noise", "noise on an angle (normal)", "CC114", _angle(_noisy), 1e-5, "rad"),
+    _fault("rounded-log", "an angle of few digits", "CC114", _angle(to_digits), 1e-5, "rad"),
+    _fault("noise", "noise on an angle (normal)", "CC114", _angle(noisy), 1e-5, "rad"),
     _fault("drift", "an angle drifts off", "CC103", _angle(_ramp), 1e-3, "rad"),
     _fault(
         "slow-drift",
