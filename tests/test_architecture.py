@@ -27,12 +27,14 @@ ARROWS: Mapping[str, set[str]] = {
 FLOORS: Mapping[str, str] = {
     "reports": """
         cli
-        page figures diff tune history verify selftest
-        sweep stability
+        face
+        page figures diff tune advise history verify selftest
+        sweep stability own_log
         results
         store
         plan
-        judge describe drawing
+        causes
+        judge describe drawing logs
         compare
         quantities
         workers output

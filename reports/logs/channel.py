@@ -1,0 +1,96 @@
+"""A column of a log with what it means, and its numbers beside what they should be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.logs.kinds import Kind
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What a column says: a kind of reading ``of`` a link, point or slider, in ``unit``.
+
+    A reading in SI is ``sign * (number + offset) * unit``. An angle may be ``wrapped`` into one
+    turn, and be ``relative_to`` another link. A point that several bodies share may be that of the
+    body ``on``. The numbers belong to ``delay_s`` after the time that the row is stamped with
+    (or that stands in the column ``time`` of the same file, where it has several).
+    """
+
+    column: str
+    kind: Kind
+    of: str
+    unit: str
+    sign: int = 1
+    offset: float = 0.0
+    wrapped: bool = False
+    relative_to: str = ""
+    on: str = ""
+    delay_s: float = 0.0
+    time: str = ""
+
+    @property
+    def name(self) -> str:
+        """What messages call it: the body and the kind."""
+        against = f" relative to {self.relative_to}" if self.relative_to else ""
+        on = f" on {self.on}" if self.on else ""
+        return f"{self.kind.name} of {self.of}{on}{against}"
+
+    def expected(self, reference: Motion) -> Array:
+        """What the reference says (T,) [SI] of that kind, body and, if any, other link."""
+        series = self.kind.of(reference, self.of)
+        if self.relative_to:
+            series = series - self.kind.of(reference, self.relative_to)
+        return series
+
+    def error(self, readings: Array, expected: Array) -> Array:
+        """Readings less what was expected (T,) [SI]: of a wrapped angle less the nearest whole
+        turns at every sample, of another angle less those of the first sample."""
+        error = readings - expected
+        if not self.kind.turns:
+            return error
+        turns = np.round((error if self.wrapped else error[:1]) / math.tau)
+        return np.asarray(error - math.tau * turns)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The numbers of a channel in SI (T,), and the instants [s] that they belong to (T,)."""
+
+    channel: Channel
+    values: Array
+    instants: Array
+
+    def expected(self, truth: Truth) -> Array:
+        """What the truth says of it at its instants (T,). Raises CrankcheckError."""
+        return self.channel.expected(truth.at(self.instants))
+
+    def error(self, truth: Truth) -> Array:
+        """How far it is from that (T,) [SI]."""
+        return self.channel.error(self.values, self.expected(truth))
+
+
+@dataclass(frozen=True)
+class Log:
+    """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
+
+    ``copies`` are readings of a point as further bodies have it, which the gap is taken of;
+    ``gaps`` are those (T,) [m], by pin or slider, that the log itself tells. ``unused`` names
+    columns that nothing was made of, with the reason.
+    """
+
+    source: str
+    scene: Scene
+    time_s: Array
+    readings: tuple[Reading, ...]
+    copies: tuple[Reading, ...] = ()
+    gaps: Mapping[str, Array] = field(default_factory=dict)
+    unused: tuple[tuple[str, str], ...] = ()

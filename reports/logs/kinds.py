@@ -1,0 +1,93 @@
+"""What a column of a log can be: of which bodies, in which units, and where a motion has it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from models.array import Array
+from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
+from reports.logs.units import Dimension
+
+MovingKind = Literal["link", "point", "slider"]
+Order = Literal[0, 1, 2]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of reading: ``field`` of the motion of bodies of ``body_kind``, of vectors the
+    component ``axis``, None where it is a number.
+
+    ``quantity`` is the entry of `reports.quantities` that it is judged as; ``order`` 0 is a place,
+    1 and 2 are its rates.
+    """
+
+    name: str
+    body_kind: MovingKind
+    dimension: Dimension
+    quantity: str
+    field: str
+    order: Order
+    axis: Literal[0, 1] | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle, of which whole turns may be lost."""
+        return self.dimension == "angle"
+
+    def of(self, motion: Motion, name: str) -> Array:
+        """The series (T,) of a body in a motion."""
+        body: LinkMotion | PointMotion | SliderMotion
+        body = getattr(motion, f"{self.body_kind}s")[name]
+        series: Array = getattr(body, self.field)
+        return series if self.axis is None else series[:, self.axis]
+
+    def bound(self, bound: Bound, name: str) -> Array:
+        """What the reference may be wrong by (T,)."""
+        series: Array = getattr(getattr(bound, f"{self.body_kind}s")[name], self.field)
+        return series
+
+
+def _kinds() -> list[Kind]:
+    dimensions: tuple[tuple[Dimension, ...], ...] = (
+        ("angle", "angular velocity", "angular acceleration"),
+        ("length", "velocity", "acceleration"),
+    )
+    turning, moving = dimensions
+    orders: tuple[Order, ...] = (0, 1, 2)
+    found = [
+        Kind(name, "link", turning[order], quantity, field, order)
+        for order, name, quantity, field in zip(
+            orders,
+            turning,
+            ("angle", "velocity", "acceleration"),
+            ("theta", "omega", "alpha"),
+            strict=True,
+        )
+    ]
+    axes: tuple[tuple[Literal[0, 1], str], ...] = ((0, "x"), (1, "y"))
+    for order, prefix, quantity in zip(
+        orders, ("", "v", "a"), ("position", "velocity", "acceleration"), strict=True
+    ):
+        field = ("position", "velocity", "acceleration")[order]
+        found += [
+            Kind(prefix + letter, "point", moving[order], quantity, field, order, axis)
+            for axis, letter in axes
+        ]
+    return found + [
+        Kind(name, "slider", moving[order], quantity, name, order)
+        for order, name, quantity in zip(
+            orders,
+            ("displacement", "speed", "acceleration"),
+            ("displacement", "velocity", "acceleration"),
+            strict=True,
+        )
+    ]
+
+
+KINDS: Mapping[tuple[MovingKind, str], Kind] = {
+    (kind.body_kind, kind.name): kind for kind in _kinds()
+}
+"""By body kind and name: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax,
+ay of a point; displacement, speed, acceleration of a slider."""
