@@ -12,11 +12,15 @@ from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import Motion, State
 from models.scene import Same, Scene
+from reports.compare.completeness import incomplete
 from reports.compare.series import angle_error
-from reports.compare.tracks import Track, fitting, tracks
+from reports.compare.tracks import Track, fitting, lacking, tracks
 from reports.quantities import named
 from sim.engine import Run
 
+SETTLING = 40
+"""Samples in which an engine that starts with closed pins comes to its steady error: rates of these
+are rows of their own, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
 SETS = 2
 """Sets of instants that are kept: those of places and of velocities are often two."""
 
@@ -103,6 +107,33 @@ class Beside:
     def drive(self) -> Array:
         """How far the driver is from where it was told to be [rad], (T,)."""
         return angle_error(self.crank, self.driver_rad)
+
+    @property
+    def settling(self) -> int:
+        """How many samples may be the start."""
+        return SETTLING
+
+    @property
+    def is_even(self) -> bool:
+        """Whether the logged places are to be differenced, at steps that are all the same."""
+        return True
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether errors at the logged angle of the driver are asked for."""
+        return True
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What the scene has and the run should have logged."""
+        gaps = self.tracks(named("closure"), self.reference)
+        open_ = [f"gap of {track.body}" for track in gaps if track.body not in self.run.gaps]
+        return (*lacking(self.motion, self.reference), *open_)
+
+    @property
+    def incomplete(self) -> str:
+        """What the time stamps lack of those that were commanded, "" where they are whole."""
+        return incomplete(self.run)
 
     @property
     def places(self) -> tuple[Track, ...]:

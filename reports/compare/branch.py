@@ -91,7 +91,9 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
 
 
 def _stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
-    """Take out the samples at which one of the links is not where it is logged."""
+    """Take out the samples at which one of the links, as far as they are logged, is elsewhere."""
     for name, link in links.items():
-        turn = logged.links[name].theta - link.theta if name in logged.links else np.nan
+        if name not in logged.links:
+            continue
+        turn = logged.links[name].theta - link.theta
         there &= np.abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < THERE_RAD

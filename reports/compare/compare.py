@@ -24,37 +24,40 @@ from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.branch import departure
 from reports.compare.change_points import WINDOW_RAD, conditioning, near
-from reports.compare.completeness import incomplete
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.series import length, rate, second_rate, size
-from reports.compare.tracks import Track, lacking
+from reports.compare.tracks import Track
 from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import Role, Source
 
-SETTLING = 40
-"""Samples in which an engine that starts with closed pins comes to its steady error: rates of these
-are rows of their own, of kind "start". (pymunk: its velocities jump by half a step's worth.)"""
 EPSILON = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
 class _Instants:
     """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
-    window of a change point, each (T,)."""
+    window of a change point, each (T,); and how many may be the start."""
 
     time_s: Array
     driver_rad: Array
     passed: Mask
+    settling: int
 
     def __getitem__(self, part: slice | Mask) -> _Instants:
-        return _Instants(self.time_s[part], self.driver_rad[part], self.passed[part])
+        time_s, driver_rad, passed = self.time_s[part], self.driver_rad[part], self.passed[part]
+        return _Instants(time_s, driver_rad, passed, self.settling)
+
+    @property
+    def first(self) -> int:
+        """The number of samples that are the start."""
+        return min(self.settling, self.time_s.size // 4)
 
     @cached_property
     def parts(self) -> tuple[tuple[ErrorKind, slice | Mask, _Instants], ...]:
         """The first samples, those at change points and the rest, by kind, without empty ones."""
-        first, size = _settled(self), self.time_s.size
+        first, size = self.first, self.time_s.size
         later = np.arange(size) >= first
         kinds: list[tuple[ErrorKind, slice | Mask]] = [("start", slice(first))] if first else []
         if np.any(self.passed):
@@ -68,8 +71,8 @@ class _Instants:
 def compare(beside: Beside | None) -> Errors | None:
     """The errors of a run, or None where it logged nothing.
 
-    Samples that are not finite, and bodies or pins of the scene that the log lacks, give errors
-    that are not finite.
+    Samples that are not finite, and bodies or pins of the scene that a run lacks, give errors
+    that are not finite; what a user's own log lacks gives none.
 
     Returns
     -------
@@ -79,7 +82,7 @@ def compare(beside: Beside | None) -> Errors | None:
     if beside is None:
         return None
     scene, run, reference = beside.scene, beside.run, beside.reference
-    at = _instants(scene, beside.motion.time_s, reference)
+    at = _instants(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
     jolt = jolts(scene, reference)
@@ -98,15 +101,15 @@ def compare(beside: Beside | None) -> Errors | None:
         curvature=curvature(scene, reference),
         conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
-        missing=(*lacking(beside.motion, reference), *_without_gap(beside)),
-        incomplete=incomplete(run),
+        missing=beside.missing,
+        incomplete=beside.incomplete,
         uncertain=_uncertain(beside),
         departure=departure(beside),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
         jolt=float(jolt[0]),
         worst_jolt=float(np.max(jolt)),
         mass_ratio=mass_ratio(scene),
-        starts_in_passage=bool(np.any(at.passed[: _settled(at)])),
+        starts_in_passage=bool(np.any(at.passed[: at.first])),
         uneven=far,
         uneven_rates=unevenly_turned(scene, far),
     )
@@ -116,7 +119,7 @@ def places(beside: Beside | None) -> list[Error]:
     """Drive error, total errors of place and gaps alone; none of a run that logged nothing."""
     if beside is None:
         return []
-    at = _instants(beside.scene, beside.motion.time_s, beside.reference)
+    at = _instants(beside, beside.motion.time_s, beside.reference)
     return [
         *_whole(beside, at, "drive"),
         *(_row(track, at) for track in beside.places),
@@ -124,14 +127,10 @@ def places(beside: Beside | None) -> list[Error]:
     ]
 
 
-def _instants(scene: Scene, time_s: Array, reference: Motion) -> _Instants:
-    driver_rad = scene.driver.law.at(time_s)[0]
-    return _Instants(time_s, driver_rad, near(reference.crossings, driver_rad, WINDOW_RAD))
-
-
-def _settled(at: _Instants) -> int:
-    """The number of samples that are the start."""
-    return min(SETTLING, at.time_s.size // 4)
+def _instants(beside: Beside, time_s: Array, reference: Motion) -> _Instants:
+    driver_rad = beside.scene.driver.law.at(time_s)[0]
+    passed = near(reference.crossings, driver_rad, WINDOW_RAD)
+    return _Instants(time_s, driver_rad, passed, beside.settling)
 
 
 def _row(
@@ -178,6 +177,8 @@ def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:
 
 def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
     """Errors against the reference at the logged crank angle, or a note that says why not."""
+    if not beside.has_crank:
+        return [], ()
     if not np.all(np.isfinite(beside.crank)):
         return [], ("no geometric error: the logged crank angle is not finite",)
     try:
@@ -185,11 +186,6 @@ def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, .
     except ReachError as error:
         return [], (f"no geometric error: the logged crank left its range ({error})",)
     return [_row(track, at, kind="geometric") for track in tracks], ()
-
-
-def _without_gap(beside: Beside) -> list[str]:
-    gaps = beside.tracks(named("closure"), beside.reference)
-    return [f"gap of {track.body}" for track in gaps if track.body not in beside.run.gaps]
 
 
 def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
@@ -200,7 +196,7 @@ def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
         instants = entry.instants(beside.run)
         time_s = beside.motion.time_s if instants is None else instants
         reference = beside.truth.at(time_s)
-        at = _instants(beside.scene, time_s, reference)
+        at = _instants(beside, time_s, reference)
         tracks = beside.tracks((name,), reference)
         # Silence is no fault of an engine that does not report it, if it is silent of all.
         if entry.silent(beside.run) and all(np.all(np.isnan(track.error)) for track in tracks):
@@ -213,7 +209,7 @@ def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
 
 def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
     """Velocities and accelerations from the logged positions, by central differences."""
-    if at.time_s.size < 3:
+    if at.time_s.size < 3 or not beside.is_even:
         return
     step_s = float(at.time_s[1] - at.time_s[0])
     orders = [

@@ -114,7 +114,7 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         return unfinished(cell, "crashed", why), done
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
-        status, reason = "branch-changed", _left(errors.departure)
+        status, reason = "branch-changed", left_words(errors.departure)
     adapter, seen = runs.adapter, None
     if cell.converge and errors:
         nature = adapter.placing, adapter.order
@@ -172,7 +172,7 @@ class _Runs:
         return done
 
 
-def _left(departure: Departure) -> str:
+def left_words(departure: Departure) -> str:
     """A departure in words."""
     return (
         f"{departure.link} left its branch at driver {math.degrees(departure.driver_rad):.1f} deg, "

@@ -79,12 +79,14 @@ class Limit:
     origin: str
 
 
-def limits(scene: Scene, errors: Errors, overrides: Mapping[str, float]) -> dict[str, Limit]:
+def limits(
+    scene: Scene, errors: Errors, overrides: Mapping[str, float], option: str = "--tol"
+) -> dict[str, Limit]:
     """The limit per tolerance name: command line before scene before default."""
     chosen = {}
     for name, tolerance in DEFAULTS.items():
         if name in overrides:
-            chosen[name] = Limit(overrides[name], "--tol")
+            chosen[name] = Limit(overrides[name], option)
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
@@ -99,8 +101,10 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
     return Limit(passing(DEFAULTS[name], errors), "default near a change point")
 
 
-def parse(texts: Iterable[str]) -> dict[str, float]:
+def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
     """`angle=1e-4` and the like, also several in one text with commas between.
+
+    ``every`` is the name that a number by itself is kept under, where it may stand so.
 
     Raises
     ------
@@ -109,10 +113,12 @@ def parse(texts: Iterable[str]) -> dict[str, float]:
     """
     numbers: dict[str, float] = {}
     for text in (part.strip() for whole in texts for part in whole.split(",")):
-        name, equals, number = text.partition("=")
-        if not equals:
-            raise CrankcheckError(f"--tol {text!r}: no `=` in it; write it like --tol angle=1e-4")
-        numbers[_quantity(name.strip(), f"--tol {text!r}")] = _positive(number, text)
+        name, equals, number = text.rpartition("=")
+        place = f"{option} {text!r}"
+        if not (equals or every):
+            raise CrankcheckError(f"{place}: no `=` in it; write it like {option} angle=1e-4")
+        key = _quantity(name.strip(), place) if equals else every
+        numbers[key] = _positive(number, place)
     return numbers
 
 
@@ -130,7 +136,7 @@ def _quantity(name: str, place: str) -> str:
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 
-def _positive(number: str, text: str) -> float:
+def _positive(number: str, place: str) -> float:
     """A finite number above 0."""
     try:
         value = float(number)
@@ -138,6 +144,6 @@ def _positive(number: str, text: str) -> float:
         value = math.nan
     if not (math.isfinite(value) and value > 0.0):
         raise CrankcheckError(
-            f"--tol {text!r}: {number.strip()!r} is not a number above 0; write it like angle=1e-4"
+            f"{place}: {number.strip()!r} is not a number above 0; write it like angle=1e-4"
         )
     return value

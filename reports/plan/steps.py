@@ -6,7 +6,7 @@ import math
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.compare import SETTLING
+from reports.compare.beside import SETTLING
 
 LEAST_STEPS_PER_TURN = 8
 LEAST_STEPS = 2 * SETTLING

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from reports.judge.rules.limits import LIMITS
@@ -30,9 +31,9 @@ TUNABLE = ("CC101", "CC110", *PLACES)
 """Failures that come from what an engine is set to; those of rates follow from them."""
 
 
-def judge(evidence: Evidence) -> tuple[Finding, ...]:
+def judge(evidence: Evidence, rules: Iterable[Rule] = tuple(RULES.values())) -> tuple[Finding, ...]:
     """What every rule with something to look at says of a cell, and what would help this cell."""
-    findings = (rule.check(evidence) for rule in RULES.values())
+    findings = (rule.check(evidence) for rule in rules)
     return tuple(
         finding if finding.level == "pass" else replace(finding, cure=_cure(finding, evidence))
         for finding in findings

@@ -15,8 +15,8 @@ from models.array import Array
 from models.files import load_scene
 from models.motion import Motion
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
-from reports.compare.compare import SETTLING, compare
+from reports.compare.beside import SETTLING, Beside, Truth
+from reports.compare.compare import compare
 from reports.compare.completeness import incomplete
 from reports.compare.errors import ErrorKind, Errors
 from reports.judge.tolerance import limits

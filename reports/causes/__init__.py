@@ -1,0 +1,1 @@
+"""Why the channels of a user's own log are off."""

@@ -1,0 +1,111 @@
+"""`crankcheck judge`: read a user's log, judge it, show, write."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from rich.console import Console
+
+from models.errors import CrankcheckError, harmless
+from models.files import load_scene
+from reports.cli.own_log import JudgeRequest
+from reports.judge.tolerance import check_names, parse
+from reports.logs.columns import read_columns
+from reports.logs.map_file import Map, check_words, map_text, read_map
+from reports.logs.meanings import time_column, understood
+from reports.output.junit import junit
+from reports.output.numbers import finite
+from reports.output.provenance import provenance
+from reports.output.write import check_file, write
+from reports.own_log.drives import chosen_drive
+from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.junit import suite
+from reports.own_log.markdown import markdown
+from reports.own_log.rows import row_table
+from reports.own_log.table import show
+
+FORMATS = ("text", "md")
+
+
+def run_judge(request: JudgeRequest, console: Console) -> int:
+    """Do it; returns the exit code: 0 within, 1 out. Raises CrankcheckError for what can not be
+    read or asked, before anything is written."""
+    asked = _checked(request)
+    scene = load_scene(request.scene)
+    check_names(scene)
+    map_ = read_map(request.map) if request.map else Map()
+    check_words(map_, f"--map {request.map}")
+    columns = read_columns(request.log, map_.layout)
+    log = understood(columns, scene, map_)
+    if request.write_map is not None:
+        write(request.write_map, map_text(log, *time_column(columns, map_)))
+        told = harmless(f"{request.write_map}: what {request.log} says, as it was understood")
+        console.print(told, highlight=False, markup=False)
+        return 0
+    judged = judge_log(log, asked)
+    facts = provenance({})
+    try:
+        _write(request, judged, facts)
+    finally:  # a full disk costs the file, and not the verdict with it
+        if request.format == "md":
+            console.print(markdown(judged, facts), markup=False, highlight=False, soft_wrap=True)
+        else:
+            show(console, judged, facts)
+    return int(judged.verdict == "out")
+
+
+def _checked(request: JudgeRequest) -> LogRequest:
+    """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
+    if request.format not in FORMATS:
+        raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
+    for option, path, endings in (
+        ("--write-map", request.write_map, (".toml",)),
+        ("--json", request.json, ()),
+        ("--junit", request.junit, ()),
+        ("-o", request.output, (".html",)),
+    ):
+        if path is not None:
+            check_file(path, option, endings)
+    if request.step_s is not None and not request.step_s > 0.0:
+        raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
+    return LogRequest(
+        target=parse(request.target, "--target", EVERY),
+        step_s=request.step_s or 0.0,
+        drive=chosen_drive(request.drive),
+        require=request.require,
+    )
+
+
+def _write(request: JudgeRequest, judged: JudgedLog, facts: Mapping[str, str]) -> None:
+    """Every output that was asked for, each whole or not at all."""
+    if request.json:
+        write(request.json, _json(judged, facts))
+    if request.junit:
+        write(request.junit, junit(suite(judged, facts)))
+    if request.output:
+        # It brings the drawings, which nothing else here needs.
+        from reports.page.log_page import log_page
+
+        write(request.output, log_page(judged, facts))
+
+
+def _json(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """Facts, verdict, findings, causes and errors; what is not finite is null."""
+    fit = judged.fit
+    document = {
+        "facts": facts,
+        "log": judged.log.source,
+        "scene": judged.scene.name,
+        "verdict": judged.verdict,
+        "drive": judged.drive,
+        "fit": vars(fit) if fit else None,
+        "samples": judged.log.time_s.size,
+        "findings": [vars(finding) for finding in judged.findings],
+        "causes": [{**vars(each), "correction": dict(each.correction)} for each in judged.causes],
+        "not_judged": judged.not_judged,
+        "not_used": dict(judged.log.unused),
+        "notes": judged.notes,
+        "errors": row_table(judged),
+    }
+    return json.dumps(finite(document), indent=2) + "\n"

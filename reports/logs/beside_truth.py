@@ -1,0 +1,219 @@
+"""A user's log beside the truth: what it holds is compared as a run of an engine is.
+
+The log's readings may be wrapped, relative to another link, or belong to other instants. So what
+each is off by is worked out first (`reports.logs.channel`), and put on what the truth says of the
+places and rates of the bodies themselves: of a point of which the log has one coordinate, the other
+is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve_driven
+from models.array import Array
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from reports.compare.beside import Beside, Truth
+from reports.compare.tracks import Track
+from reports.logs.channel import Log, Reading
+from reports.logs.kinds import Order
+from reports.quantities import QUANTITIES, named
+from sim.engine import Run
+
+EVEN = 1e-6
+"""Steps that differ by less of themselves, as printed times do, are the same."""
+
+
+@dataclass(frozen=True)
+class AtCrank(Truth):
+    """The truth at the logged angles of the driver, where the log has them: its places. Rates are
+    those of the scene's law, which says how hard the scene is."""
+
+    time_s: Array | None = None
+    crank_rad: Array | None = None
+
+    def at(self, time_s: Array) -> Motion:
+        """The reference at the instants of the rows, those of no other are known."""
+        assert self.time_s is not None
+        assert self.crank_rad is not None
+        instants = time_s.tobytes()
+        if instants not in self._motions:
+            crank = self.crank_rad
+            if not np.array_equal(time_s, self.time_s):
+                crank = np.interp(time_s, self.time_s, crank)
+            _, omega, alpha = self.scene.driver.law.at(time_s)
+            self._motions[instants] = solve_driven(
+                self.scene, crank, omega, alpha, time_s, bound=self.bound
+            )
+        return self._motions[instants]
+
+
+@dataclass(frozen=True)
+class LogBeside(Beside):
+    """A log beside the truth: tracks of what it holds, and of no more.
+
+    ``step_s`` is the step that was told of it, 0 for none: without one there is no start, and
+    nothing is differenced. Where the truth is that `AtCrank`, there is ``geometry_alone``.
+    """
+
+    step_s: float = 0.0
+    geometry_alone: bool = False
+
+    @property
+    def settling(self) -> int:
+        return super().settling if self.step_s else 0
+
+    @property
+    def is_even(self) -> bool:
+        steps = np.diff(self.motion.time_s)
+        even = np.ptp(steps) <= EVEN * np.max(steps)
+        return bool(self.step_s) and bool(even)
+
+    @property
+    def has_crank(self) -> bool:
+        return not self.geometry_alone and bool(np.all(np.isfinite(self.crank)))
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def incomplete(self) -> str:
+        return ""
+
+    def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
+        judged = [name for name in quantities if not self.geometry_alone or _of_places(name)]
+        every = super().tracks(judged, reference)
+        return tuple(track for track in every if not np.all(np.isnan(track.error)))
+
+
+def _of_places(quantity: str) -> bool:
+    """Whether the geometry alone says it."""
+    return quantity in named("place", "closure")
+
+
+def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
+    """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
+    scene = log.scene
+    instants = {order: _instants(log, order) for order in (0, 1, 2)}
+    bodies: dict[str, dict[str, dict[str, Array]]] = {"links": {}, "points": {}, "sliders": {}}
+    for reading in log.readings:
+        kind = reading.channel.kind
+        right = kind.of(truth.at(instants[kind.order]), reading.channel.of)
+        wrong = reading.error(truth)
+        fields = bodies[f"{kind.body_kind}s"].setdefault(reading.channel.of, {})
+        if kind.axis is None:
+            fields[kind.field] = right + wrong
+            continue
+        if kind.field not in fields:
+            motion = truth.at(instants[kind.order]).points[reading.channel.of]
+            fields[kind.field] = getattr(motion, kind.field).copy()
+        fields[kind.field][:, kind.axis] += wrong
+    steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
+    run = Run(
+        scene=scene.name,
+        engine="",
+        version="",
+        profile="",
+        drive="prescribed",
+        dt_s=step_s,
+        status="ok",
+        reason="",
+        settings={},
+        motion=_motion(log.time_s, bodies),
+        gaps={**_gaps(log), **log.gaps},
+        velocity_time_s=instants[1],
+        acceleration_time_s=instants[2],
+        stopped_at_s=float(log.time_s[-1]),
+        start_s=float(log.time_s[0]),
+        steps=steps,
+        every=1,
+    )
+    assert run.motion is not None
+    alone = isinstance(truth, AtCrank)
+    return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
+
+
+def _instants(log: Log, order: Order) -> Array:
+    """The instants that rates of an order are compared at: their own, where all share them."""
+    own = [each.instants for each in log.readings if each.channel.kind.order == order]
+    if order and own and all(np.array_equal(each, own[0]) for each in own):
+        return own[0]
+    return log.time_s
+
+
+def _motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Array]]]) -> Motion:
+    """What is known of bodies, as a motion; the rest is NaN."""
+    nothing = np.full(time_s.shape, np.nan)
+    nowhere = np.full((time_s.size, 2), np.nan)
+    return Motion(
+        time_s,
+        {
+            name: LinkMotion(*(each.get(key, nothing) for key in ("theta", "omega", "alpha")))
+            for name, each in bodies["links"].items()
+        },
+        {
+            name: PointMotion(
+                *(each.get(key, nowhere) for key in ("position", "velocity", "acceleration"))
+            )
+            for name, each in bodies["points"].items()
+        },
+        {
+            name: SliderMotion(
+                *(each.get(key, nothing) for key in ("displacement", "speed", "acceleration"))
+            )
+            for name, each in bodies["sliders"].items()
+        },
+    )
+
+
+def _gaps(log: Log) -> dict[str, Array]:
+    """How far the copies of a point are from the one that is judged [m], the widest at each row."""
+    main = {(each.channel.kind, each.channel.of): each for each in log.readings}
+    square: dict[tuple[str, str], Array] = {}
+    for copy in log.copies:
+        if copy.channel.kind.order:
+            continue
+        off = copy.values - main[copy.channel.kind, copy.channel.of].values
+        key = (copy.channel.of, copy.channel.on)
+        square[key] = square.get(key, np.zeros_like(off)) + off**2
+    gaps: dict[str, Array] = {}
+    for (point, _), each in square.items():
+        gaps[point] = np.maximum(gaps.get(point, np.zeros_like(each)), np.sqrt(each))
+    return gaps
+
+
+def lacking(log: Log, beside: LogBeside) -> tuple[str, ...]:
+    """What of the scene's places and rates the log does not hold, quantity by quantity."""
+    scene, reference = beside.scene, beside.reference
+    held = {
+        (track.quantity, track.body)
+        for name in QUANTITIES
+        for track in beside.tracks((name,), reference)
+    }
+    return tuple(
+        f"{name} of {body}"
+        for name, entry in QUANTITIES.items()
+        for measure in entry.measures
+        for body in measure.truth(scene, reference)
+        if (name, body) not in held
+    )
+
+
+def readings_of(log: Log, quantity: str, body: str) -> tuple[Reading, ...]:
+    """The readings that a quantity of a body is judged by."""
+    scene = log.scene
+    return tuple(
+        each
+        for each in log.readings
+        if each.channel.of == body
+        and (
+            "drive"
+            if (each.channel.kind.name, body) == ("angle", scene.driver.link)
+            else each.channel.kind.quantity
+        )
+        == quantity
+    )

@@ -1,0 +1,255 @@
+"""The columns of a log: read from a file of a bounded size, or taken from a frame."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
+import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
+
+from models.array import Array
+from models.errors import CrankcheckError, cut, suggestion
+from models.regular import UnreadableError, regular_bytes
+from reports.logs.text import Layout, text_columns
+
+ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
+MOST_BYTES = 600_000_000
+MOST_ROWS = 2_000_000
+"""Ten hours of samples at 60 Hz, half an hour at 1 kHz; judging them takes seconds."""
+MOST_COLUMNS = 2_000
+MOST_SHEET_BYTES = 400_000_000
+"""Of a workbook when it is unpacked."""
+COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*")
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A log as it stands in its file: columns by name, of whatever they hold.
+
+    ``first`` is what a reader would call the first row of numbers: its line in a file of text,
+    its row in a sheet, 0 in a frame.
+    """
+
+    source: str
+    raw: Mapping[str, Any]
+    first: int = 0
+    rows: int = 0
+    notes: tuple[str, ...] = ()
+
+    def numbers(self, name: str) -> Array:
+        """A column as numbers, all of them finite.
+
+        Raises
+        ------
+        CrankcheckError
+            A cell that is empty, NaN, infinite or no number; the message has its row.
+        """
+        values = np.asarray(self.raw[name])
+        if values.dtype.kind not in "iuf":
+            values = self._parsed(name, values)
+        found = values.astype(np.float64)
+        bad = np.flatnonzero(~np.isfinite(found))
+        if bad.size:
+            row = int(bad[0])
+            what = self.cell(name, row)
+            cure = "fill it, cut the log there, or leave the column out ([[channel]] ignore = true)"
+            more = f" ({bad.size} such cells)" if bad.size > 1 else ""
+            raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
+        return found
+
+    def at(self, name: str, row: int) -> str:
+        """A cell in words."""
+        return f"{self.source}, row {self.first + row}, column {cut(name)!r}"
+
+    def cell(self, name: str, row: int) -> str:
+        """What stands in a cell that is no finite number."""
+        found = self.raw[name][row]
+        if found is None or found is pd.NA or (isinstance(found, str) and not found.strip()):
+            return "the cell is empty"
+        return f"found {cut(str(found), 40)}"
+
+    def _parsed(self, name: str, values: np.ndarray[Any, Any]) -> Array:
+        """Cells that are not all numbers, as numbers; NaN for what is empty."""
+        found = np.empty(values.shape[0])
+        for row, cell in enumerate(values.tolist()):
+            if cell is None or cell is pd.NA or (isinstance(cell, str) and not cell.strip()):
+                found[row] = np.nan
+                continue
+            try:
+                if isinstance(cell, bool) or not isinstance(cell, int | float | str):
+                    raise ValueError
+                found[row] = float(cell)
+            except (ValueError, OverflowError):
+                raise CrankcheckError(
+                    f"{self.at(name, row)}: found {cut(repr(cell), 40)}, no number; {_cure(cell)}"
+                ) from None
+        return found
+
+
+def _cure(cell: object) -> str:
+    """What would make a number of a cell."""
+    if isinstance(cell, str) and COMMA.fullmatch(cell):
+        return "write decimal points, or say decimal = ',' in [file] of the map"
+    return "write numbers alone, or leave the column out ([[channel]] ignore = true)"
+
+
+def read_columns(path: Path, layout: Layout | None = None) -> Columns:
+    """Read the columns of a log.
+
+    Parameters
+    ----------
+    path : Path
+        Text with a header (.csv, .tsv, .txt; the separator is found), .parquet or .xlsx.
+    layout : Layout or None
+        What the user's map says of the file.
+
+    Raises
+    ------
+    CrankcheckError
+        No plain file, one of another kind or larger than is read, one that is damaged or empty, two
+        columns of one name.
+    """
+    layout = layout or Layout()
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        found = repr(ending) if ending else "no ending"
+        raise CrankcheckError(f"log {path}: found {found}; use {', '.join(ENDINGS)}")
+    try:
+        raw = regular_bytes(path, MOST_BYTES)
+        if not raw:
+            raise UnreadableError("empty; a log has a header and rows of numbers")
+        if ending == ".parquet":
+            return _of_table(str(path), _parquet(raw))
+        if ending == ".xlsx":
+            return _sheet(str(path), raw, layout)
+        text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS)
+        return _of_table(str(path), text.table, text.first)
+    except UnreadableError as error:
+        raise CrankcheckError(f"log {path}: {error}") from None
+
+
+def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
+    """The columns of a pandas frame. Raises CrankcheckError for names that are twice there."""
+    names = [str(name) for name in frame.columns]
+    _refuse_twins(names, source)
+    raw = {name: frame.iloc[:, at].to_numpy() for at, name in enumerate(names)}
+    return Columns(source, raw, rows=len(frame))
+
+
+def _of_table(source: str, table: pa.Table, first: int = 1) -> Columns:
+    """The columns of an arrow table; text stays text."""
+    names = [str(name) for name in table.column_names]
+    _refuse_twins(names, f"log {source}")
+    if table.num_rows == 0:
+        raise UnreadableError("a header and no rows; a log has rows of numbers")
+    raw = {name: _values(table.column(at)) for at, name in enumerate(names)}
+    return Columns(source, raw, first, table.num_rows)
+
+
+def _values(column: pa.ChunkedArray) -> Any:
+    """Numbers as an array of them; what is null or of other kinds as objects."""
+    if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
+        if column.null_count:
+            return np.array(column.to_pylist(), dtype=object)
+        return column.to_numpy()
+    return np.array([_plain(cell) for cell in column.to_pylist()], dtype=object)
+
+
+def _plain(cell: object) -> object:
+    """A cell, nested values as the text that shows them."""
+    return cell if cell is None or isinstance(cell, str | int | float | bool) else str(cell)
+
+
+def _refuse_twins(names: list[str], source: str) -> None:
+    seen = set[str]()
+    for name in names:
+        if name in seen:
+            raise CrankcheckError(
+                f"{source}: two columns are called {cut(name)!r}; give each a name of its own"
+            )
+        seen.add(name)
+
+
+def _parquet(raw: bytes) -> pa.Table:
+    """A Parquet file whose rows and columns have been counted before they are read."""
+    try:
+        file = pq.ParquetFile(pa.BufferReader(raw))
+        refuse_many(file.metadata.num_rows, file.metadata.num_columns, MOST_ROWS, MOST_COLUMNS)
+        return file.read()
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise UnreadableError(
+            f"no Parquet that can be read: {cut(str(error).splitlines()[0], 200)}"
+        ) from None
+
+
+def refuse_many(rows: int, columns: int, most_rows: int, most_columns: int) -> None:
+    """Raise UnreadableError for more than are read."""
+    if rows > most_rows:
+        raise UnreadableError(
+            f"{rows} rows; at most {most_rows} are read: cut the log, or keep every n-th row"
+        )
+    if columns > most_columns:
+        raise UnreadableError(
+            f"{columns} columns; at most {most_columns} are read: leave out what is not of the "
+            "mechanism"
+        )
+
+
+def _sheet(source: str, raw: bytes, layout: Layout) -> Columns:
+    """A sheet of a workbook: the one that the map names, or the first."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(raw)) as packed:
+            unpacked = sum(each.file_size for each in packed.infolist())
+        if unpacked > MOST_SHEET_BYTES:
+            raise UnreadableError(
+                f"{unpacked} bytes when it is unpacked; at most {MOST_SHEET_BYTES} are read: "
+                "save it as CSV"
+            )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of styles and the like, which are not read
+            book = pd.ExcelFile(io.BytesIO(raw), engine="openpyxl")
+            names = [str(name) for name in book.sheet_names]
+            if layout.sheet and layout.sheet not in names:
+                hint = suggestion(layout.sheet, names, "the sheets are")
+                raise UnreadableError(f"no sheet {layout.sheet!r}; {hint}")
+            name = layout.sheet or names[0]
+            frame = book.parse(name, header=None)
+    except UnreadableError:
+        raise
+    except Exception as error:  # whatever a damaged archive makes of its reader
+        why = cut(f"{type(error).__name__}: {error}".splitlines()[0], 200)
+        raise UnreadableError(f"no workbook that can be read: {why}") from None
+    return _of_cells(source, frame, name, len(names))
+
+
+def _of_cells(source: str, frame: pd.DataFrame, sheet: str, sheets: int) -> Columns:
+    """The columns of a sheet whose first row is the header."""
+    if frame.empty:
+        raise UnreadableError(f"sheet {sheet!r} is empty; a log has a header and rows of numbers")
+    head = ["" if pd.isna(cell) else str(cell).strip() for cell in frame.iloc[0]]
+    blank = [at + 1 for at, name in enumerate(head) if not name]
+    if blank:
+        raise UnreadableError(
+            f"sheet {sheet!r}: column {blank[0]} has no name in row 1; the first row holds the "
+            "names of the columns"
+        )
+    _refuse_twins(head, f"log {source}")
+    body = frame.iloc[1:]
+    if body.empty:
+        raise UnreadableError(f"sheet {sheet!r}: a header and no rows; a log has rows of numbers")
+    refuse_many(len(body), len(head), MOST_ROWS, MOST_COLUMNS)
+    raw = {}
+    for at, name in enumerate(head):
+        cells = [None if pd.isna(cell) else _plain(cell) for cell in body.iloc[:, at]]
+        raw[name] = np.array(cells, dtype=object)
+    notes = (f"sheet {sheet!r}, the first of {sheets}",) if sheets > 1 else ()
+    return Columns(source, raw, 2, len(body), notes)

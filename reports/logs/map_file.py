@@ -1,0 +1,196 @@
+"""A map: the TOML file in which a user says what the columns of his log mean.
+
+::
+
+    [file]
+    decimal = ","              # where the log has decimal commas
+
+    [time]
+    column = "Zeit"
+    unit = "ms"
+
+    [[channel]]
+    column = "sensor 3"
+    of = "rocker"              # a link, point or slider of the scene
+    kind = "angle"
+    unit = "deg"
+    sign = -1                  # turned about the other way
+    relative_to = "coupler"    # a joint's sensor
+
+What it does not say of a column is taken from the column's name.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from models.errors import CrankcheckError, listed, shown, suggestion
+from models.regular import UnreadableError, regular_text
+from models.toml_text import tables
+from reports.logs.channel import Channel, Log
+from reports.logs.kinds import KINDS
+from reports.logs.spelling import DIMENSION
+from reports.logs.text import Layout
+from reports.logs.units import UNITS
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
+Name = Annotated[str, Field(min_length=1, max_length=400)]
+KIND_NAMES = (*dict.fromkeys(name for _, name in KINDS), "gap")
+
+
+class Table(BaseModel):
+    """A table of the map: unknown keys are faults."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class FileTable(Table):
+    """How the file is written; ``holes = "meant"`` lets an even log have some."""
+
+    separator: Literal["", ",", ";", "\t", " "] = ""
+    decimal: Literal[".", ","] = "."
+    sheet: str = Field(default="", max_length=100)
+    holes: Literal["", "meant"] = ""
+
+
+class TimeTable(Table):
+    """The column of times, and its unit."""
+
+    column: Name | None = None
+    unit: str | None = None
+
+
+class ChannelTable(Table):
+    """What a column means; what is left out is taken from its name."""
+
+    column: Name
+    ignore: bool = False
+    of: Name | None = None
+    kind: str | None = None
+    unit: str | None = None
+    sign: Literal[1, -1] = 1
+    offset: Number = 0.0
+    wrapped: bool | None = None
+    relative_to: str | None = None
+    on: str | None = None
+    delay_s: Number = 0.0
+    time: Name | None = None
+
+
+class Map(Table):
+    """A whole map."""
+
+    file: FileTable = FileTable()
+    time: TimeTable = TimeTable()
+    channel: Annotated[list[ChannelTable], Field(max_length=2_000)] = []
+
+    @property
+    def layout(self) -> Layout:
+        """What it says of the file."""
+        return Layout(self.file.separator, self.file.decimal, self.file.sheet)
+
+
+def read_map(path: Path) -> Map:
+    """Read a map. Raises CrankcheckError with every fault of the file."""
+    try:
+        raw = tables(regular_text(path))
+        return Map.model_validate(raw)
+    except UnreadableError as error:
+        raise CrankcheckError(f"--map {path}: {error}") from None
+    except ValidationError as error:
+        faults = [_fault(each["loc"], each["type"], each["msg"], each["input"])
+                  for each in error.errors()]  # fmt: skip
+        raise CrankcheckError(listed(f"--map {path}", faults)) from None
+
+
+def check_words(map_: Map, place: str) -> None:
+    """Refuse units and kinds that there are not, and columns that are told twice.
+
+    Raises CrankcheckError with every fault.
+    """
+    faults = []
+    twice = set[str]()
+    if map_.time.unit is not None and map_.time.unit not in UNITS["time"]:
+        hint = suggestion(map_.time.unit, UNITS["time"], "use one of")
+        faults.append(f"[time] unit: {map_.time.unit!r} is no unit of time; {hint}")
+    for one in map_.channel:
+        where = f"[[channel]] {one.column!r}"
+        if one.column in twice:
+            faults.append(f"{where}: told twice; leave one of them out")
+        twice.add(one.column)
+        if one.unit is not None and one.unit not in DIMENSION:
+            hint = suggestion(one.unit, DIMENSION, "use one of")
+            faults.append(f"{where}, unit: {one.unit!r} is unknown; {hint}")
+        if one.kind is not None and one.kind not in KIND_NAMES:
+            hint = suggestion(one.kind, KIND_NAMES, "use one of")
+            faults.append(f"{where}, kind: {one.kind!r} is unknown; {hint}")
+    if faults:
+        raise CrankcheckError(listed(place, faults))
+
+
+def map_text(log: Log, time_column: str, time_unit: str) -> str:
+    """The map of a log as its columns were understood, with what was not as remarks."""
+    lines = [
+        "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
+        "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
+        "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
+        "# A reading is sign * (number + offset); ignore = true leaves a column out.",
+        "",
+        "[time]",
+        f"column = {_text(time_column)}",
+        f"unit = {_text(time_unit)}",
+    ]
+    for reading in (*log.readings, *log.copies):
+        lines += ["", "[[channel]]", *_channel(reading.channel)]
+    for column, reason in log.unused:
+        lines += ["", f"# {' '.join(reason.split())}", "# [[channel]]",
+                  f"# column = {_text(column)}"]  # fmt: skip
+        lines += ['# of = ""', '# kind = ""', '# unit = ""']
+    return "\n".join(lines) + "\n"
+
+
+def _channel(channel: Channel) -> Sequence[str]:
+    """A channel as lines of TOML, without what is as it is by default."""
+    lines = [
+        f"column = {_text(channel.column)}",
+        f"of = {_text(channel.of)}",
+        f"kind = {_text(channel.kind.name)}",
+        f"unit = {_text(channel.unit)}",
+    ]
+    if channel.sign != 1:
+        lines.append(f"sign = {channel.sign}")
+    if channel.offset:
+        lines.append(f"offset = {channel.offset!r}")
+    if channel.kind.turns:
+        lines.append(f"wrapped = {'true' if channel.wrapped else 'false'}")
+    texts = {key: getattr(channel, key) for key in ("relative_to", "on", "time")}
+    lines += [f"{key} = {_text(value)}" for key, value in texts.items() if value]
+    if channel.delay_s:
+        lines.append(f"delay_s = {channel.delay_s!r}")
+    return lines
+
+
+def _text(value: str) -> str:
+    """A basic string of TOML; JSON escapes what that does."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _fault(loc: tuple[int | str, ...], kind: str, message: str, found: object) -> str:
+    """One fault in a line: key, what was found, what would work."""
+    key = ".".join(str(part + 1) if isinstance(part, int) else part for part in loc)
+    if kind == "missing":
+        return f"{key}: missing; add it"
+    if kind == "extra_forbidden":
+        models: dict[str, type[Table]] = {
+            "file": FileTable,
+            "time": TimeTable,
+            "channel": ChannelTable,
+        }
+        owner = models.get(str(loc[0]), Map) if len(loc) > 1 else Map
+        return f"{key}: unknown key; {suggestion(str(loc[-1]), owner.model_fields, 'known:')}"
+    return f"{key}: found {shown(found)}; {message[0].lower()}{message[1:]}"

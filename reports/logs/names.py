@@ -1,0 +1,255 @@
+"""What the name of a column says: of which body it is, of which kind, in which unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from models.errors import CrankcheckError, cut
+from models.scene import GROUND, Scene
+from reports.logs.kinds import KINDS, Kind, MovingKind
+from reports.logs.spelling import DIMENSION, spelled_unit
+from reports.logs.units import si
+
+TIMES = {"time", "t", "timestamp", "times", "sim time", "simulation time", "elapsed"}
+PLACES = {"pos", "position", "place", "coordinate", "coord"}
+SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
+SECONDS = {"a", "acc", "accel", "acceleration"}
+TURNING: Sequence[set[str]] = (
+    {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
+    {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
+    {"alpha", "angacc", "thetaddot", "qdd", *SECONDS},
+)
+SLIDING: Sequence[set[str]] = (
+    {"displacement", "disp", "s", "stroke", "travel", *PLACES},
+    {"sdot", *SPEEDS},
+    {"sddot", *SECONDS},
+)
+AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
+        enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
+FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
+           "block", "log", "sensor", "at", "on", "signal", "value"}  # fmt: skip
+RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
+DRIVERS = {"driver", "input", "motor"}
+SHORT = 2
+"""Names of bodies up to this length are told apart by case: `a` is an acceleration, `A` a point."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What the name of a column says; "" and None for what it leaves open."""
+
+    of: str
+    kind: Kind | None
+    gap: bool
+    unit: str
+    relative_to: str = ""
+    on: str = ""
+
+
+@dataclass(frozen=True)
+class Named:
+    """The bodies of a scene, as the names of columns may have them."""
+
+    scene: Scene
+    _kinds: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def points(self) -> frozenset[str]:
+        return frozenset([*self.scene.pins, *(each.point for each in self.scene.sliders.values())])
+
+    @cached_property
+    def bodies(self) -> Sequence[str]:
+        """All names, longest first."""
+        every = {*self.scene.links, *self.points, *self.scene.sliders, GROUND}
+        return sorted(every, key=lambda name: (-len(name), name))
+
+    def kinds_of(self, name: str) -> tuple[MovingKind, ...]:
+        """What has that name: often a slider and its point have the same."""
+        there: Iterable[tuple[MovingKind, bool]] = (
+            ("link", name in self.scene.links),
+            ("point", name in self.points),
+            ("slider", name in self.scene.sliders),
+        )
+        return tuple(kind for kind, holds in there if holds)
+
+    def found(self, text: str) -> tuple[list[str], list[str]]:
+        """The bodies that a text names, in its order, and the words left, in lower case."""
+        places: list[tuple[int, str]] = []
+        for name in self.bodies:
+            flags = 0 if len(name) <= SHORT else re.IGNORECASE
+            pattern = rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])"
+            while hit := re.search(pattern, text, flags):
+                places.append((hit.start(), name))
+                text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
+        words = [word.lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text) if word]
+        bodies = [name for _, name in sorted(places)]
+        if not bodies and not DRIVERS.isdisjoint(words):
+            bodies = [self.scene.driver.link]
+            words = [word for word in words if word not in DRIVERS]
+        return bodies, words
+
+
+def time_of(column: str) -> tuple[str, str] | None:
+    """Of a column of times: whose (``time``, ``velocity time``, ``acceleration time``), and the
+    unit; None for another column. Raises CrankcheckError for two units."""
+    words = [
+        word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", _without_unit(column)[0]) if word
+    ]
+    unit = ""
+    if len(words) > 1 and DIMENSION.get(spelled_unit(words[-1])) == "time":
+        unit = spelled_unit(words.pop())
+    name = " ".join(words)
+    if name not in TIMES and name not in ("velocity time", "acceleration time"):
+        return None
+    return "time" if name in TIMES else name, _one_unit(column, unit) or si("time")
+
+
+def meaning(column: str, named: Named) -> Meaning | str:
+    """What a column's name says, or why nothing is made of it.
+
+    Raises CrankcheckError for units that contradict each other, or what they are units of.
+    """
+    bodies, words = named.found(_without_unit(column)[0])
+    unit, words = _trailing_unit(words)
+    unit = _one_unit(column, unit)
+    if not bodies:
+        return "it names no link, point or slider of the scene"
+    relative = not RELATIVE.isdisjoint(words)
+    words = [word for word in words if word not in FILLERS | RELATIVE]
+    of, relative_to, on = _roles(bodies, named, relative=relative)
+    if not of:
+        return f"it names {' and '.join(bodies)}; a map says of which it is"
+    if words == ["gap"]:
+        _held(column, unit, "length")
+        return Meaning(of, None, True, unit or "m")
+    slider = "slider" in re.split(r"[^a-z]+", column.lower())
+    kind = _kind(named.kinds_of(of), words, unit, slider=slider)
+    if isinstance(kind, str):
+        return kind
+    _held(column, unit, kind.dimension)
+    return Meaning(of, kind, False, unit or si(kind.dimension), relative_to, on)
+
+
+def _without_unit(column: str) -> tuple[str, str]:
+    """A name without the unit in brackets at its end, and that unit."""
+    hit = re.search(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", column)
+    if hit and (unit := spelled_unit(hit[1])):
+        return column[: hit.start()], unit
+    return column, ""
+
+
+def _trailing_unit(words: list[str]) -> tuple[str, list[str]]:
+    """The unit that the last words spell, and the words before it. A lone `s` is a displacement."""
+    for count in (3, 2, 1):
+        if len(words) < count:
+            continue
+        unit = spelled_unit("_".join(words[-count:]))
+        if unit and DIMENSION[unit] != "time":
+            return unit, words[:-count]
+    return "", words
+
+
+def _one_unit(column: str, unit: str) -> str:
+    """The unit of a name that may tell it twice. Raises CrankcheckError where they differ."""
+    bracket = _without_unit(column)[1]
+    if unit and bracket and unit != bracket:
+        raise CrankcheckError(
+            f"column {cut(column)!r}: units that contradict each other, {unit} and {bracket}; "
+            "rename it, or say unit in the map"
+        )
+    return unit or bracket
+
+
+def _held(column: str, unit: str, dimension: str) -> None:
+    """Refuse a unit of something else. Raises CrankcheckError."""
+    if unit and DIMENSION[unit] != dimension:
+        raise CrankcheckError(
+            f"column {cut(column)!r}: {unit} is a unit of {DIMENSION[unit]}, and its name says "
+            f"{dimension}; rename it, or say kind and unit in the map"
+        )
+
+
+def _roles(bodies: Sequence[str], named: Named, *, relative: bool) -> tuple[str, str, str]:
+    """Of which body a column is, relative to which link, and on which body; "" for nothing told."""
+    bodies = list(dict.fromkeys(bodies))
+    if len(bodies) == 1:
+        return bodies[0] if bodies[0] != GROUND else "", "", ""
+    if len(bodies) > 2:
+        return "", "", ""
+    links = [name for name in bodies if name in named.scene.links or name == GROUND]
+    if len(links) == 2 and relative:
+        return (links[0], "" if links[1] == GROUND else links[1], "")
+    points = [name for name in bodies if name in named.points]
+    if len(links) == 1 and len(points) == 1 and links != points:
+        return points[0], "", links[0]
+    return "", "", ""
+
+
+def _kind(
+    kinds: Sequence[MovingKind], words: Sequence[str], unit: str, *, slider: bool
+) -> Kind | str:
+    """The kind of reading that words and a unit name, or why none."""
+    dimension = DIMENSION.get(unit)
+    if "link" in kinds:
+        order = _order(words, TURNING)
+        chosen = [k for k in KINDS.values() if k.body_kind == "link" and k.order == order]
+        if not words:
+            chosen = [k for k in KINDS.values() if k.body_kind == "link"]
+            chosen = [k for k in chosen if k.dimension == (dimension or "angle")]
+        return chosen[0] if chosen else _unknown(words, "link")
+    axis = None if slider else _axis(words)
+    if "point" in kinds and axis:
+        order, at = axis
+        of = [k for k in KINDS.values() if k.body_kind == "point"]
+        return next(k for k in of if (k.order, k.axis) == (order, at))
+    if "slider" in kinds:
+        order = _order(words, SLIDING)
+        chosen = [k for k in KINDS.values() if k.body_kind == "slider" and k.order == order]
+        if not words:
+            chosen = [k for k in KINDS.values() if k.body_kind == "slider"]
+            chosen = [k for k in chosen if k.dimension == (dimension or "length")]
+        return chosen[0] if chosen else _unknown(words, "slider")
+    if list(words) in (["v"], ["a"]):
+        return "it is the length of a vector, whose components are judged"
+    return _unknown(words, "point")
+
+
+def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
+    """Which derivative some words name; None where they name none, or several."""
+    orders = {n for word in words for n, known in enumerate(names) if word in known}
+    known = set().union(*names)
+    if len(orders) == 2 and 0 in orders and not PLACES.isdisjoint(names[0]):
+        orders -= {0}  # angle velocity
+    return orders.pop() if len(orders) == 1 and known.issuperset(words) else None
+
+
+def _axis(words: Sequence[str]) -> tuple[int, int] | None:
+    """Derivative and axis of a point's component; None where the words name none."""
+    axes = [word for word in words if word in AXES]
+    if len(axes) != 1:
+        return None
+    order, axis = AXES[axes[0]]
+    for word in words:
+        if word == axes[0] or word in PLACES | {"p"}:
+            continue
+        if word in SPEEDS and order == 0:
+            order = 1
+        elif word in SECONDS and order == 0:
+            order = 2
+        else:
+            return None
+    return order, axis
+
+
+def _unknown(words: Sequence[str], kind: str) -> str:
+    """Why nothing is made of a column of a body."""
+    told: Mapping[str, str] = {
+        "link": "angle, angular velocity or angular acceleration",
+        "point": "x, y, vx, vy, ax or ay",
+        "slider": "displacement, speed or acceleration",
+    }
+    found = f"{' '.join(words)!r} is" if words else "it tells"
+    return f"{cut(found)} no kind of reading of a {kind}: {told[kind]}"

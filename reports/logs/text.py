@@ -1,0 +1,221 @@
+"""A log that is text: its separator, header and units are found, its numbers read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
+import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
+
+from models.errors import cut
+from models.regular import UnreadableError
+from reports.logs.spelling import spelled_unit
+
+LOOK = 200_000
+"""Bytes at the beginning in which the header, and what follows it, must stand."""
+SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", " ": "spaces"}
+REMARKS = ("#", "%", "//")
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.I)
+COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a map says of a file: "" where it is to be found."""
+
+    separator: str = ""
+    decimal: str = "."
+    sheet: str = ""
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """The table of a text, and the line that its first row stands in."""
+
+    table: pa.Table
+    first: int
+
+
+def text_columns(raw: bytes, layout: Layout, most_rows: int, most_columns: int) -> TextTable:
+    """Read text with a header. Raises UnreadableError for what is no such text."""
+    lines, offsets = _first_lines(raw)
+    at = next(
+        (n for n, line in enumerate(lines) if line.strip() and not line.startswith(REMARKS)), None
+    )
+    if at is None:
+        raise UnreadableError("empty but for remarks; a log has a header and rows of numbers")
+    separator = layout.separator or _separator(lines[at], lines[at + 1 :])
+    names = _fields(lines[at], separator)
+    if len(names) > most_columns:
+        raise UnreadableError(
+            f"{len(names)} columns; at most {most_columns} are read: leave out what is not of the "
+            "mechanism"
+        )
+    _check_header(names, at, separator)
+    below = next((n for n in range(at + 1, len(lines)) if lines[n].strip()), None)
+    if below is None:
+        raise UnreadableError("a header and no rows; a log has rows of numbers")
+    units = _units(_fields(lines[below], separator), len(names))
+    if units:
+        names = [
+            f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)
+        ]
+        below = next((n for n in range(below + 1, len(lines)) if lines[n].strip()), None)
+        if below is None:
+            raise UnreadableError("a header and units, and no rows; a log has rows of numbers")
+    _check_row(_fields(lines[below], separator), names, below, separator, layout)
+    body = memoryview(raw)[offsets[below] :]
+    table = _table(body, names, separator, layout.decimal, most_rows, below)
+    return TextTable(table, below + 1)
+
+
+def _first_lines(raw: bytes) -> tuple[list[str], list[int]]:
+    """The first lines, and the byte that each begins at. Raises UnreadableError for no text."""
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise UnreadableError("UTF-16 text; save the file as UTF-8")
+    mark = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
+    look = raw[mark : mark + LOOK]
+    if b"\0" in look:
+        raise UnreadableError("no text: it holds null bytes; the ending says what a file is")
+    if b"\n" not in look and b"\r" in look:
+        raise UnreadableError("lines end in \\r alone; save the file with \\n or \\r\\n")
+    parts = look.split(b"\n")
+    if len(raw) > mark + LOOK:
+        parts.pop()  # cut somewhere in it
+        if not parts:
+            raise UnreadableError(f"its first line is longer than {LOOK} bytes")
+    offsets, place = [], mark
+    for part in parts:
+        offsets.append(place)
+        place += len(part) + 1
+    try:
+        return [part.decode("utf-8").rstrip("\r") for part in parts], offsets
+    except UnicodeDecodeError:
+        raise UnreadableError("not UTF-8 text; save the file as UTF-8") from None
+
+
+def _separator(header: str, rest: Sequence[str]) -> str:
+    """What stands between the fields: the first of tab, semicolon, comma and space that the header
+    has, outside of brackets and quotes."""
+    bare = re.sub(r'"[^"]*"|\[[^\]]*\]|\([^)]*\)', "", header)
+    for separator in SEPARATORS:
+        if separator in bare.strip():
+            row = next((line for line in rest if line.strip()), "")
+            # Names with spaces in a file of one column, or of a separator that comes next.
+            if separator != " " or len(row.split()) == len(header.split()):
+                return separator
+    return ","
+
+
+def _fields(line: str, separator: str) -> list[str]:
+    """The fields of a line, quotes taken off."""
+    if separator == " ":
+        return line.split()
+    found = re.findall(rf'(?:^|{re.escape(separator)})\s*("(?:[^"]|"")*"|[^{separator}]*)', line)
+    return [field.strip().strip('"').replace('""', '"').strip() for field in found]
+
+
+def _check_header(names: Sequence[str], at: int, separator: str) -> None:
+    """Refuse a header that names nothing. Raises UnreadableError."""
+    if all(NUMBER.fullmatch(name) or COMMA.fullmatch(name) for name in names if name):
+        raise UnreadableError(
+            f"line {at + 1} holds numbers and no names; put a header above them, such as "
+            "time_s,rocker_deg"
+        )
+    blank = next((n for n, name in enumerate(names) if not name), None)
+    if blank is not None:
+        raise UnreadableError(f"line {at + 1}: column {blank + 1} has no name; give it one")
+    if any('"' in name for name in names):
+        raise UnreadableError(f"line {at + 1}: a quote that is not closed")
+
+
+def _units(fields: Sequence[str], columns: int) -> list[str]:
+    """The units of a row that holds nothing else, "" for a column without; none for other rows."""
+    bare = [field.strip("[]() ") for field in fields]
+    known = [spelled_unit(field) for field in bare]
+    if len(bare) != columns or not any(known):
+        return []
+    if all(
+        unit or field in ("", "-", "1", "none") for unit, field in zip(known, bare, strict=True)
+    ):
+        return [field if unit else "" for unit, field in zip(known, bare, strict=True)]
+    return []
+
+
+def _check_row(
+    fields: Sequence[str], names: Sequence[str], at: int, separator: str, layout: Layout
+) -> None:
+    """Refuse a first row that does not fit the header. Raises UnreadableError."""
+    pairs = len(fields) >= 2 * len(names) - 1 and separator == "," and len(names) > 1
+    if pairs:
+        raise UnreadableError(
+            f"line {at + 1} has {len(fields)} fields, the header {len(names)}: decimal commas "
+            "between commas; write decimal points, or separate the columns by semicolons"
+        )
+    if len(fields) != len(names):
+        raise UnreadableError(
+            f"line {at + 1} has {len(fields)} fields, the header {len(names)}, separated by "
+            f"{SEPARATORS.get(separator, repr(separator))}; say separator in [file] of the map if "
+            "that is another"
+        )
+    if layout.decimal == ".":
+        for name, field in zip(names, fields, strict=True):
+            if COMMA.fullmatch(field):
+                raise UnreadableError(
+                    f"row {at + 1}, column {cut(name)!r}: found {cut(field)!r}, a decimal comma; "
+                    "write decimal points, or say decimal = ',' in [file] of the map"
+                )
+
+
+def _table(
+    body: memoryview,
+    names: Sequence[str],
+    separator: str,
+    decimal: str,
+    most_rows: int,
+    below: int,
+) -> pa.Table:
+    """The rows as a table. Raises UnreadableError for rows that do not fit, and for too many."""
+    if separator == " ":
+        text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(body)))
+        body = memoryview(text)
+    if (rows := _count(body)) > most_rows:
+        raise UnreadableError(
+            f"{rows} rows; at most {most_rows} are read: cut the log, or keep every n-th row"
+        )
+    misfits: list[str] = []
+
+    def misfit(row: pc.InvalidRow) -> str:
+        misfits.append(
+            f"row {below + (row.number or 0)}: {row.actual_columns} fields, the header "
+            f"{row.expected_columns}: {cut(row.text, 60)!r}"
+        )
+        return "error"
+
+    try:
+        return pc.read_csv(
+            pa.BufferReader(pa.py_buffer(body)),
+            read_options=pc.ReadOptions(
+                column_names=list(names), use_threads=False, block_size=1 << 24
+            ),
+            parse_options=pc.ParseOptions(delimiter=separator, invalid_row_handler=misfit),
+            convert_options=pc.ConvertOptions(
+                null_values=[""],
+                strings_can_be_null=True,
+                decimal_point=decimal,
+                timestamp_parsers=[],
+            ),
+        )
+    except (pa.ArrowException, OSError, ValueError) as error:
+        why = misfits[0] if misfits else cut(str(error).splitlines()[0], 200)
+        raise UnreadableError(f"{why}; every row has as many fields as the header") from None
+
+
+def _count(body: memoryview) -> int:
+    """The number of lines."""
+    count, step = 0, 1 << 24
+    for first in range(0, len(body), step):
+        count += bytes(body[first : first + step]).count(b"\n")
+    return count + (len(body) > 0 and body[-1] != 10)

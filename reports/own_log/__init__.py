@@ -1,0 +1,1 @@
+"""A user's own log, judged: within tolerance or not, and if not, why."""

@@ -1,0 +1,202 @@
+"""What moves the truth that a log is held to: the scene's driver, or what the log says of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError, shown
+from models.laws import ConstantSpeed
+from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.logs.beside_truth import AtCrank
+from reports.logs.channel import Log, Reading
+
+LogDrive = Literal["scene", "fitted", "logged"]
+"""The scene's law; constant speed, fitted to the log; or the crank's angle at each row, for the
+geometry alone."""
+STARTS = 24
+"""Angles of the start that are tried, where the log does not hold the driver's."""
+FIRST = 400
+"""Samples that they are tried on."""
+ROUNDS = 30
+CLOSE = 1e-13
+"""A change of both parameters, as a share, that is none."""
+NUDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class DriveFit:
+    """Speed [rad/s] and start angle [rad] of the driver as a log has them, and one standard error
+    of each; ``by`` says what they were fitted to."""
+
+    speed_rad_s: float
+    start_rad: float
+    speed_doubt: float
+    start_doubt: float
+    by: str
+
+
+def chosen_drive(text: str) -> LogDrive:
+    """The drive of that name. Raises CrankcheckError for another."""
+    for name in get_args(LogDrive):
+        if text == name:
+            return name  # type: ignore[no-any-return]  # get_args has lost what they are
+    raise CrankcheckError(f"--drive {shown(text)}: unknown; use scene, fitted or logged")
+
+
+def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
+    """The truth, and the fit that moves it.
+
+    Raises
+    ------
+    CrankcheckError
+        A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
+    """
+    if drive == "scene":
+        return Truth(log.scene), None
+    crank = crank_reading(log)
+    if drive == "logged":
+        if crank is None or not np.array_equal(crank.instants, log.time_s):
+            raise CrankcheckError(
+                f"--drive logged: {log.source} has no angle of {log.scene.driver.link} at the "
+                f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
+            )
+        return AtCrank(log.scene, time_s=log.time_s, crank_rad=_continuous(crank)), None
+    if not isinstance(log.scene.driver.law, ConstantSpeed):
+        raise CrankcheckError(
+            f"--drive fitted: the driver of {log.scene.name} has no constant speed that could be "
+            "fitted; use --drive scene, or --drive logged for the geometry alone"
+        )
+    fit = _of_crank(log, crank) if crank else _of_places(log)
+    return Truth(moved(log.scene, fit.speed_rad_s, fit.start_rad)), fit
+
+
+def crank_reading(log: Log) -> Reading | None:
+    """The reading of the driver's angle, if there is one."""
+    return next(
+        (
+            each
+            for each in log.readings
+            if each.channel.of == log.scene.driver.link
+            and each.channel.kind.turns
+            and not each.channel.relative_to
+        ),
+        None,
+    )
+
+
+def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
+    """The scene with its driver at a constant speed, from a start angle on."""
+    law = ConstantSpeed(start_rad=start_rad, speed_rad_s=speed_rad_s)
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
+def _continuous(crank: Reading) -> Array:
+    """The angle of the crank, without the jumps of one that is wrapped."""
+    return np.unwrap(crank.values) if crank.channel.wrapped else crank.values
+
+
+def _of_crank(log: Log, crank: Reading) -> DriveFit:
+    """Speed and start by a straight line through the angles. Raises CrankcheckError."""
+    time_s, angle = crank.instants, _continuous(crank)
+    mean = float(np.mean(time_s))
+    centred = time_s - mean
+    square = float(centred @ centred)
+    speed = float(centred @ (angle - np.mean(angle))) / square
+    if speed == 0.0:
+        raise CrankcheckError(
+            f"--drive fitted: {log.scene.driver.link} stands still in {log.source}; use --drive "
+            "scene or logged"
+        )
+    start = float(np.mean(angle)) - speed * mean
+    rest = angle - (start + speed * time_s)
+    sigma = math.sqrt(float(rest @ rest) / max(angle.size - 2, 1))
+    doubt = sigma / math.sqrt(square)
+    at_start = sigma * math.sqrt(1.0 / angle.size + mean**2 / square)
+    return DriveFit(speed, start, doubt, at_start, f"{angle.size} angles of the crank")
+
+
+def _of_places(log: Log) -> DriveFit:
+    """Speed and start by least squares over all places. Raises CrankcheckError."""
+    places = [each for each in log.readings if each.channel.kind.order == 0]
+    if not places:
+        raise CrankcheckError(
+            f"--drive fitted: {log.source} has no places to fit to, rates alone; use --drive scene"
+        )
+    law = log.scene.driver.law
+    assert isinstance(law, ConstantSpeed)
+    first = [replace(each, values=each.values[:FIRST], instants=each.instants[:FIRST])
+             for each in places]  # fmt: skip
+    turn = math.tau / STARTS
+    tried = [(law.speed_rad_s, law.start_rad + n * turn) for n in range(STARTS)]
+    sizes = [_size(_rest(log.scene, first, one)) for one in tried]
+    if min(sizes) == math.inf:
+        raise CrankcheckError(
+            f"--drive fitted: {log.scene.name} can not be assembled over a turn of its driver; log "
+            "the driver's angle, or use --drive scene"
+        )
+    guess = tried[int(np.argmin(sizes))]
+    guess, _ = _least(log.scene, first, guess)
+    best, doubts = _least(log.scene, places, guess)
+    count = sum(each.values.size for each in places)
+    return DriveFit(*best, *doubts, f"{count} places of {len(places)} channels")
+
+
+def _least(
+    scene: Scene, readings: Sequence[Reading], guess: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Speed and start of the least squares, by Gauss and Newton, with one standard error each."""
+    last_s = max(float(np.max(np.abs(each.instants))) for each in readings)
+    steps = np.array([NUDGE / max(last_s, 1e-9), NUDGE])
+    rest = _rest(scene, readings, guess)
+    doubts = (math.nan, math.nan)
+    for _ in range(ROUNDS):
+        if rest is None:
+            break
+        columns = []
+        for at in range(2):
+            nudged = np.array(guess)
+            nudged[at] += steps[at]
+            other = _rest(scene, readings, (float(nudged[0]), float(nudged[1])))
+            columns.append(np.zeros_like(rest) if other is None else (other - rest) / steps[at])
+        slope = np.stack(columns, axis=-1)
+        change, *_ = np.linalg.lstsq(slope, -rest, rcond=None)
+        normal = np.linalg.pinv(slope.T @ slope)
+        sigma = math.sqrt(float(rest @ rest) / max(rest.size - 2, 1))
+        doubts = (
+            sigma * math.sqrt(max(float(normal[0, 0]), 0.0)),
+            sigma * math.sqrt(max(float(normal[1, 1]), 0.0)),
+        )
+        better = (guess[0] + float(change[0]), guess[1] + float(change[1]))
+        after = _rest(scene, readings, better)
+        if _size(after) > _size(rest):
+            break
+        small = abs(change[0]) <= CLOSE * abs(guess[0]) and abs(change[1]) <= CLOSE
+        guess, rest = better, after
+        if small:
+            break
+    return guess, doubts
+
+
+def _rest(
+    scene: Scene, readings: Sequence[Reading], parameters: tuple[float, float]
+) -> Array | None:
+    """All errors as pure numbers, one after the other; None where there is no such motion."""
+    try:
+        truth = Truth(moved(scene, *parameters), bound=False)
+        return np.concatenate([
+            each.error(truth) / (1.0 if each.channel.kind.turns else scene.longest_m)
+            for each in readings
+        ])  # fmt: skip
+    except (CrankcheckError, ValueError):
+        return None
+
+
+def _size(rest: Array | None) -> float:
+    return math.inf if rest is None else float(rest @ rest)

@@ -1,0 +1,227 @@
+"""Judge a user's own log: what it holds, against the closed form, within what he asks for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from models.errors import CrankcheckError, few, shown, suggestion
+from models.scene import Scene
+from reports.causes.cause import Case, Cause
+from reports.causes.find import causes
+from reports.compare.compare import compare
+from reports.compare.errors import Error, Errors
+from reports.judge.cell import left_words
+from reports.judge.rules import RULES, judge
+from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.tolerance import DEFAULTS, Limit, limits
+from reports.logs.beside_truth import LogBeside, beside_truth, lacking, readings_of
+from reports.logs.channel import Log
+from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
+from reports.quantities import QUANTITIES
+
+EVERY = "all"
+"""What a target for all quantities is kept under."""
+STEPPED = ("CC116", "CC118")
+"""Rules that need a step; the others of `_RULES` need none."""
+NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
+"""A log was not asked for, is not run again, and may well be a closed form."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgedLog(Evidence):
+    """A log with what came of it.
+
+    ``beside`` is what was compared, ``fit`` what moves its truth where that was fitted. ``causes``
+    explain what is out of tolerance, and say what is late in any case; ``not_judged`` is what the
+    scene has and the log has not; ``notes`` are worth knowing.
+    """
+
+    log: Log
+    beside: LogBeside
+    drive: LogDrive
+    step_s: float
+    fit: DriveFit | None = None
+    findings: tuple[Finding, ...] = ()
+    causes: tuple[Cause, ...] = ()
+    not_judged: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def scene(self) -> Scene:
+        return self.log.scene
+
+    @property
+    def failures(self) -> tuple[Finding, ...]:
+        return tuple(finding for finding in self.findings if finding.level == "fail")
+
+    @property
+    def verdict(self) -> Literal["within", "out"]:
+        return "out" if self.failures else "within"
+
+
+@dataclass(frozen=True)
+class LogRequest:
+    """How a log is to be judged: pure numbers by quantity (`EVERY` for all others), or the step
+    [s] that a budget follows from; what has to be in it."""
+
+    target: Mapping[str, float] = field(default_factory=dict)
+    step_s: float = 0.0
+    drive: LogDrive = "scene"
+    require: Sequence[str] = ()
+
+
+def judge_log(log: Log, request: LogRequest) -> JudgedLog:
+    """Compare a log with the closed form, and judge it.
+
+    Raises
+    ------
+    CrankcheckError
+        Neither target nor step for what the log holds; a step that is none; a name in ``require``
+        that the scene has not; a drive that the log does not allow; a range that the mechanism can
+        not be moved in.
+    """
+    _check_step(log, request.step_s)
+    required = [_required(log.scene, name) for name in request.require]
+    truth, fit = truth_of_log(log, request.drive)
+    beside = beside_truth(log, truth, step_s=request.step_s)
+    errors = compare(beside)
+    assert errors is not None
+    errors = _of_what_is_held(errors)
+    if not errors.rows:
+        raise CrankcheckError(
+            f"{log.source}: nothing in it is judged with --drive {request.drive}: it holds "
+            f"{few((each.channel.name for each in log.readings), 6)}"
+        )
+    chosen = _limits(beside.scene, errors, request)
+    departure = errors.departure
+    evidence = Evidence(
+        status="branch-changed" if departure else "ok",
+        reason=left_words(departure) if departure else "",
+        stopped_at_s=float(log.time_s[-1]),
+        errors=errors,
+        limits=chosen,
+    )
+    not_judged = lacking(log, beside)
+    return JudgedLog(
+        **vars(evidence),
+        log=log,
+        beside=beside,
+        drive=request.drive,
+        step_s=request.step_s,
+        fit=fit,
+        findings=(*_findings(evidence, request), *_absent(required, not_judged)),
+        causes=causes(Case(log, truth, _by_column(log, errors, chosen))),
+        not_judged=not_judged,
+        notes=_notes(errors),
+    )
+
+
+def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
+    """What the rules say that apply; their cures are those of engines, and left out."""
+    left_out = NOT_OF_LOGS if request.step_s else (*NOT_OF_LOGS, *STEPPED)
+    rules = [rule for id_, rule in RULES.items() if id_ not in left_out]
+    return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
+
+
+def _check_step(log: Log, step_s: float) -> None:
+    """Refuse a step that is none, or longer than a sample. Raises CrankcheckError."""
+    if not (math.isfinite(step_s) and step_s >= 0.0):
+        raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
+    shortest = float(np.min(np.diff(log.time_s)))
+    if step_s > shortest * (1.0 + 1e-3) and step_s > 0.0:
+        raise CrankcheckError(
+            f"--step {step_s:g}: {log.source} has samples {shortest:.4g} s apart, and a step is no "
+            "longer than that; give the step of the solver, in seconds"
+        )
+
+
+def _of_what_is_held(errors: Errors) -> Errors:
+    """Errors without what the reference may be wrong by where the log has nothing."""
+    held = {(row.quantity, row.body) for row in errors.rows}
+    sure = {key: number for key, number in errors.uncertain.items() if key in held}
+    return replace(errors, uncertain=sure)
+
+
+def _limits(scene: Scene, errors: Errors, request: LogRequest) -> dict[str, Limit]:
+    """The limit of everything that is judged; none has no end. Raises CrankcheckError."""
+    target = dict(request.target)
+    every = target.pop(EVERY, None)
+    if every is not None:
+        target = {name: target.get(name, every) for name in DEFAULTS}
+    if request.step_s:
+        return limits(scene, errors, target, "--target")
+    judged = dict.fromkeys(row.tolerance for row in errors.rows)
+    told = {**{n: Limit(x, "scene") for n, x in scene.tolerance.items()},
+            **{n: Limit(x, "--target") for n, x in target.items()}}  # fmt: skip
+    lacking_ = [name for name in judged if name not in told]
+    if lacking_:
+        raise CrankcheckError(
+            f"no limit for {', '.join(lacking_)}: no step of a log is known, so no budget follows "
+            "from one; give --target 1e-3 (or one each, such as --target angle=1e-3), or --step "
+            "with the step of the solver in seconds"
+        )
+    return {name: told.get(name, Limit(math.inf, "none")) for name in DEFAULTS}
+
+
+def _by_column(log: Log, errors: Errors, chosen: Mapping[str, Limit]) -> dict[str, float]:
+    """What the error of each column may be [SI]."""
+    found: dict[str, float] = {}
+    for row in errors.rows:
+        if (row.source, row.kind) == ("reported", "geometric") or row.source != "reported":
+            continue
+        for reading in readings_of(log, row.quantity, row.body):
+            if reading.channel.kind.body_kind == row.body_kind or row.quantity == "drive":
+                found[reading.channel.column] = chosen[row.tolerance].number * row.scale
+    return found
+
+
+def _required(scene: Scene, name: str) -> tuple[str, str, str]:
+    """What a name that is required is: as given, a quantity and a body, "" for any.
+
+    Raises CrankcheckError for one that is neither.
+    """
+    bodies = {*scene.links, *scene.pins, *scene.sliders}
+    if name in QUANTITIES:
+        return name, name, ""
+    if name in bodies:
+        return name, "", name
+    body, dot, quantity = name.rpartition(".")
+    if dot and body in bodies and quantity in QUANTITIES:
+        return name, quantity, body
+    names = [*QUANTITIES, *sorted(bodies)]
+    raise CrankcheckError(
+        f"--require {shown(name)}: neither a quantity nor a body of {scene.name}, nor both as in "
+        f"{scene.driver.link}.angle; {suggestion(name, names, 'there are')}"
+    )
+
+
+def _absent(required: Iterable[tuple[str, str, str]], not_judged: Sequence[str]) -> list[Finding]:
+    """A failure for each name that is required and not, or not wholly, in the log."""
+    found = []
+    for name, quantity, body in required:
+        lacks = [
+            each
+            for each in not_judged
+            if (not quantity or each.startswith(f"{quantity} of "))
+            and (not body or each.endswith(f" of {body}"))
+        ]
+        if lacks:
+            text = f"--require {name}: not in the log: {few(lacks, 6)}"
+            found.append(Finding("CC109", "fail", text, float(len(lacks)), 0.0))
+    return found
+
+
+def _notes(errors: Errors) -> tuple[str, ...]:
+    """What is worth knowing of a log that is within tolerance, or out of it."""
+    rows: list[Error] = [row for row in errors.rows if row.kind == "total"]
+    if rows and all(row.maximum == 0.0 for row in rows):
+        return (
+            "every reading is that of the reference to the last bit: it may have been compared "
+            "with itself",
+        )
+    return ()

@@ -1,0 +1,52 @@
+"""A judged log as Markdown, for a comment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from models.errors import few
+from reports.judge.rules import RULES
+from reports.output.markdown import folded, plain, table
+from reports.output.numbers import short
+from reports.own_log.judged import JudgedLog
+from reports.own_log.rows import log_rows, share_of
+from reports.own_log.table import cause_text, fit_text, footer, taken_text, verdict_line
+
+ROOM = 20_000
+HEADS = ("", "columns", "read as", "largest error:", "of its scale:", "limit:", "taken:")
+
+
+def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
+    """The verdict, what is wrong and why, every error, and what the numbers are."""
+    parts = [
+        f"## crankcheck judge: {plain(judged.log.source)}",
+        f"**{verdict_line(judged).plain}**",
+    ]
+    parts += [
+        "\n".join(
+            f"- {f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures
+        ),
+        "\n".join(f"- cause: {plain(cause_text(c.text, c.correction))}" for c in judged.causes),
+    ]
+    cells = [
+        (
+            "ok" if row.verdict == "within" else "OUT",
+            ", ".join(row.columns) or "-",
+            row.what,
+            f"{short(row.error.maximum)} {row.error.unit}",
+            f"{short(row.error.pure)} {share_of(row.error)}",
+            short(row.limit.number),
+            taken_text(row.taken),
+        )
+        for row in sorted(log_rows(judged), key=lambda row: row.verdict == "within")
+    ]
+    parts.append(table(HEADS, cells, ROOM, "errors"))
+    told = [f"drive: {fit_text(judged)}"] if judged.fit else []
+    if judged.not_judged:
+        told.append(f"not judged, as the log has none: {few(judged.not_judged, 40)}")
+    told += [f"not used: {column}: {reason}" for column, reason in judged.log.unused[:40]]
+    told += judged.notes
+    if told:
+        parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))
+    parts.append("\n".join(f"{plain(line)}  " for line in footer(judged, facts)))
+    return "\n\n".join(part for part in parts if part)

@@ -1,0 +1,111 @@
+"""A judged log as flat rows: what was read as what, and how far it is off."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from reports.compare.errors import Error
+from reports.judge.tolerance import Limit, in_passage
+from reports.logs.beside_truth import readings_of
+from reports.own_log.judged import JudgedLog
+from reports.quantities import QUANTITIES
+
+KINDS = ("total", "start", "passage")
+"""Kinds of errors that have limits."""
+
+
+@dataclass(frozen=True)
+class LogRow:
+    """One error of a body: ``columns`` it was read from, and its ``limit`` [pure]."""
+
+    columns: tuple[str, ...]
+    units: tuple[str, ...]
+    what: str
+    error: Error
+    limit: Limit
+
+    @property
+    def taken(self) -> float:
+        """The part of the limit that it takes; no end where it is not finite."""
+        if not math.isfinite(self.error.pure):
+            return math.inf
+        return self.error.pure / self.limit.number
+
+    @property
+    def verdict(self) -> Literal["within", "out"]:
+        return "within" if self.taken <= 1.0 else "out"
+
+
+def log_rows(judged: JudgedLog) -> list[LogRow]:
+    """Each error that is held to a limit, in the order of the quantities."""
+    errors = judged.errors
+    if errors is None:
+        return []
+    rows = []
+    for error in errors.rows:
+        if error.kind not in KINDS:
+            continue
+        limit = judged.limits[error.tolerance]
+        if error.kind == "passage":
+            limit = in_passage(error.tolerance, limit, errors)
+        read = [
+            each
+            for each in readings_of(judged.log, error.quantity, error.body)
+            if error.source == "reported"
+            and (each.channel.kind.body_kind == error.body_kind or error.quantity == "drive")
+        ]
+        rows.append(
+            LogRow(
+                columns=tuple(each.channel.column for each in read),
+                units=tuple(dict.fromkeys(each.channel.unit for each in read)),
+                what=_what(error),
+                error=error,
+                limit=limit,
+            )
+        )
+    return rows
+
+
+def _what(error: Error) -> str:
+    """An error in words: quantity, body, and where it is not from a column itself, from what."""
+    quantity = "angle" if error.quantity == "drive" else error.quantity
+    driver = ", the driver" if error.quantity == "drive" else ""
+    differenced = ", differenced" if error.source == "differenced" else ""
+    kind = {"start": ", at the start", "passage": ", near a change point"}.get(error.kind, "")
+    return f"{quantity} of {error.body}{driver}{differenced}{kind}"
+
+
+def share_of(error: Error) -> str:
+    """What the pure number is a multiple of."""
+    kind = "driver" if error.quantity == "drive" else error.body_kind
+    return QUANTITIES[error.quantity].of(kind).share
+
+
+def row_table(judged: JudgedLog) -> list[dict[str, object]]:
+    """The rows with unit suffixes in their names, for frames, CSV and JSON."""
+    return [
+        {
+            "scene": judged.scene.name,
+            "columns": " ".join(row.columns),
+            "quantity": row.error.quantity,
+            "body_kind": row.error.body_kind,
+            "body": row.error.body,
+            "source": row.error.source,
+            "kind": row.error.kind,
+            "unit": row.error.unit,
+            "maximum": row.error.maximum,
+            "rms": row.error.rms,
+            "final": row.error.final,
+            "maximum_pure": row.error.pure,
+            "limit_pure": row.limit.number,
+            "limit_origin": row.limit.origin,
+            "verdict": row.verdict,
+            "time_of_maximum_s": row.error.time_of_maximum_s,
+            "driver_at_maximum_rad": row.error.driver_at_maximum_rad,
+            "reference_bound": row.error.bound,
+            "samples": row.error.samples,
+        }
+        for row in log_rows(judged)
+    ]

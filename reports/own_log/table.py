@@ -1,0 +1,179 @@
+"""A judged log on the terminal: what is wrong and why, what was read as what, the verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from models.errors import few
+from reports.judge.rules import RULES
+from reports.output.columns import hanging, plain_table
+from reports.output.numbers import short
+from reports.own_log.judged import JudgedLog
+from reports.own_log.rows import LogRow, log_rows, share_of
+
+WIDE = 90
+"""Columns of a terminal that show when an error is largest."""
+FEW = 12
+"""Names that are listed of what is not judged."""
+
+
+def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
+    """Print a judged log."""
+    _failures(console, judged)
+    _late(console, judged)
+    rows = log_rows(judged)
+    console.print(_table(rows, console.width), "")
+    _rest(console, judged)
+    console.print(verdict_line(judged))
+    console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
+
+
+def _failures(console: Console, judged: JudgedLog) -> None:
+    """What is out of tolerance, rule by rule, and what explains it."""
+    if not judged.failures:
+        return
+    console.print(Text(f"OUT  {judged.log.source}, scene {judged.scene.name}", "bold red"))
+    for finding in judged.failures:
+        hanging(console, f"  {finding.rule} ", f"{RULES[finding.rule].title}: {finding.text}")
+    for cause in judged.causes:
+        if cause.name not in ADVICE:
+            hanging(console, "  cause: ", cause_text(cause.text, cause.correction), style="cyan")
+    if unexplained := _unexplained(judged):
+        hanging(console, "  cause: ", f"none that is known explains {few(unexplained, 6)}",
+                style="cyan")  # fmt: skip
+    console.print()
+
+
+ADVICE = ("advice",)
+"""Causes that are told of what is within its limits as well."""
+
+
+def _late(console: Console, judged: JudgedLog) -> None:
+    """What is worth knowing of a log that is within tolerance."""
+    if judged.failures:
+        return
+    for cause in judged.causes:
+        hanging(console, "note: ", cause_text(cause.text, cause.correction), style="yellow")
+    if judged.causes:
+        console.print()
+
+
+def cause_text(text: str, correction: Mapping[str, object]) -> str:
+    """A cause, and what to write in the map where the log is right in itself."""
+    if not correction:
+        return text
+    told = ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())
+    return f"{text}; if the log means it so, in its [[channel]] of the map: {told}"
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else f"{value}"
+
+
+def _unexplained(judged: JudgedLog) -> list[str]:
+    """Columns that are out of tolerance, and that no cause is known of."""
+    told = {column for cause in judged.causes for column in cause.columns}
+    out = (row for row in log_rows(judged) if row.verdict == "out")
+    return list(dict.fromkeys(c for row in out for c in row.columns if c not in told))
+
+
+def _table(rows: list[LogRow], width: int) -> Table:
+    """One row an error, those out of tolerance first."""
+    table = plain_table()
+    table.add_column("")
+    table.add_column("columns", overflow="fold", min_width=12)
+    table.add_column("read as", overflow="fold", min_width=16)
+    table.add_column("unit", no_wrap=True)
+    table.add_column("largest\nerror", justify="right", no_wrap=True)
+    table.add_column("of its\nscale", justify="right", no_wrap=True)
+    table.add_column("limit", justify="right", no_wrap=True)
+    table.add_column("taken", justify="right", no_wrap=True)
+    if width >= WIDE:
+        table.add_column("at t\n[s]", justify="right", no_wrap=True)
+    for row in sorted(rows, key=lambda row: row.verdict == "within"):
+        error = row.error
+        cells: list[Text | str] = [
+            Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red"),
+            ", ".join(row.columns) or "-",
+            row.what,
+            ", ".join(row.units) or error.unit,
+            f"{short(error.maximum)} {error.unit}",
+            f"{short(error.pure)} {share_of(error)}",
+            short(row.limit.number),
+            taken_text(row.taken),
+        ]
+        if width >= WIDE:
+            cells.append(f"{error.time_of_maximum_s:.4g}")
+        table.add_row(*cells)
+    return table
+
+
+def taken_text(taken: float) -> str:
+    """A part of a limit: 12%, x34."""
+    if not math.isfinite(taken):
+        return "nan"
+    return f"{taken:.0%}" if taken < 10 else f"x{short(taken)}" if taken >= 1e4 else f"x{taken:.0f}"
+
+
+def _rest(console: Console, judged: JudgedLog) -> None:
+    """The drive, what is not judged, columns that were not used, and notes."""
+    if fit := judged.fit:
+        hanging(console, "drive: ", fit_text(judged))
+    if judged.not_judged:
+        hanging(console, "not judged, as the log has none: ", few(judged.not_judged, FEW))
+    for column, reason in judged.log.unused[:FEW]:
+        hanging(console, f"not used: {escape(column)}: ", reason)
+    if (more := len(judged.log.unused) - FEW) > 0:
+        console.print(f"not used: {more} more columns", highlight=False)
+    for note in judged.notes:
+        hanging(console, "note: ", note, style="yellow")
+    if fit or judged.not_judged or judged.log.unused or judged.notes:
+        console.print()
+
+
+def fit_text(judged: JudgedLog) -> str:
+    """The fitted drive in words."""
+    fit = judged.fit
+    assert fit is not None
+    return (
+        f"fitted to {fit.by}: speed {fit.speed_rad_s:.9g} rad/s (within {short(fit.speed_doubt)}), "
+        f"start {math.degrees(fit.start_rad):.7g} deg (within "
+        f"{short(math.degrees(fit.start_doubt))}); one standard error each"
+    )
+
+
+def verdict_line(judged: JudgedLog) -> Text:
+    """The verdict in one line."""
+    rows = log_rows(judged)
+    samples = judged.log.time_s.size
+    what = f"{len(rows)} errors over {samples} samples of {judged.scene.name}"
+    if judged.failures:
+        out = sum(row.verdict == "out" for row in rows)
+        return Text(f"OUT OF TOLERANCE: {out} of {what}", "bold red")
+    return Text(f"WITHIN TOLERANCE: {what}", "bold green")
+
+
+def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
+    """What the numbers are, and versions."""
+    drives = {
+        "scene": "the scene's driver",
+        "fitted": "a driver fitted to the log",
+        "logged": "the logged angle of the driver (geometry alone)",
+    }
+    time_s = judged.log.time_s
+    step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
+    return [
+        f"Largest errors against the closed form moved by {drives[judged.drive]}; L longest link, "
+        "w driver's peak speed.",
+        f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
+        f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
