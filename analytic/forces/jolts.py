@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import reduce
 
 import numpy as np
 
@@ -32,7 +33,7 @@ def jolts(scene: Scene, motion: Motion) -> Array:
     A pure number: angles over the square of the driver's peak speed, places over the longest link
     too. Samples at which it is not finite (singular ones) are 0.
     """
-    largest = np.maximum.reduce(list(_pushes(scene, motion)))
+    largest = reduce(np.maximum, _pushes(scene, motion))
     half = 0.5 * largest / scene.driver.law.peak_speed_rad_s**2
     return np.where(np.isfinite(half), half, 0.0)
 
@@ -42,8 +43,10 @@ def _pushes(scene: Scene, motion: Motion) -> Iterator[Array]:
     for name, link in scene.links.items():
         yield np.abs(motion.links[name].alpha)
         for point, place in link.points.items():
-            push = np.hypot(*motion.points[point].acceleration.T)
-            yield (push + _turning(scene, motion, name, place)) / scene.longest_m
+            turning = _turning(scene, motion, name, place)
+            if point not in scene.ground:
+                turning += np.hypot(*motion.points[point].acceleration.T)
+            yield turning / scene.longest_m
     for slider in scene.sliders.values():
         push = np.abs(motion.sliders[slider.name].acceleration)
         for body, at in _sides(scene, motion, slider):

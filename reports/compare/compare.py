@@ -9,6 +9,7 @@ differenced in the same way.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -86,7 +87,7 @@ def compare(beside: Beside | None) -> Errors | None:
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
     jolt = jolts(scene, reference)
-    far = uneven(scene, reference, at.driver_rad)
+    far = uneven(scene, reference, at.driver_rad) if beside.of_engine else {}
     return Errors(
         rows=(
             *_whole(beside, at, "drive"),
@@ -252,9 +253,9 @@ def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:
 def curvature(scene: Scene, reference: Motion) -> float:
     """The largest pure acceleration of the reference, at least 1, where it is a number."""
     square = scene.driver.law.peak_speed_rad_s**2
-    turning = [link.alpha / square for link in reference.links.values()]
-    moving = [
+    turning = (link.alpha / square for link in reference.links.values())
+    moving = (
         point.acceleration / (scene.longest_m * square) for point in reference.points.values()
-    ]
-    sizes = np.concatenate([length(series) for series in turning + moving])
-    return float(np.max(sizes, where=np.isfinite(sizes), initial=1.0))
+    )
+    sizes = (length(series) for series in itertools.chain(turning, moving))
+    return max(float(np.max(each, where=np.isfinite(each), initial=1.0)) for each in sizes)

@@ -25,6 +25,9 @@ from sim.engine import Run
 
 EVEN = 1e-6
 """Steps that differ by less of themselves, as printed times do, are the same."""
+MANY = 200_000
+"""Samples beyond which the errors at the logged angle of the driver are left out: a second truth
+of that size takes as much memory as all else."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,7 @@ class AtCrank(Truth):
                 crank = np.interp(time_s, self.time_s, crank)
             _, omega, alpha = self.scene.driver.law.at(time_s)
             self._motions[instants] = solve_driven(
-                self.scene, crank, omega, alpha, time_s, bound=self.bound
+                self.scene, crank, omega, alpha, time_s, points=self.points, bound=self.bound
             )
         return self._motions[instants]
 
@@ -63,6 +66,10 @@ class LogBeside(Beside):
     geometry_alone: bool = False
 
     @property
+    def of_engine(self) -> bool:
+        return False
+
+    @property
     def settling(self) -> int:
         return super().settling if self.step_s else 0
 
@@ -74,7 +81,8 @@ class LogBeside(Beside):
 
     @property
     def has_crank(self) -> bool:
-        return not self.geometry_alone and bool(np.all(np.isfinite(self.crank)))
+        few = self.motion.time_s.size <= MANY
+        return few and not self.geometry_alone and bool(np.all(np.isfinite(self.crank)))
 
     @property
     def missing(self) -> tuple[str, ...]:

@@ -82,6 +82,8 @@ class Reading:
 class Log:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
+    ``stamp`` is the column that the instants stand in, and its unit.
+
     ``copies`` are readings of a point as further bodies have it, which the gap is taken of;
     ``gaps`` are those (T,) [m], by pin or slider, that the log itself tells. ``unused`` names
     columns that nothing was made of, with the reason.
@@ -91,6 +93,7 @@ class Log:
     scene: Scene
     time_s: Array
     readings: tuple[Reading, ...]
+    stamp: tuple[str, str] = ("", "")
     copies: tuple[Reading, ...] = ()
     gaps: Mapping[str, Array] = field(default_factory=dict)
     unused: tuple[tuple[str, str], ...] = ()

@@ -132,7 +132,11 @@ def read_columns(path: Path, layout: Layout | None = None) -> Columns:
         if ending == ".xlsx":
             return _sheet(str(path), raw, layout)
         text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS)
-        return _of_table(str(path), text.table, text.first)
+        del raw
+        columns = _of_table(str(path), text.table, text.first)
+        del text
+        pa.default_memory_pool().release_unused()
+        return columns
     except UnreadableError as error:
         raise CrankcheckError(f"log {path}: {error}") from None
 

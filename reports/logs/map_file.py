@@ -98,17 +98,18 @@ class Map(Table):
 def read_map(path: Path) -> Map:
     """Read a map. Raises CrankcheckError with every fault of the file."""
     try:
-        raw = tables(regular_text(path))
-        return Map.model_validate(raw)
+        map_ = Map.model_validate(tables(regular_text(path)))
     except UnreadableError as error:
         raise CrankcheckError(f"--map {path}: {error}") from None
     except ValidationError as error:
         faults = [_fault(each["loc"], each["type"], each["msg"], each["input"])
                   for each in error.errors()]  # fmt: skip
         raise CrankcheckError(listed(f"--map {path}", faults)) from None
+    _check_words(map_, f"--map {path}")
+    return map_
 
 
-def check_words(map_: Map, place: str) -> None:
+def _check_words(map_: Map, place: str) -> None:
     """Refuse units and kinds that there are not, and columns that are told twice.
 
     Raises CrankcheckError with every fault.
@@ -133,7 +134,7 @@ def check_words(map_: Map, place: str) -> None:
         raise CrankcheckError(listed(place, faults))
 
 
-def map_text(log: Log, time_column: str, time_unit: str) -> str:
+def map_text(log: Log) -> str:
     """The map of a log as its columns were understood, with what was not as remarks."""
     lines = [
         "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
@@ -142,8 +143,8 @@ def map_text(log: Log, time_column: str, time_unit: str) -> str:
         "# A reading is sign * (number + offset); ignore = true leaves a column out.",
         "",
         "[time]",
-        f"column = {_text(time_column)}",
-        f"unit = {_text(time_unit)}",
+        f"column = {_text(log.stamp[0])}",
+        f"unit = {_text(log.stamp[1])}",
     ]
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]

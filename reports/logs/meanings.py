@@ -79,6 +79,7 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
         scene=scene,
         time_s=base,
         readings=tuple(reader.reading(each, told.get(each.column)) for each in channels),
+        stamp=(main, _unit_of_time(main, map_)),
         copies=tuple(reader.reading(each, told.get(each.column)) for each in copies),
         gaps=_gaps(columns, gaps),
         unused=tuple(unused),
@@ -145,13 +146,6 @@ def _unit_of_time(column: str, map_: Map) -> str:
     """The unit of the times of all rows."""
     told = time_of(column)
     return map_.time.unit or (told[1] if told else si("time"))
-
-
-def time_column(columns: Columns, map_: Map | None = None) -> tuple[str, str]:
-    """The column of times and its unit. Raises CrankcheckError as `understood`."""
-    map_ = map_ or Map()
-    column = _times(columns, map_)["time"]
-    return column, _unit_of_time(column, map_)
 
 
 def _stamp(columns: Columns, column: str) -> Array:

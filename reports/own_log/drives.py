@@ -58,8 +58,9 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     CrankcheckError
         A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
     """
+    moving = moving_points(log.scene)
     if drive == "scene":
-        return Truth(log.scene), None
+        return Truth(log.scene, points=moving), None
     crank = crank_reading(log)
     if drive == "logged":
         if crank is None or not np.array_equal(crank.instants, log.time_s):
@@ -67,14 +68,21 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
                 f"--drive logged: {log.source} has no angle of {log.scene.driver.link} at the "
                 f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
             )
-        return AtCrank(log.scene, time_s=log.time_s, crank_rad=_continuous(crank)), None
+        angle = _continuous(crank)
+        return AtCrank(log.scene, points=moving, time_s=log.time_s, crank_rad=angle), None
     if not isinstance(log.scene.driver.law, ConstantSpeed):
         raise CrankcheckError(
             f"--drive fitted: the driver of {log.scene.name} has no constant speed that could be "
             "fitted; use --drive scene, or --drive logged for the geometry alone"
         )
     fit = _of_crank(log, crank) if crank else _of_places(log)
-    return Truth(moved(log.scene, fit.speed_rad_s, fit.start_rad)), fit
+    return Truth(moved(log.scene, fit.speed_rad_s, fit.start_rad), points=moving), fit
+
+
+def moving_points(scene: Scene) -> tuple[str, ...]:
+    """The points that are compared: those that move."""
+    every = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
+    return tuple(name for name in dict.fromkeys(every) if name not in scene.ground)
 
 
 def crank_reading(log: Log) -> Reading | None:

@@ -12,8 +12,8 @@ from models.files import load_scene
 from reports.cli.own_log import JudgeRequest
 from reports.judge.tolerance import check_names, parse
 from reports.logs.columns import read_columns
-from reports.logs.map_file import Map, check_words, map_text, read_map
-from reports.logs.meanings import time_column, understood
+from reports.logs.map_file import Map, map_text, read_map
+from reports.logs.meanings import understood
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
@@ -35,11 +35,9 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     scene = load_scene(request.scene)
     check_names(scene)
     map_ = read_map(request.map) if request.map else Map()
-    check_words(map_, f"--map {request.map}")
-    columns = read_columns(request.log, map_.layout)
-    log = understood(columns, scene, map_)
+    log = understood(read_columns(request.log, map_.layout), scene, map_)
     if request.write_map is not None:
-        write(request.write_map, map_text(log, *time_column(columns, map_)))
+        write(request.write_map, map_text(log))
         told = harmless(f"{request.write_map}: what {request.log} says, as it was understood")
         console.print(told, highlight=False, markup=False)
         return 0
