@@ -279,7 +279,7 @@ def _slots(
             )
         first[key] = each
         if each.kind.body_kind == "point" and each.of in scene.ground:
-            spare.append((each.column, f"{each.of} is a point of the ground, which does not move"))
+            spare.append((each.column, "it is of a point of the ground, which does not move"))
             continue
         before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
         if before is None:

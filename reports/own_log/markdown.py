@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from models.errors import few
 from reports.judge.rules import RULES
 from reports.output.markdown import folded, plain, table
-from reports.output.numbers import short
+from reports.output.numbers import error_text, short
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import log_rows, share_of
-from reports.own_log.table import cause_text, fit_text, footer, taken_text, verdict_line
+from reports.own_log.rows import share_of
+from reports.own_log.table import (
+    cause_text,
+    fit_text,
+    footer,
+    missing_text,
+    rest_text,
+    shown_rows,
+    taken_text,
+    unused_lines,
+    verdict_line,
+)
 
 ROOM = 20_000
 HEADS = ("", "columns", "read as", "largest error:", "of its scale:", "limit:", "taken:")
@@ -33,18 +42,19 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
             "ok" if row.verdict == "within" else "OUT",
             ", ".join(row.columns) or "-",
             row.what,
-            f"{short(row.error.maximum)} {row.error.unit}",
-            f"{short(row.error.pure)} {share_of(row.error)}",
+            row.size,
+            f"{error_text(row.error.pure)} {share_of(row.error)}",
             short(row.limit.number),
             taken_text(row.taken),
         )
-        for row in sorted(log_rows(judged), key=lambda row: row.verdict == "within")
+        for row in sorted(shown_rows(judged), key=lambda row: row.verdict == "within")
     ]
     parts.append(table(HEADS, cells, ROOM, "errors"))
     told = [f"drive: {fit_text(judged)}"] if judged.fit else []
     if judged.not_judged:
-        told.append(f"not judged, as the log has none: {few(judged.not_judged, 40)}")
-    told += [f"not used: {column}: {reason}" for column, reason in judged.log.unused[:40]]
+        told.append(f"not judged: {missing_text(judged)}, which the log has not")
+    told += filter(None, [rest_text(judged)])
+    told += [f"not used: {line}" for line in unused_lines(judged)]
     told += judged.notes
     if told:
         parts.append(folded("more", "\n".join(f"- {plain(each)}" for each in told)))

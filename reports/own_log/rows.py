@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from reports.compare.errors import Error
 from reports.judge.tolerance import Limit, in_passage
 from reports.logs.beside_truth import readings_of
+from reports.logs.channel import Reading
+from reports.logs.units import UNITS
+from reports.output.numbers import error_text
 from reports.own_log.judged import JudgedLog
 from reports.quantities import QUANTITIES
 
@@ -18,13 +22,25 @@ KINDS = ("total", "start", "passage")
 
 @dataclass(frozen=True)
 class LogRow:
-    """One error of a body: ``columns`` it was read from, and its ``limit`` [pure]."""
+    """One error of a body: ``columns`` it was read from, and its ``limit`` [pure]. ``unit`` is that
+    of the columns, of which one is ``per_unit`` in SI."""
 
     columns: tuple[str, ...]
-    units: tuple[str, ...]
     what: str
     error: Error
     limit: Limit
+    unit: str
+    per_unit: float
+
+    @property
+    def size(self) -> str:
+        """The largest error in the user's own unit."""
+        return f"{error_text(self.error.maximum / self.per_unit)} {self.unit}"
+
+    @property
+    def is_aside(self) -> bool:
+        """Whether it is not of a whole column as it was logged."""
+        return self.error.source != "reported" or self.error.kind != "total"
 
     @property
     def taken(self) -> float:
@@ -56,16 +72,19 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
             if error.source == "reported"
             and (each.channel.kind.body_kind == error.body_kind or error.quantity == "drive")
         ]
-        rows.append(
-            LogRow(
-                columns=tuple(each.channel.column for each in read),
-                units=tuple(dict.fromkeys(each.channel.unit for each in read)),
-                what=_what(error),
-                error=error,
-                limit=limit,
-            )
-        )
+        columns = tuple(each.channel.column for each in read)
+        rows.append(LogRow(columns, _what(error), error, limit, *_unit(read, error.unit)))
     return rows
+
+
+def _unit(read: Sequence[Reading], otherwise: str) -> tuple[str, float]:
+    """The unit of some columns, and what one is in SI; SI where they have several."""
+    channels = [each.channel for each in read]
+    units = {each.unit for each in channels}
+    if len(units) != 1:
+        return otherwise, 1.0
+    first = channels[0]
+    return first.unit, UNITS[first.kind.dimension][first.unit]
 
 
 def _what(error: Error) -> str:

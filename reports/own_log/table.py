@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rich.console import Console
 from rich.markup import escape
@@ -13,7 +13,7 @@ from rich.text import Text
 from models.errors import few
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
-from reports.output.numbers import short
+from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import LogRow, log_rows, share_of
 
@@ -27,8 +27,7 @@ def show(console: Console, judged: JudgedLog, facts: Mapping[str, str]) -> None:
     """Print a judged log."""
     _failures(console, judged)
     _late(console, judged)
-    rows = log_rows(judged)
-    console.print(_table(rows, console.width), "")
+    console.print(_table(shown_rows(judged), console.width), "")
     _rest(console, judged)
     console.print(verdict_line(judged))
     console.print(escape("\n".join(footer(judged, facts))), style="dim", highlight=False)
@@ -85,13 +84,12 @@ def _unexplained(judged: JudgedLog) -> list[str]:
     return list(dict.fromkeys(c for row in out for c in row.columns if c not in told))
 
 
-def _table(rows: list[LogRow], width: int) -> Table:
+def _table(rows: Sequence[LogRow], width: int) -> Table:
     """One row an error, those out of tolerance first."""
     table = plain_table()
     table.add_column("")
     table.add_column("columns", overflow="fold", min_width=12)
     table.add_column("read as", overflow="fold", min_width=16)
-    table.add_column("unit", no_wrap=True)
     table.add_column("largest\nerror", justify="right", no_wrap=True)
     table.add_column("of its\nscale", justify="right", no_wrap=True)
     table.add_column("limit", justify="right", no_wrap=True)
@@ -102,11 +100,10 @@ def _table(rows: list[LogRow], width: int) -> Table:
         error = row.error
         cells: list[Text | str] = [
             Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red"),
-            ", ".join(row.columns) or "-",
-            row.what,
-            ", ".join(row.units) or error.unit,
-            f"{short(error.maximum)} {error.unit}",
-            f"{short(error.pure)} {share_of(error)}",
+            Text(", ".join(row.columns) or "-"),
+            Text(row.what),
+            row.size,
+            f"{error_text(error.pure)} {share_of(error)}",
             short(row.limit.number),
             taken_text(row.taken),
         ]
@@ -114,6 +111,24 @@ def _table(rows: list[LogRow], width: int) -> Table:
             cells.append(f"{error.time_of_maximum_s:.4g}")
         table.add_row(*cells)
     return table
+
+
+def shown_rows(judged: JudgedLog) -> list[LogRow]:
+    """The rows of a table: all columns, and of the rest what is out of tolerance."""
+    return [row for row in log_rows(judged) if row.verdict == "out" or not row.is_aside]
+
+
+def rest_text(judged: JudgedLog) -> str:
+    """What was judged and is not in the table."""
+    left = [row for row in log_rows(judged) if row.verdict == "within" and row.is_aside]
+    if not left:
+        return ""
+    worst = max(left, key=lambda row: row.taken)
+    count_ = count(len(left), "more error")
+    return (
+        f"{count_} within, of rates at the start, or differenced: {worst.what}, takes most, "
+        f"{taken_text(worst.taken)}"
+    )
 
 
 def taken_text(taken: float) -> str:
@@ -125,18 +140,34 @@ def taken_text(taken: float) -> str:
 
 def _rest(console: Console, judged: JudgedLog) -> None:
     """The drive, what is not judged, columns that were not used, and notes."""
-    if fit := judged.fit:
+    if judged.fit:
         hanging(console, "drive: ", fit_text(judged))
+    if text := rest_text(judged):
+        hanging(console, "", text)
     if judged.not_judged:
-        hanging(console, "not judged, as the log has none: ", few(judged.not_judged, FEW))
-    for column, reason in judged.log.unused[:FEW]:
-        hanging(console, f"not used: {escape(column)}: ", reason)
-    if (more := len(judged.log.unused) - FEW) > 0:
-        console.print(f"not used: {more} more columns", highlight=False)
+        hanging(console, "not judged: ", f"{missing_text(judged)}, which the log has not")
+    for line in unused_lines(judged):
+        hanging(console, "not used: ", line)
     for note in judged.notes:
         hanging(console, "note: ", note, style="yellow")
-    if fit or judged.not_judged or judged.log.unused or judged.notes:
-        console.print()
+    console.print()
+
+
+def unused_lines(judged: JudgedLog) -> list[str]:
+    """The columns that nothing was made of, a line for each reason."""
+    reasons: dict[str, list[str]] = {}
+    for column, reason in judged.log.unused:
+        reasons.setdefault(reason, []).append(column)
+    return [f"{few(columns, FEW)}: {reason}" for reason, columns in reasons.items()]
+
+
+def missing_text(judged: JudgedLog) -> str:
+    """What of the scene is not judged, quantity by quantity."""
+    bodies: dict[str, list[str]] = {}
+    for each in judged.not_judged:
+        quantity, _, body = each.partition(" of ")
+        bodies.setdefault("angle" if quantity == "drive" else quantity, []).append(body)
+    return "; ".join(f"{quantity} of {few(names, FEW)}" for quantity, names in bodies.items())
 
 
 def fit_text(judged: JudgedLog) -> str:
@@ -154,7 +185,7 @@ def verdict_line(judged: JudgedLog) -> Text:
     """The verdict in one line."""
     rows = log_rows(judged)
     samples = judged.log.time_s.size
-    what = f"{len(rows)} errors over {samples} samples of {judged.scene.name}"
+    what = f"{count(len(rows), 'error')} over {samples} samples of {judged.scene.name}"
     if judged.failures:
         out = sum(row.verdict == "out" for row in rows)
         return Text(f"OUT OF TOLERANCE: {out} of {what}", "bold red")
