@@ -161,31 +161,19 @@ def _meaning(
     if told and told.ignore:
         return "the map leaves it out"
     if told is None or told.of is None or told.kind is None:
-        if told is not None and told.unit is not None:  # which takes the place of that in the name
-            column_name = _bare(column, told.unit)
-        else:
-            column_name = column
-        found = meaning(column_name, named)
-        if isinstance(found, str) and (told is None or told.of is None):
-            return found if told is None else _missing(column, told, found)
+        found = meaning(column, named, told.unit or "" if told else "")
         if isinstance(found, str):
+            if told is None:
+                return found
+            if told.of is None or told.kind is None:
+                raise CrankcheckError(
+                    f"[[channel]] {column!r}: add of, kind and unit, as the name does not say "
+                    f"them: {found}"
+                )
             found = Meaning("", None, False, "")
     else:
         found = Meaning(told.of, None, told.kind == "gap", "")
     return _channel(column, told, found, named, times)
-
-
-def _bare(column: str, unit: str) -> str:
-    """A name in which the map's unit is not contradicted: without the one in brackets."""
-    head = column.rsplit("[", 1)[0].rsplit("(", 1)[0]
-    return f"{head.strip() or column} [{unit}]"
-
-
-def _missing(column: str, told: ChannelTable, why: str) -> str:
-    raise CrankcheckError(
-        f"[[channel]] {column!r}: no `of`, and the name does not say it ({why}); add of, kind and "
-        "unit"
-    )
 
 
 def _channel(

@@ -107,14 +107,15 @@ def time_of(column: str) -> tuple[str, str] | None:
     return "time" if name in TIMES else name, _one_unit(column, unit) or si("time")
 
 
-def meaning(column: str, named: Named) -> Meaning | str:
-    """What a column's name says, or why nothing is made of it.
+def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
+    """What a column's name says, or why nothing is made of it. A unit that is ``told`` takes the
+    place of that in the name.
 
     Raises CrankcheckError for units that contradict each other, or what they are units of.
     """
     bodies, words = named.found(_without_unit(column)[0])
     unit, words = _trailing_unit(words)
-    unit = _one_unit(column, unit)
+    unit = told or _one_unit(column, unit)
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
@@ -199,7 +200,7 @@ def _kind(
         if not words:
             chosen = [k for k in KINDS.values() if k.body_kind == "link"]
             chosen = [k for k in chosen if k.dimension == (dimension or "angle")]
-        return chosen[0] if chosen else _unknown(words, "link")
+        return chosen[0] if chosen else _unknown(words, "link", unit)
     axis = None if slider else _axis(words)
     if "point" in kinds and axis:
         order, at = axis
@@ -211,10 +212,10 @@ def _kind(
         if not words:
             chosen = [k for k in KINDS.values() if k.body_kind == "slider"]
             chosen = [k for k in chosen if k.dimension == (dimension or "length")]
-        return chosen[0] if chosen else _unknown(words, "slider")
+        return chosen[0] if chosen else _unknown(words, "slider", unit)
     if list(words) in (["v"], ["a"]):
         return "it is the length of a vector, whose components are judged"
-    return _unknown(words, "point")
+    return _unknown(words, "point", unit)
 
 
 def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
@@ -244,12 +245,14 @@ def _axis(words: Sequence[str]) -> tuple[int, int] | None:
     return order, axis
 
 
-def _unknown(words: Sequence[str], kind: str) -> str:
+def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
     """Why nothing is made of a column of a body."""
     told: Mapping[str, str] = {
         "link": "angle, angular velocity or angular acceleration",
         "point": "x, y, vx, vy, ax or ay",
         "slider": "displacement, speed or acceleration",
     }
-    found = f"{' '.join(words)!r} is" if words else "it tells"
-    return f"{cut(found)} no kind of reading of a {kind}: {told[kind]}"
+    if words:
+        return f"{cut(' '.join(words))!r} is no kind of reading of a {kind}: {told[kind]}"
+    of = f"{unit} is a unit of {DIMENSION[unit]}, and" if unit else "it tells no kind:"
+    return f"{of} a {kind} has {told[kind]}"

@@ -1,0 +1,126 @@
+"""Files of columns: separators, headers and units are found, and what can not be read is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from models.errors import CrankcheckError
+from reports.logs import columns as module
+from reports.logs.columns import columns_of, read_columns
+from reports.logs.text import Layout
+
+ROWS = [(0.0, 1.5), (0.1, -2.25), (0.2, 3e-7)]
+
+
+def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
+    path = tmp_path / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
+        "t;a b\r\n0;1.5\r\n0.1;-2.25\r\n0.2;3e-7\r\n",
+        "t\ta b\n0\t1.5\n0.1\t-2.25\n0.2\t3e-7",
+        "# made by a solver, today\n# 2 columns\nt,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
+        '\ufeff"t","a b"\n0,1.5\n0.1,-2.25\n\n0.2,3e-7\n',
+    ],
+)
+def test_the_separator_is_found(tmp_path: Path, text: str) -> None:
+    found = read_columns(written(tmp_path, text))
+    assert list(found.raw) == ["t", "a b"]
+    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+
+
+def test_columns_that_spaces_line_up_are_read(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "  t     ab \n 0.0   1.5\n 0.1  -2.25\n", "log.txt"))
+    assert found.numbers("ab").tolist() == [1.5, -2.25]
+
+
+def test_a_row_of_units_goes_into_the_names(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t,rocker,x\n[ms],deg,-\n0,1,2\n1,1,2\n"))
+    assert list(found.raw) == ["t [ms]", "rocker [deg]", "x"]
+
+
+def test_decimal_commas_are_read_where_the_map_says_so(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t;a\n0,5;1,25\n"), Layout(decimal=","))
+    assert found.numbers("a").tolist() == [1.25]
+
+
+@pytest.mark.parametrize("ending", ["parquet", "xlsx"])
+def test_other_kinds_of_files_hold_the_same(tmp_path: Path, ending: str) -> None:
+    frame = pd.DataFrame(ROWS, columns=["t", "a b"])
+    path = tmp_path / f"log.{ending}"
+    frame.to_parquet(path) if ending == "parquet" else frame.to_excel(path, index=False)
+    found = read_columns(path)
+    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+
+
+def test_every_digit_is_kept(tmp_path: Path) -> None:
+    values = np.random.default_rng(1).normal(size=500) * 10.0 ** np.arange(-250, 250)
+    text = "t,a\n" + "".join(f"{n},{each!r}\n" for n, each in enumerate(values.tolist()))
+    assert np.array_equal(read_columns(written(tmp_path, text)).numbers("a"), values)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "empty"),
+        ("# a remark\n", "empty but for remarks"),
+        ("t,a\n", "a header and no rows"),
+        ("t,a\ns,deg\n", "a header and units, and no rows"),
+        ("0,1\n1,2\n", "line 1 holds numbers and no names"),
+        ("t,,a\n0,1,2\n", "column 2 has no name"),
+        ("t,a,a\n0,1,2\n", "two columns are called 'a'"),
+        ("t,a\n0,1,2\n", "line 2 has 3 fields, the header 2"),
+        ("t,a\n0,1\n1\n", "row 3: 1 fields, the header 2"),
+        ("t;a\n0,5;1,25\n", "row 2, column 't': found '0,5', a decimal comma"),
+        ("t,a,b\n0,5,1,25,3,5\n", "decimal commas between commas"),
+        (b"t,a\n0,1\x00\n", "null bytes"),
+        ("t,a\n0,1\n".encode("utf-16"), "UTF-16"),
+        ("t,ä\n0,1\n".encode("latin-1"), "not UTF-8"),
+        ("t,a\r0,1\r", "lines end in"),
+    ],
+)
+def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        read_columns(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"),
+    [
+        ("", "row 3, column 'a': the cell is empty"),
+        ("NaN", "row 3, column 'a': found nan"),
+        ("inf", "row 3, column 'a': found inf"),
+        ("n/a", "row 3, column 'a': found 'n/a', no number"),
+        ("1;5", "row 3, column 'a': found '1;5', no number"),
+    ],
+)
+def test_a_cell_that_is_no_number_is_told_by_row_and_column(
+    tmp_path: Path, cell: str, words: str
+) -> None:
+    found = read_columns(written(tmp_path, f"t,a\n0,1\n1,{cell}\n2,1\n"))
+    assert found.numbers("t").tolist() == [0, 1, 2]
+    with pytest.raises(CrankcheckError, match=words):
+        found.numbers("a")
+
+
+def test_more_rows_than_are_read_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "MOST_ROWS", 2)
+    with pytest.raises(CrankcheckError, match="3 rows; at most 2 are read"):
+        read_columns(written(tmp_path, "t,a\n0,1\n1,1\n2,1\n"))
+
+
+def test_a_frame_is_a_log_too() -> None:
+    found = columns_of(pd.DataFrame({"t": [0, 1], "a": [1.5, None]}))
+    with pytest.raises(CrankcheckError, match="the frame, row 1, column 'a': found nan"):
+        found.numbers("a")

@@ -1,0 +1,170 @@
+"""Columns become readings, by their names and by a map."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.compare.beside import Truth
+from reports.logs.channel import Log
+from reports.logs.columns import columns_of
+from reports.logs.map_file import Map, map_text, read_map
+from reports.logs.meanings import understood
+
+SCENE = load_scene("fourbar-lecture-1")
+TIME_S = np.linspace(0.0, 1.2, 400)
+MOTION = solve(SCENE, TIME_S)
+CRANK, COUPLER, ROCKER = (MOTION.links[name] for name in ("crank", "coupler", "rocker"))
+TRUTH = Truth(SCENE)
+
+
+def log_of(columns: dict[str, object], **told: object) -> Log:
+    return understood(columns_of(pd.DataFrame(columns)), SCENE, Map.model_validate(told))
+
+
+def worst(log: Log) -> float:
+    return max(float(np.max(np.abs(each.error(TRUTH)))) for each in log.readings)
+
+
+def test_degrees_millimetres_and_milliseconds_are_read() -> None:
+    log = log_of({
+        "t [ms]": 1e3 * TIME_S,
+        "rocker_deg": np.degrees(ROCKER.theta),
+        "C.x_mm": 1e3 * MOTION.points["C"].position[:, 0],
+        "crank [rpm]": CRANK.omega * 60 / (2 * np.pi),
+    })  # fmt: skip
+    assert [each.channel.column for each in log.readings] == ["rocker_deg", "C.x_mm", "crank [rpm]"]
+    assert worst(log) < 1e-12
+
+
+@pytest.mark.parametrize("lowest", [-180.0, 0.0])
+def test_a_wrapped_angle_is_seen_to_be_one(lowest: float) -> None:
+    log = log_of({
+        "t": TIME_S, "crank_deg": (np.degrees(CRANK.theta) - lowest) % 360 + lowest
+    })  # fmt: skip
+    assert log.readings[0].channel.wrapped
+    assert worst(log) < 1e-12
+
+
+def test_a_lost_turn_of_an_angle_that_is_not_wrapped_is_an_error() -> None:
+    lost = CRANK.theta - 2 * np.pi * (TIME_S > 0.9)
+    log = log_of({"t": TIME_S, "crank": lost})
+    assert not log.readings[0].channel.wrapped
+    assert worst(log) == pytest.approx(2 * np.pi)
+
+
+def test_an_angle_relative_to_another_link_is_compared_as_such() -> None:
+    log = log_of({"t": TIME_S, "rocker_rel_coupler_rad": ROCKER.theta - COUPLER.theta})
+    assert worst(log) < 1e-12
+
+
+def test_a_map_says_what_names_do_not() -> None:
+    log = log_of(
+        {"t": TIME_S, "s3": -np.degrees(ROCKER.theta - COUPLER.theta) - 5.0, "junk": ["x"] * 400},
+        channel=[
+            {"column": "s3", "of": "rocker", "kind": "angle", "unit": "deg", "sign": -1,
+             "offset": 5.0, "relative_to": "coupler"},
+            {"column": "junk", "ignore": True},
+        ],
+    )  # fmt: skip
+    assert worst(log) < 1e-12
+    assert log.unused == (("junk", "the map leaves it out"),)
+
+
+def test_a_delay_moves_the_instants() -> None:
+    late = solve(SCENE, TIME_S + 0.002).links["rocker"].omega
+    told = [{"column": "rocker_rad_s", "delay_s": 0.002}]
+    log = log_of({"t": TIME_S, "rocker_rad_s": late}, channel=told)
+    assert worst(log) < 1e-9
+
+
+def test_velocities_with_times_of_their_own_belong_there() -> None:
+    late = solve(SCENE, TIME_S + 0.002).links["rocker"].omega
+    log = log_of({"time_s": TIME_S, "velocity_time_s": TIME_S + 0.002, "rocker_rad_s": late})
+    assert worst(log) < 1e-9
+
+
+def test_two_copies_of_a_pin_are_kept_for_their_gap() -> None:
+    x, y = MOTION.points["C"].position.T
+    log = log_of({
+        "t": TIME_S, "coupler.C.x": x, "coupler.C.y": y, "rocker.C.x": x + 3e-6, "rocker.C.y": y
+    })  # fmt: skip
+    assert [each.channel.column for each in log.copies] == ["rocker.C.x", "rocker.C.y"]
+
+
+def test_the_map_that_is_written_is_the_log_that_was_read(tmp_path: Path) -> None:
+    columns = {
+        "t [ms]": 1e3 * TIME_S,
+        'odd "name" \\ of crank': CRANK.theta % (2 * np.pi),
+        "rocker_rel_coupler_deg": np.degrees(ROCKER.theta - COUPLER.theta),
+        "temperature": TIME_S,
+    }
+    told = [{"column": 'odd "name" \\ of crank', "of": "crank", "kind": "angle", "unit": "rad",
+             "delay_s": 1e-4}]  # fmt: skip
+    log = log_of(columns, channel=told)
+    (tmp_path / "map.toml").write_text(map_text(log), encoding="utf-8")
+    again = understood(columns_of(pd.DataFrame(columns)), SCENE, read_map(tmp_path / "map.toml"))
+    assert [each.channel for each in again.readings] == [each.channel for each in log.readings]
+    assert np.array_equal(again.time_s, log.time_s)
+
+
+@pytest.mark.parametrize(
+    ("columns", "told", "words"),
+    [
+        ({"a": TIME_S, "rocker": TIME_S}, {}, "no column of times; found a, rocker"),
+        ({"t": TIME_S, "time_s": TIME_S, "rocker": TIME_S}, {}, "two columns of times"),
+        ({"t": -TIME_S, "rocker": TIME_S}, {}, "row 1, column 't': time goes back"),
+        ({"t": TIME_S * 0, "rocker": TIME_S}, {}, "time stands still"),
+        ({"t": np.delete(np.arange(401.0), 77), "rocker": TIME_S}, {}, "a gap of 2 s .* 1 of them"),
+        ({"t": TIME_S[:1], "rocker": TIME_S[:1]}, {}, "1 row; a motion has at least 2"),
+        ({"t": TIME_S, "piston": TIME_S}, {}, "no column is of scene fourbar-lecture-1"),
+        ({"t": TIME_S, "rocker_deg": TIME_S, "rocker_rad": TIME_S}, {}, "two columns for one"),
+        ({"t": TIME_S, "rocker": TIME_S}, {"time": {"column": "x"}}, "'x' is not in"),
+        ({"t": TIME_S, "rocker": TIME_S}, {"channel": [{"column": "roker"}]}, "mean rocker?"),
+        ({"t": TIME_S, "a": TIME_S}, {"channel": [{"column": "a"}]}, "add of, kind and unit"),
+        ({"t": TIME_S, "a": TIME_S}, {"channel": [{"column": "a", "of": "roker", "kind": "angle"}]},
+         "'roker' is not in scene .* did you mean rocker?"),
+        ({"t": TIME_S, "a": TIME_S}, {"channel": [{"column": "a", "of": "C", "kind": "angle"}]},
+         "'angle' is no kind of reading of point C; use x, y"),
+        ({"t": TIME_S, "rocker": TIME_S}, {"channel": [{"column": "rocker", "unit": "mm"}]},
+         "mm is a unit of length, and a link has angle"),
+        ({"t": TIME_S, "rocker": TIME_S},
+         {"channel": [{"column": "rocker", "relative_to": "rocker"}]}, "relative to another link"),
+    ],
+)  # fmt: skip
+def test_what_can_not_be_understood_is_told(
+    columns: dict[str, object], told: dict[str, object], words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        log_of(columns, **told)
+
+
+def test_a_hole_that_is_meant_is_no_fault() -> None:
+    time_s = np.delete(np.arange(401) / 400, 77)
+    log = log_of({"t": time_s, "rocker": time_s}, file={"holes": "meant"})
+    assert log.time_s.size == 400
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[time]\nunit = 'sec'", "unit: 'sec' is no unit of time"),
+        ("[[channel]]\ncolumn = 'a'\nunit = 'degs'", "'degs' is unknown; did you mean deg"),
+        ("[[channel]]\ncolumn = 'a'\nkind = 'angel'", "'angel' is unknown; did you mean angle"),
+        ("[[channel]]\ncolumn = 'a'\nsigns = 1", "channel.1.signs: unknown key; did you mean sign"),
+        ("[[channel]]\nof = 'a'", "channel.1.column: missing"),
+        ("[[channel]]\ncolumn = 'a'\n[[channel]]\ncolumn = 'a'", "told twice"),
+        ("[file]\ndecimal = '!'", "file.decimal: found '!'"),
+        ("x", "not valid TOML"),
+    ],
+)
+def test_a_map_with_faults_is_refused(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "map.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(CrankcheckError, match=words):
+        read_map(tmp_path / "map.toml")

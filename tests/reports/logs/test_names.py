@@ -1,0 +1,115 @@
+"""What the names of columns say, as people write them."""
+
+from __future__ import annotations
+
+import pytest
+
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.logs.names import Meaning, Named, meaning, time_of
+
+FOURBAR = Named(load_scene("fourbar-lecture-1"))
+SLIDER_CRANK = Named(load_scene("slider-crank-central"))
+
+
+@pytest.mark.parametrize(
+    ("column", "body", "kind", "unit"),
+    [
+        ("rocker.theta_rad", "rocker", "angle", "rad"),
+        ("rocker_theta_rad", "rocker", "angle", "rad"),
+        ("rocker_deg", "rocker", "angle", "deg"),
+        ("rocker angle [deg]", "rocker", "angle", "deg"),
+        ("Rocker (°)", "rocker", "angle", "deg"),
+        ("theta_rocker", "rocker", "angle", "rad"),
+        ("rocker", "rocker", "angle", "rad"),
+        ("rocker.omega_rad_s", "rocker", "angular velocity", "rad/s"),
+        ("omega(rocker)", "rocker", "angular velocity", "rad/s"),
+        ("Rocker Velocity [rpm]", "rocker", "angular velocity", "rpm"),
+        ("rocker angular velocity (deg/s)", "rocker", "angular velocity", "deg/s"),
+        ("rocker_rad_s", "rocker", "angular velocity", "rad/s"),
+        ("rocker_alpha_rad_s2", "rocker", "angular acceleration", "rad/s^2"),
+        ("rocker acceleration [rad/s²]", "rocker", "angular acceleration", "rad/s^2"),
+        ("C.x_mm", "C", "x", "mm"),
+        ("C pos y [in]", "C", "y", "in"),
+        ("C.vx_m_s", "C", "vx", "m/s"),
+        ("C x velocity [mm/s]", "C", "vx", "mm/s"),
+        ("C_ay_m_s2", "C", "ay", "m/s^2"),
+        ("driver_deg", "crank", "angle", "deg"),
+    ],
+)
+def test_a_name_tells_body_kind_and_unit(column: str, body: str, kind: str, unit: str) -> None:
+    found = meaning(column, FOURBAR)
+    assert isinstance(found, Meaning)
+    assert found.kind is not None
+    assert (found.of, found.kind.name, found.unit) == (body, kind, unit)
+
+
+@pytest.mark.parametrize(
+    ("column", "kind"),
+    [
+        ("C_slider_displacement_m", "displacement"),
+        ("C_mm", "displacement"),
+        ("C.s", "displacement"),
+        ("C stroke [mm]", "displacement"),
+        ("C.speed_mm_s", "speed"),
+        ("C_slider_acceleration_m_s2", "acceleration"),
+        ("C_x_m", "x"),
+    ],
+)
+def test_a_slider_and_its_point_of_the_same_name_are_told_apart(column: str, kind: str) -> None:
+    found = meaning(column, SLIDER_CRANK)
+    assert isinstance(found, Meaning)
+    assert found.kind is not None
+    assert found.kind.name == kind
+
+
+def test_a_joint_s_angle_names_the_link_that_it_is_relative_to() -> None:
+    found = meaning("rocker_rel_coupler_deg", FOURBAR)
+    assert isinstance(found, Meaning)
+    assert (found.of, found.relative_to) == ("rocker", "coupler")
+
+
+def test_a_copy_of_a_pin_names_the_body_that_has_it() -> None:
+    found = meaning("coupler.C.x_m", FOURBAR)
+    assert isinstance(found, Meaning)
+    assert (found.of, found.on) == ("C", "coupler")
+
+
+def test_a_gap_is_a_length() -> None:
+    found = meaning("C_gap_mm", FOURBAR)
+    assert isinstance(found, Meaning)
+    assert (found.gap, found.of, found.unit) == (True, "C", "mm")
+
+
+@pytest.mark.parametrize(
+    "column", ["temperature", "C_deg", "C_v_m_s", "rocker_deg_filtered", "a", "coupler_rocker_deg"]
+)
+def test_nothing_is_made_of_what_a_name_does_not_say(column: str) -> None:
+    assert isinstance(meaning(column, FOURBAR), str)
+
+
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [
+        ("rocker_deg [rad]", "deg and rad"),
+        ("rocker_omega_rad", "rad is a unit of angle"),
+        ("C.x_deg", "deg is a unit of angle"),
+        ("C_gap_rad", "rad is a unit of angle"),
+    ],
+)
+def test_units_that_contradict_are_refused(column: str, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        meaning(column, FOURBAR)
+
+
+@pytest.mark.parametrize(
+    ("column", "unit"),
+    [("time_s", "s"), ("time_ms", "ms"), ("t", "s"), ("t [ms]", "ms"), ("Time (sec)", "s")],
+)
+def test_a_column_of_times_has_its_unit(column: str, unit: str) -> None:
+    assert time_of(column) == ("time", unit)
+
+
+def test_velocities_may_have_times_of_their_own() -> None:
+    assert time_of("velocity_time_s") == ("velocity time", "s")
+    assert time_of("rocker_deg") is None
