@@ -23,7 +23,7 @@ What it does not say of a column is taken from the column's name.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -98,14 +98,22 @@ class Map(Table):
 def read_map(path: Path) -> Map:
     """Read a map. Raises CrankcheckError with every fault of the file."""
     try:
-        map_ = Map.model_validate(tables(regular_text(path)))
+        raw = tables(regular_text(path))
     except UnreadableError as error:
         raise CrankcheckError(f"--map {path}: {error}") from None
+    return map_of(raw, f"--map {path}")
+
+
+def map_of(raw: Mapping[str, object], place: str) -> Map:
+    """A map of such tables; ``place`` names them in messages. Raises CrankcheckError with every
+    fault."""
+    try:
+        map_ = Map.model_validate(raw)
     except ValidationError as error:
         faults = [_fault(each["loc"], each["type"], each["msg"], each["input"])
                   for each in error.errors()]  # fmt: skip
-        raise CrankcheckError(listed(f"--map {path}", faults)) from None
-    _check_words(map_, f"--map {path}")
+        raise CrankcheckError(listed(place, faults)) from None
+    _check_words(map_, place)
     return map_
 
 

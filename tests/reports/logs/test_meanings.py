@@ -14,7 +14,7 @@ from models.files import load_scene
 from reports.compare.beside import Truth
 from reports.logs.channel import Log
 from reports.logs.columns import columns_of
-from reports.logs.map_file import Map, map_text, read_map
+from reports.logs.map_file import map_of, map_text, read_map
 from reports.logs.meanings import understood
 
 SCENE = load_scene("fourbar-lecture-1")
@@ -25,7 +25,7 @@ TRUTH = Truth(SCENE)
 
 
 def log_of(columns: dict[str, object], **told: object) -> Log:
-    return understood(columns_of(pd.DataFrame(columns)), SCENE, Map.model_validate(told))
+    return understood(columns_of(pd.DataFrame(columns)), SCENE, map_of(told, "the map"))
 
 
 def worst(log: Log) -> float:
