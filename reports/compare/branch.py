@@ -93,7 +93,7 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
 def _stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
     """Take out the samples at which one of the links, as far as they are logged, is elsewhere."""
     for name, link in links.items():
-        if name not in logged.links:
+        if name not in logged.links or np.all(np.isnan(logged.links[name].theta)):
             continue
         turn = logged.links[name].theta - link.theta
         there &= np.abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < THERE_RAD

@@ -82,7 +82,8 @@ class Reading:
 class Log:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
-    ``stamp`` is the column that the instants stand in, and its unit.
+    ``stamp`` is the column that the instants stand in, and its unit; ``zero_s`` is what was taken
+    from its times [s].
 
     ``copies`` are readings of a point as further bodies have it, which the gap is taken of;
     ``gaps`` are those (T,) [m], by pin or slider, that the log itself tells. ``unused`` names
@@ -94,6 +95,7 @@ class Log:
     time_s: Array
     readings: tuple[Reading, ...]
     stamp: tuple[str, str] = ("", "")
+    zero_s: float = 0.0
     copies: tuple[Reading, ...] = ()
     gaps: Mapping[str, Array] = field(default_factory=dict)
     unused: tuple[tuple[str, str], ...] = ()

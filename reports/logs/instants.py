@@ -6,6 +6,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut
+from models.scene import Scene
 from reports.logs.columns import Columns
 from reports.logs.units import UNITS
 
@@ -13,6 +14,8 @@ EVEN = 0.02
 """Intervals that differ by less of themselves are the same."""
 MOSTLY = 0.9
 """The share of the intervals of an even log that are the same."""
+MOST_TURNS = 1e7
+"""Beyond, times are dates, or in another unit; 9 digits of an angle are left there."""
 HOLE = 1.9
 """An interval longer than so many of the others leaves out samples."""
 
@@ -46,6 +49,18 @@ def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -
     if not holes:
         _refuse_holes(columns, column, time_s, steps)
     return np.asarray(time_s)
+
+
+def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> None:
+    """Refuse times so late that the place within a turn is lost. Raises CrankcheckError."""
+    far = float(np.max(np.abs(time_s)))
+    turns = far / scene.driver.law.period_s
+    if turns > MOST_TURNS:
+        raise CrankcheckError(
+            f"{columns.source}, column {cut(column)!r}: t = {far:.9g} s is {turns:.3g} turns of "
+            f"{scene.driver.link} after the start; count the time from the start of the motion, or "
+            f"from the first row: zero = {'first'!r} in [time] of the map"
+        )
 
 
 def _refuse_holes(columns: Columns, column: str, time_s: Array, steps: Array) -> None:

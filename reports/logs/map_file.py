@@ -59,10 +59,12 @@ class FileTable(Table):
 
 
 class TimeTable(Table):
-    """The column of times, and its unit."""
+    """The column of times, and its unit; with ``zero = "first"`` they are counted from the first
+    row, where the scene's law begins."""
 
     column: Name | None = None
     unit: str | None = None
+    zero: Literal["", "first"] = ""
 
 
 class ChannelTable(Table):
@@ -154,6 +156,8 @@ def map_text(log: Log) -> str:
         f"column = {_text(log.stamp[0])}",
         f"unit = {_text(log.stamp[1])}",
     ]
+    if log.zero_s:
+        lines.append('zero = "first"')
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]
     for column, reason in log.unused:

@@ -13,7 +13,7 @@ from models.errors import CrankcheckError, cut, few, suggestion
 from models.scene import Scene
 from reports.logs.channel import Channel, Log, Reading
 from reports.logs.columns import Columns
-from reports.logs.instants import instants
+from reports.logs.instants import instants, refuse_far
 from reports.logs.kinds import KINDS
 from reports.logs.map_file import ChannelTable, Map
 from reports.logs.names import Meaning, Named, meaning, time_of
@@ -71,15 +71,18 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
         raise CrankcheckError(_nothing(columns, scene, unused))
     main = times["time"]
     base = instants(columns, main, _unit_of_time(main, map_), holes=map_.file.holes == "meant")
-    reader = _Reader(
-        columns, base, main, {c: _stamp(columns, c) for c in times.values() if c != main}
-    )
+    zero_s = float(base[0]) if map_.time.zero else 0.0
+    base = base - zero_s
+    refuse_far(columns, main, base, scene)
+    others = {c: _stamp(columns, c) - zero_s for c in times.values() if c != main}
+    reader = _Reader(columns, base, others)
     return Log(
         source=columns.source,
         scene=scene,
         time_s=base,
         readings=tuple(reader.reading(each, told.get(each.column)) for each in channels),
         stamp=(main, _unit_of_time(main, map_)),
+        zero_s=zero_s,
         copies=tuple(reader.reading(each, told.get(each.column)) for each in copies),
         gaps=_gaps(columns, gaps),
         unused=tuple(unused),
@@ -92,7 +95,6 @@ class _Reader:
 
     columns: Columns
     time_s: Array
-    main: str
     others: dict[str, Array]
 
     def reading(self, channel: Channel, told: ChannelTable | None) -> Reading:

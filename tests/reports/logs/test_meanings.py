@@ -145,6 +145,13 @@ def test_what_can_not_be_understood_is_told(
         log_of(columns, **told)
 
 
+def test_a_clock_that_does_not_begin_at_zero_may_be_counted_from_the_first_row() -> None:
+    columns: dict[str, object] = {"t": TIME_S + 1.7e9, "rocker": ROCKER.theta}
+    with pytest.raises(CrankcheckError, match=r"turns of crank after the start; .* zero = 'first'"):
+        log_of(columns)
+    assert worst(log_of(columns, time={"zero": "first"})) < 1e-5  # digits of such a clock
+
+
 def test_a_hole_that_is_meant_is_no_fault() -> None:
     time_s = np.delete(np.arange(401) / 400, 77)
     log = log_of({"t": time_s, "rocker": time_s}, file={"holes": "meant"})
