@@ -19,8 +19,8 @@ from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track
 from reports.logs.channel import Log, Reading
-from reports.logs.kinds import Order
 from reports.quantities import QUANTITIES, named
+from reports.quantities.moving import Order
 from sim.engine import Run
 
 EVEN = 1e-6

@@ -9,9 +9,7 @@ from typing import Literal
 from models.array import Array
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
 from reports.logs.units import Dimension
-
-MovingKind = Literal["link", "point", "slider"]
-Order = Literal[0, 1, 2]
+from reports.quantities.moving import MovingKind, Order
 
 
 @dataclass(frozen=True)

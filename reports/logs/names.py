@@ -9,9 +9,10 @@ from functools import cached_property
 
 from models.errors import CrankcheckError, cut
 from models.scene import GROUND, Scene
-from reports.logs.kinds import KINDS, Kind, MovingKind
+from reports.logs.kinds import KINDS, Kind
 from reports.logs.spelling import DIMENSION, spelled_unit
 from reports.logs.units import si
+from reports.quantities.moving import MovingKind
 
 TIMES = {"time", "t", "timestamp", "times", "sim time", "simulation time", "elapsed"}
 PLACES = {"pos", "position", "place", "coordinate", "coord"}
