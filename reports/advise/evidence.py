@@ -114,7 +114,7 @@ def evidence(
     turns = [math.inf]
     for line in every:
         scene, choice = scenes.get(line.scene), by_key.get(key_of(line.engine, line.settings))
-        if scene is None or choice is None:
+        if scene is None or choice is None or line.scene not in stored.manifest.scenes:
             continue
         why = _refusal(line, stored.manifest.scenes[line.scene], scene, texts[line.scene], choice)
         if why:

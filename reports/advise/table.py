@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from models.errors import harmless
 from reports.advise.advice import Advice, Offer
 from reports.advise.look import WORDS
 from reports.advise.remarks import remarks
@@ -190,13 +191,13 @@ def _of_scenes(advice: Advice) -> Iterator[str]:
 
 def _of_study(advice: Advice) -> Iterator[str]:
     """What was taken from the study, and what was not."""
-    known = advice.known
+    known, folder = advice.known, harmless(str(advice.known.folder))
     if known.measured:
         yield (
-            f"{ABOUT} read between the steps of the study in {known.folder}, {known.turns:g} turns "
-            "long; what its steps do not reach to was run now, and so was every promise."
+            f"{ABOUT} read between the steps of the study in {folder}, {known.turns:g} turns long; "
+            "what its steps do not reach to was run now, and so was every promise."
         )
     else:
-        yield f"Nothing of the study in {known.folder} serves: all was run now."
+        yield f"Nothing of the study in {folder} serves: all was run now."
     for text in known.refusals:
         yield f"Run now: {text}."

@@ -105,7 +105,7 @@ class AdviseRequest:
     scenes: Annotated[
         Sequence[str],
         typer.Argument(
-            metavar="SCENE", help="Shipped names or scene files; a four-bar and a slider-crank."
+            metavar="SCENE", help="Shipped names or scene files; two usual ones if none."
         ),
     ] = ()
     engines: Engines = ()
