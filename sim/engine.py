@@ -143,6 +143,9 @@ class Engine:
     report accelerations gives NaN for all. ``holds`` is what the facts of a session say of a
     complete set of settings, step and drive. How the engine comes by places is its ``placing``;
     where they are integrated their errors shrink as the step to the power ``order`` at most.
+    ``in_seconds`` names what of a complete set of settings is a time, or a loss in a time, of its
+    own: without any, errors of place depend on the steps in a turn, not on the speed. An engine
+    that does not say has all of them so.
     """
 
     name: str
@@ -154,6 +157,7 @@ class Engine:
     holds: Callable[[Settings, float, Drive], Settings] = lambda settings, dt_s, drive: settings
     placing: Placing = "integrated"
     order: int = 2
+    in_seconds: Callable[[Settings], tuple[str, ...]] = tuple
 
 
 @dataclass(frozen=True)

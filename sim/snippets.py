@@ -15,15 +15,33 @@ PERIOD_S = 2.0 * math.pi / 10.0
 
 
 @dataclass(frozen=True)
+class Stepping:
+    """How a crank of ``period_s`` [s] is stepped: ``dt_s`` [s] at a time, and where a program has
+    frames ``substeps`` of that in each of them; 0 where it has none."""
+
+    period_s: float
+    dt_s: float
+    substeps: int = 0
+
+    @property
+    def speed_rad_s(self) -> float:
+        return 2.0 * math.pi / self.period_s
+
+    @property
+    def steps_per_turn(self) -> float:
+        return self.period_s / self.dt_s
+
+
+@dataclass(frozen=True)
 class SnippetWriter:
     """What writes the snippets of an engine.
 
-    ``language`` is what a page may colour them as; ``write`` is given the settings, steps per turn,
-    period [s], drive, and lines of comment to begin with (see `snippet`).
+    ``language`` is what a page may colour them as; ``write`` is given the settings, the
+    stepping, the drive, and lines of comment to begin with (see `snippet`).
     """
 
     language: str
-    write: Callable[[Settings, float, float, Drive, Sequence[str]], str]
+    write: Callable[[Settings, Stepping, Drive, Sequence[str]], str]
 
 
 def snippet_writer(engine: str) -> SnippetWriter:
@@ -48,4 +66,12 @@ def snippet(
     does not apply, stand in a comment. ``period_s`` is that of the driver [s]; the text says how
     its numbers change with the speed. Raises EngineError where the engine has no writer.
     """
-    return snippet_writer(engine).write(settings, steps_per_turn, period_s, drive, head)
+    stepping = Stepping(period_s, period_s / steps_per_turn)
+    return snippet_writer(engine).write(settings, stepping, drive, head)
+
+
+def frame_snippet(
+    engine: str, settings: Settings, stepping: Stepping, head: Sequence[str] = ()
+) -> str:
+    """As `snippet`, for a program that has frames: how many steps of which length are one."""
+    return snippet_writer(engine).write(settings, stepping, "prescribed", head)

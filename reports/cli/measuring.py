@@ -89,6 +89,46 @@ def tune(request: TuneRequest) -> int:
     return verb.run_tune(request, terminal(), terminal(stderr=True))
 
 
+@dataclass(frozen=True)
+class AdviseRequest:
+    """What `advise` was asked for, as given."""
+
+    dt_s: Annotated[
+        float, typer.Option("--dt", metavar="SECONDS", help="Frame time of your program.")
+    ]
+    speed: Annotated[
+        float, typer.Option(metavar="RAD_S", help="Speed of the driver; clockwise is negative.")
+    ]
+    target: Annotated[
+        float, typer.Option(help="Error to reach, as a pure number: rad, lengths over L.")
+    ]
+    scenes: Annotated[
+        Sequence[str],
+        typer.Argument(
+            metavar="SCENE", help="Shipped names or scene files; two usual ones if none."
+        ),
+    ] = ()
+    engines: Engines = ()
+    study: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Folder of sweep -o: what it covers is read from it."),
+    ] = None
+    turns: Annotated[float, typer.Option(help="Turns of the driver in a run.")] = 10.0
+    jobs: Jobs = 0
+    json: Annotated[Path | None, typer.Option(help="Write all of it as JSON.")] = None
+
+
+@command
+def advise(request: AdviseRequest) -> int:
+    """Say what engines reach at your frame time, and how few sub-steps reach a target.
+
+    The exit code is 0 where some settings reach it, 1 where none do.
+    """
+    from reports.cli.commands import advise as verb
+
+    return verb.run_advise(request, terminal(), terminal(stderr=True))
+
+
 @app.command()
 def report(
     folder: Annotated[

@@ -22,6 +22,17 @@ def digest(text: str) -> str:
     return _hash(tomllib.loads(text))
 
 
+def shape_digest(text: str) -> str:
+    """The hash of a scene's text, in which the size and direction of the driver's speed do not
+    count either: without a time scale of their own, scenes alike in this have the same angles at
+    the same steps in a turn."""
+    table = tomllib.loads(text)
+    driver = table.get("driver")
+    if isinstance(driver, dict):
+        driver.pop("speed_rad_s", None)
+    return _hash(table)
+
+
 def line_key(
     cell: Cell, turns: float, scene_digest: str, version: str, settings: Mapping[str, SettingValue]
 ) -> str:

@@ -13,6 +13,9 @@ LEAST_STEPS = 2 * SETTLING
 """Measured: of the shipped scenes none fails for shortness alone in a run of so many steps."""
 MOST_STEPS = 300_000
 """All steps are logged: as many take about 1 GB with a six-bar."""
+MOST_SEARCHED = 200_000
+"""Of a run of a search: some seconds. A finer step can not be what a search for the cheapest one is
+after."""
 STEPS_PER_TURN = 720.0
 
 

@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.judge.cell import Cell
-from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, counted
+from reports.plan.coarsest import coarsest
+from reports.plan.steps import LEAST_STEPS, LEAST_STEPS_PER_TURN, MOST_SEARCHED, counted
 from reports.sweep.measured import MeasuredCell, measured
-from reports.tune.coarsest import coarsest
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.engine import Settings
 from sim.tuning import Work
 
-MOST_STEPS = 200_000
-"""Of a run: some seconds. A finer step can not be what a search for the cheapest one is after."""
 DEARER = 2.0
 """How many times the cost of the best so far settings may take before they are given up."""
 NONE_KNOWN = 30.0
@@ -44,7 +42,7 @@ class Goal:
     @property
     def most(self) -> int:
         """The most steps in a turn; a run at half the step is still to be done."""
-        return int(MOST_STEPS / (2.0 * self.turns))
+        return int(MOST_SEARCHED / (2.0 * self.turns))
 
     def cell(self, scene: Scene, settings: Settings, steps_per_turn: int) -> Cell:
         """A run with complete settings."""

@@ -18,8 +18,8 @@ from optuna.samplers import TPESampler
 from optuna.study import Study
 from optuna.trial import Trial, TrialState
 
+from reports.plan.coarsest import RESOLUTION
 from reports.tune.attempt import Attempt
-from reports.tune.coarsest import RESOLUTION
 from sim.engine import Settings, SettingValue
 from sim.tuning import Knob, SearchSpace, Values
 

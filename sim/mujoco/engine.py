@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sim.engine import Engine
 from sim.mujoco.session import VERSION, MujocoSession
-from sim.mujoco.settings import AS_SHIPPED, TUNED, checked, holds
+from sim.mujoco.settings import AS_SHIPPED, TUNED, checked, holds, in_seconds
 
 ENGINE = Engine(
     "mujoco",
@@ -13,4 +13,5 @@ ENGINE = Engine(
     check=checked,
     open=MujocoSession,
     holds=holds,
+    in_seconds=in_seconds,
 )

@@ -150,6 +150,11 @@ def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     }
 
 
+def in_seconds(settings: Settings) -> tuple[str, ...]:
+    """The time constant of the loops, where it is not told in steps."""
+    return () if float(settings["solref_timeconst_steps"]) else ("solref_timeconst_s",)
+
+
 def velocity_shift(settings: Settings, drive: Drive) -> float:
     """To which instant, in steps after the positions, the velocities of a state belong.
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings, SettingValue
 from sim.mujoco.settings import AS_SHIPPED
-from sim.snippets import SnippetWriter
+from sim.snippets import SnippetWriter, Stepping
 
 IMPEDANCE = ("solimp_dmin", "solimp_dmax", "solimp_width")
 INSET = "  "
@@ -19,7 +18,7 @@ WIDTH = 96
 
 
 def mujoco_snippet(
-    settings: Settings, steps_per_turn: float, period_s: float, drive: Drive, head: Sequence[str]
+    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
 ) -> str:
     """Sections to paste into ``<mujoco>``, which merges those that it has twice.
 
@@ -29,7 +28,7 @@ def mujoco_snippet(
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
-    dt_s = period_s / steps_per_turn
+    dt_s = stepping.dt_s
     connect = _connect(complete, defaults, dt_s)
     integrator = complete["servo_integrator" if drive == "servo" else "integrator"]
     whole = {"timestep": repr(dt_s), "integrator": str(integrator)}
@@ -39,7 +38,7 @@ def mujoco_snippet(
         *_comment(
             [
                 "Step and integrator are the whole model's: all that it holds is stepped so.",
-                _how_to_scale(complete, steps_per_turn, period_s),
+                _how_to_scale(complete, stepping),
                 *_absolute(complete),
                 *_coarse(defaults, dt_s),
             ]
@@ -87,15 +86,22 @@ def _timeconst(complete: Settings, dt_s: float) -> float:
     return steps * dt_s if steps else float(complete["solref_timeconst_s"])
 
 
-def _how_to_scale(complete: Settings, steps_per_turn: float, period_s: float) -> str:
+def _how_to_scale(complete: Settings, stepping: Stepping) -> str:
     """What to write for another crank speed."""
-    speed = 2.0 * math.pi / period_s
-    text = (
-        f"{steps_per_turn:g} steps a turn of a crank at {speed:.6g} rad/s. At another speed: "
-        f"timestep = 2 pi / ({steps_per_turn:g} speed)"
-    )
+    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
-    return text + (f", and solref = {steps:g} timestep." if steps else ".")
+    stiff = f", and solref = {steps:g} timestep." if steps else "."
+    if not stepping.substeps:
+        return (
+            f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
+            f"({per_turn} speed)" + stiff
+        )
+    frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
+    return (
+        f"A frame of {frame} is {number} of these steps: mj_step(model, data, nstep={number}). A "
+        f"crank at {speed} has {per_turn} of them in a turn; a faster one needs more of them in a "
+        "frame, in proportion: timestep = frame / their number" + stiff
+    )
 
 
 def _absolute(complete: Settings) -> list[str]:

@@ -15,7 +15,7 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
-from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines
+from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
 from sim.pymunk.space import SpaceModel, build
 
 FIELDS = (
@@ -227,4 +227,5 @@ ENGINE = Engine(
     check=checked,
     open=PymunkSession,
     reports_accelerations=False,
+    in_seconds=in_seconds,
 )

@@ -55,6 +55,13 @@ def checked(settings: Settings) -> None:
     check_ranges(settings, RANGES)
 
 
+def in_seconds(settings: Settings) -> tuple[str, ...]:
+    """What is a loss in a second, whatever the speed: a bias or a damping, but for those that take
+    all at once, or nothing."""
+    biased, damped = settings["error_bias"] not in (0.0, 1.0), settings["damping"] != 1.0
+    return ("error_bias",) * biased + ("damping",) * damped
+
+
 def exact_lines(settings: Settings) -> bool:
     """Whether points on lines are held exactly."""
     return settings["lines"] == "exact"

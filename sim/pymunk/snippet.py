@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.pymunk.settings import AS_SHIPPED
-from sim.snippets import SnippetWriter
+from sim.snippets import SnippetWriter, Stepping
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -21,9 +20,10 @@ DRIVES: Mapping[Drive, str] = {
 
 
 def pymunk_snippet(
-    settings: Settings, steps_per_turn: float, period_s: float, drive: Drive, head: Sequence[str]
+    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
 ) -> str:
-    """Lines that act on variables ``space`` and ``joints``, and make the space's next step.
+    """Lines that act on variables ``space`` and ``joints``, and make the space's next step, or all
+    of a frame.
 
     The bias of the mechanism's own joints, and the iterations and step, which can only be the
     whole space's. What else differs from pymunk's defaults would change the rest of a user's space
@@ -43,15 +43,30 @@ def pymunk_snippet(
             f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
             "contacts' too"
         )
-    speed = 2.0 * math.pi / period_s
-    lines += [
-        *_alone(complete, defaults),
-        f"dt = {period_s / steps_per_turn!r}  # 2 pi / ({steps_per_turn:g} speed), here for a "
-        f"crank at {speed:.6g} rad/s",
-        f"space.step(dt)  # {steps_per_turn:g} times a turn; steps all that the space holds",
-        *_comment([DRIVES[drive]]),
-    ]
+    lines += [*_alone(complete, defaults), *_steps(stepping), *_comment([DRIVES[drive]])]
     return "\n".join(lines) + "\n"
+
+
+def _steps(stepping: Stepping) -> list[str]:
+    """The next step, or the steps of a frame."""
+    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
+    if not stepping.substeps:
+        return [
+            f"dt = {stepping.dt_s!r}  # 2 pi / ({per_turn} speed), here for a crank at {speed}",
+            f"space.step(dt)  # {per_turn} times a turn; steps all that the space holds",
+        ]
+    frame, number = f"a frame of {stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
+    return [
+        f"dt = {stepping.dt_s!r}  # {frame}" + f" / {number}" * (number > 1),
+        f"for _ in range({number}):  # in every frame; steps all that the space holds",
+        "    space.step(dt)",
+        *_comment(
+            [
+                f"A crank at {speed} has {per_turn} of these steps in a turn; a faster one needs "
+                "more of them in a frame, in proportion."
+            ]
+        ),
+    ]
 
 
 def _notes(complete: Settings, defaults: Settings) -> list[str]:

@@ -33,6 +33,7 @@ COMMANDS = {
     "page": ["report", "store", "-o", "page.html"],
     "summary": ["report", "store", "--format", "md", "-o", "summary.md"],
     "tune": ["tune", *FAKE, "--target", "1e-6"],
+    "advise": ["advise", *FAKE, "--dt", "0.02", "--speed", "10", "--target", "1e-3", "--jobs", "1"],
     "log": ["selftest", "--engine", "fake", "--fault", "row-lost", "--jobs", "1"],
     "inside": ["selftest", "--engine", "fake", "--fault", "joint-dropped"],
     "misspelt": ["verify", SCENE, "--engine", "fak"],
@@ -126,6 +127,13 @@ def test_what_it_lacks_is_said(told: Told) -> None:
     code, output = told["inside"]
     assert code == 2
     assert "it can be planted in mujoco and pymunk only; found --engine fake" in output
+
+
+def test_it_is_advised_on_without_anything_to_copy(told: Told) -> None:
+    code, output = told["advise"]
+    assert code == 0, output
+    assert "1 step a frame (20 ms): within 0.001" in output
+    assert "knob" not in output
 
 
 def test_faults_are_planted_in_its_log_alone(told: Told) -> None:

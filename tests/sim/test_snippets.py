@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator
 from typing import get_args
 
@@ -10,7 +12,7 @@ import pytest
 from sim.engine import Drive, Settings, SettingValue
 from sim.registry import engine, offering
 from sim.settings import resolved
-from sim.snippets import snippet
+from sim.snippets import Stepping, frame_snippet, snippet
 from sim.tuning import search_space
 from tests.worlds.bare import BARE, measured_as_we_did
 from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance
@@ -110,6 +112,36 @@ def test_a_space_never_gets_fewer_passes_than_it_has() -> None:
     text = snippet("pymunk", {"iterations": 20}, 360.0)
     assert "max(space.iterations, 20)" in text
     assert "space.iterations" not in snippet("pymunk", {"iterations": 10}, 360.0)
+
+
+@pytest.mark.parametrize("substeps", [1, 3])
+@pytest.mark.parametrize("name", ENGINES)
+def test_for_a_program_with_frames_the_settings_are_the_same(name: str, substeps: int) -> None:
+    """All but the comments and the loop over the steps of a frame."""
+    dt_s, period_s = 0.0166667 / substeps, 2.0 * math.pi / 7.0
+    for settings in settings_of(name):
+        plain = in_force(snippet(name, settings, period_s / dt_s, period_s))
+        frames = frame_snippet(name, settings, Stepping(period_s, dt_s, substeps))
+        kept = [line for line in in_force(frames) if not line.startswith("for _ in range(")]
+        assert len(kept) == len(plain)
+        assert all(same(*lines) for lines in zip(kept, plain, strict=True))
+        assert repr(dt_s) in frames
+        assert f"range({substeps})" in frames or f"nstep={substeps})" in frames
+
+
+def in_force(text: str) -> list[str]:
+    """The lines without comments."""
+    bare = re.sub(r"<!--.*?-->|#.*", "", text, flags=re.DOTALL if "<!--" in text else 0)
+    return [line.strip() for line in bare.splitlines() if line.strip()]
+
+
+def same(line: str, other: str) -> bool:
+    """The same words, and numbers that are rounded otherwise at most."""
+    number = r"\d+\.?\d*(?:e[-+]?\d+)?"
+    if re.split(number, line) != re.split(number, other):
+        return False
+    pairs = zip(re.findall(number, line), re.findall(number, other), strict=True)
+    return all(math.isclose(float(a), float(b), rel_tol=1e-12) for a, b in pairs)
 
 
 def test_a_step_that_softens_contacts_is_said_to() -> None:

@@ -21,8 +21,8 @@ from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes
 from reports.plan.key import MEASURE, digest
 from reports.plan.singular import refuse_singular
-from reports.plan.steps import LEAST_STEPS_PER_TURN, positive
-from reports.tune.attempt import MOST_STEPS, Attempt, Bench, Goal, LostError, Row
+from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
+from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row
 from reports.tune.search import Plan, attempts, best_of, plainer, search
 from reports.tune.storage import check_storage, study_in
 from reports.tune.table import Side, footer, show
@@ -116,8 +116,8 @@ def _goal(request: TuneRequest) -> Goal:
     goal = Goal(tuple(chosen_scenes(request.scenes)), name, PROFILE, target, request.turns)
     if goal.most < goal.least:
         raise CrankcheckError(
-            f"--turns {request.turns:g}: a run of a search has {MOST_STEPS} steps at most; take "
-            f"{MOST_STEPS / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
+            f"--turns {request.turns:g}: a run of a search has {MOST_SEARCHED} steps at most; take "
+            f"{MOST_SEARCHED / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
         )
     for scene in goal.scenes:
         refuse_singular(scene, goal.turns * scene.driver.law.period_s)

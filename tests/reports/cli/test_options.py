@@ -21,6 +21,7 @@ LEAST = {
         "run_tune",
         measuring.TuneRequest(["a", "b"], "mujoco", 1.0),
     ),
+    "advise --dt 1 --speed 2 --target 3": ("run_advise", measuring.AdviseRequest(1.0, 2.0, 3.0)),
     "stability": ("stability", measuring.StabilityRequest()),
     "solve a": ("run_solve", showing.SolveRequest("a")),
 }

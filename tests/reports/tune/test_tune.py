@@ -166,7 +166,7 @@ def test_what_the_clock_ended_is_told_and_not_kept(tmp_path: Path) -> None:
 def test_nothing_that_reaches_is_told_with_what_came_nearest(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("reports.tune.attempt.MOST_STEPS", 4000)
+    monkeypatch.setattr("reports.tune.attempt.MOST_SEARCHED", 4000)
     request = replace(SMALL, engine="pymunk", target=1e-10, budget=1)
     code, text = told(request)
     assert code == 1

@@ -56,6 +56,10 @@ class FakeEngine:
         """And keeps it as it is."""
         return settings
 
+    def in_seconds(self, settings: Settings) -> tuple[str, ...]:
+        """It knows no seconds."""
+        return ()
+
     def open(
         self,
         scene: Scene,

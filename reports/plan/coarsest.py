@@ -25,12 +25,13 @@ LEAP = 8.0
 def coarsest(
     error_at: Callable[[int], float], target: float, start: int, least: int, most: int
 ) -> int | None:
-    """The coarsest step between ``least`` and ``most`` steps in a turn; None where none reaches.
+    """The coarsest step, as a number of steps in a turn, or in whatever ``least`` and ``most``
+    are in; None where none reaches.
 
     Parameters
     ----------
     error_at : Callable
-        From steps in a turn to the error; what is not a number counts as infinite. It is called
+        From a number of steps to the error; what is not a number counts as infinite. It is called
         once for each step at most; up to twice ``most`` to hold a step against finer ones.
     start : int
         Where to look first.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from reports.tune.coarsest import FINER, RESOLUTION, coarsest
+from reports.plan.coarsest import FINER, RESOLUTION, coarsest
 
 LEAST, MOST = 40, 50_000
 

@@ -1,0 +1,131 @@
+"""Advice: what was found, cheapest first, with the best of each engine and its snippet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from reports.advise.demand import Demand
+from reports.advise.evidence import Evidence
+from reports.advise.prices import Price, Prices
+from reports.advise.search import Reached
+from reports.output.numbers import count, short
+from reports.results.cost import equal
+from sim.registry import engine, offering
+from sim.snippets import Stepping, frame_snippet
+
+
+@dataclass(frozen=True)
+class Offer:
+    """A choice with what it reaches, and what that costs."""
+
+    reached: Reached
+    price: Price | None
+
+    @property
+    def s_per_s(self) -> float:
+        """The share of real time; infinite where it is not known."""
+        return math.inf if self.price is None else self.price.s_per_s
+
+    @property
+    def place(self) -> tuple[bool, float, float]:
+        """Where it stands in a table: promises by their price, then the rest by their error."""
+        best = self.reached.promise or self.reached.nearest
+        return not self.reached.promise, self.s_per_s, best.error if best else math.inf
+
+
+@dataclass(frozen=True)
+class Advice:
+    """All offers, cheapest first; ``noise`` is up to which two prices are called equal, and
+    ``facts`` where all that comes from. The scenes were ``named``, or are the usual ones."""
+
+    demand: Demand
+    offers: tuple[Offer, ...]
+    noise: float
+    known: Evidence
+    facts: Mapping[str, str] = field(default_factory=dict)
+    named: bool = True
+
+    @property
+    def promises(self) -> tuple[Offer, ...]:
+        return tuple(offer for offer in self.offers if offer.reached.promise)
+
+    @property
+    def best(self) -> tuple[Offer, ...]:
+        """Of each engine the cheapest promise of those that nothing is said against, where there
+        are any; of those that cost the same, within the noise, the one with the least error."""
+        by_engine: dict[str, list[Offer]] = {}
+        for offer in self.promises:
+            by_engine.setdefault(offer.reached.choice.engine, []).append(offer)
+        best = (self._best([o for o in own if self.steady(o)] or own) for own in by_engine.values())
+        return tuple(sorted(best, key=lambda offer: offer.place))
+
+    @property
+    def nearest(self) -> Offer | None:
+        """What comes nearest where nothing reaches the target."""
+        over = [offer for offer in self.offers if offer.reached.nearest]
+        return min(over, key=lambda offer: offer.place, default=None)
+
+    def equal(self, a: Offer, b: Offer) -> bool:
+        """Whether two cost the same, as far as could be seen."""
+        return equal(a.s_per_s, b.s_per_s, self.noise)
+
+    def steady(self, offer: Offer) -> bool:
+        """Whether a promise neither has an error that grows, nor breaks at finer steps."""
+        promise = offer.reached.promise
+        return promise is not None and not promise.seen.grows and not self.caution(offer)
+
+    def caution(self, offer: Offer) -> str:
+        """Where a study has it over the target at finer steps than those of the promise; "" where
+        it does not, or tells nothing."""
+        demand, promise, choice = self.demand, offer.reached.promise, offer.reached.choice
+        if promise is None:
+            return ""
+        steps = demand.steps_per_turn(promise.substeps)
+        missed = {
+            scene.name: self.known.missed(scene, choice, steps, demand.target)
+            for scene in demand.scenes
+        }
+        over = [(finer, name) for name, finer in missed.items() if finer is not None]
+        if not over:
+            return ""
+        finer, name = min(over)
+        return (
+            f"holds with {count(promise.substeps, 'sub-step')}, but not at every finer step: in "
+            f"the study {name} is over the target at {finer:g} steps a turn "
+            f"({finer / demand.frames_per_turn:.3g} sub-steps)"
+        )
+
+    def snippet(self, offer: Offer) -> str:
+        """Text to copy and paste, headed by what it promises; empty where there is none."""
+        promise, choice, demand = offer.reached.promise, offer.reached.choice, self.demand
+        if promise is None or choice.engine not in offering("snippet"):
+            return ""
+        scenes = demand.scenes
+        which = scenes[0].name if len(scenes) == 1 else f"each of {len(scenes)} scenes"
+        worst = "" if len(scenes) == 1 else f", on {promise.scene}"
+        head = (
+            f"{choice.engine} {engine(choice.engine).version()}, {choice.name}, "
+            f"{count(promise.substeps, 'step')} a frame: place within {demand.target:g} (rad, or "
+            f"of the longest link) on {which} at {demand.speed_rad_s:g} rad/s, over "
+            f"{demand.turns:g} turns; at worst {short(promise.error)}{worst}."
+        )
+        caution = f"Caution: {said}." if (said := self.caution(offer)) else ""
+        stepping = Stepping(demand.period_s, demand.frame_s / promise.substeps, promise.substeps)
+        return frame_snippet(
+            choice.engine,
+            choice.settings,
+            stepping,
+            [head, caution],
+        )
+
+    def _best(self, own: Sequence[Offer]) -> Offer:
+        level = [offer for offer in own if self.equal(offer, own[0])]
+        return min(level, key=lambda offer: offer.place[2])
+
+
+def offers(found: Sequence[Reached], priced: Prices) -> tuple[Offer, ...]:
+    """What was found and timed, cheapest first."""
+    every = [Offer(one, price) for one, price in zip(found, priced.each, strict=True)]
+    return tuple(sorted(every, key=lambda offer: offer.place))

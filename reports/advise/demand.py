@@ -1,0 +1,148 @@
+"""What is asked for: scenes at a speed, the frame of a program, and the error to reach."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed
+from models.scene import Scene
+from reports.advise.choices import Choice
+from reports.judge.cell import Cell
+from reports.judge.three_steps import AT_ROUNDING
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
+
+MOST_SUBSTEPS = 4096
+"""Of a frame; who needs more has the wrong settings."""
+COARSEST = 1.0
+"""An error of place that no target is above: a radian, or the longest link."""
+SLOWEST, FASTEST = 1e-9, 1e9
+"""Speeds of a driver [rad/s]."""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """Scenes whose drivers turn at one speed [rad/s], and a program's frame [s].
+
+    ``target`` is the error of place (angle [rad], position and displacement over the longest link)
+    that a run of ``turns`` may have at most; the worst of the scenes counts.
+    """
+
+    scenes: tuple[Scene, ...]
+    speed_rad_s: float
+    frame_s: float
+    target: float
+    turns: float
+
+    @property
+    def period_s(self) -> float:
+        """Of a turn."""
+        return math.tau / abs(self.speed_rad_s)
+
+    @property
+    def frames_per_turn(self) -> float:
+        return self.period_s / self.frame_s
+
+    @property
+    def least(self) -> int:
+        """The fewest sub-steps of a frame with which a turn has steps enough to be one."""
+        return max(1, math.ceil(LEAST_STEPS_PER_TURN * (1 - 1e-12) / self.frames_per_turn))
+
+    @property
+    def most(self) -> int:
+        """The most sub-steps that are looked for; a run with twice as many is still to be done."""
+        return min(MOST_SUBSTEPS, int(MOST_SEARCHED / (2.0 * self.turns * self.frames_per_turn)))
+
+    def steps_per_turn(self, substeps: int) -> float:
+        return self.frames_per_turn * substeps
+
+    def cell(self, scene: Scene, choice: Choice, substeps: int, longer: float = 1.0) -> Cell:
+        """A run with a frame cut into equal parts, so many times as long as was asked for; a longer
+        one only as far as steps are run."""
+        steps = math.ceil(self.turns * self.steps_per_turn(substeps) * (1 - 1e-12))
+        return Cell(
+            scene=scene,
+            engine=choice.engine,
+            profile=choice.profile,
+            dt_s=self.frame_s / substeps,
+            steps=max(steps, min(math.ceil(longer * steps), MOST_SEARCHED)),
+            gated=False,
+            converge=False,
+            settings=choice.settings,
+        )
+
+
+def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
+    """The scene with its driver at another constant speed, from where it starts.
+
+    Raises CrankcheckError for a driver with another law, which no speed takes the place of.
+    """
+    law = scene.driver.law
+    if not isinstance(law, ConstantSpeed):
+        raise CrankcheckError(
+            f"scene {scene.name}: its driver does not turn at a constant speed, and --speed can "
+            'not take the place of its law; leave the scene out, or give it law = "constant" with '
+            "a start_deg"
+        )
+    return replace(scene, driver=replace(scene.driver, law=replace(law, speed_rad_s=speed_rad_s)))
+
+
+def demanded(
+    scenes: Sequence[Scene], speed_rad_s: float, frame_s: float, target: float, turns: float
+) -> Demand:
+    """What is asked for, checked.
+
+    Raises
+    ------
+    CrankcheckError
+        A number out of its range, a frame that no number of sub-steps makes short enough, too many
+        frames, a driver that does not turn at a constant speed, or one that comes to a position in
+        which the motion is not determined.
+    """
+    positive("--dt", frame_s, "seconds for a frame, such as 0.0166667")
+    if not SLOWEST <= abs(speed_rad_s) <= FASTEST:
+        raise CrankcheckError(
+            f"--speed {speed_rad_s:g}: give the driver's speed in rad/s, {SLOWEST:g} to "
+            f"{FASTEST:g}, such as 10; clockwise it is negative"
+        )
+    if not AT_ROUNDING <= target < COARSEST:
+        raise CrankcheckError(
+            f"--target {target:g}: give an error of place from {AT_ROUNDING:g}, which is rounding, "
+            f"to under {COARSEST:g}, such as 1e-3"
+        )
+    if not (math.isfinite(turns) and turns >= 1.0):
+        raise CrankcheckError(
+            f"--turns {turns:g}: give 1 turn of the driver or more; of a part of it nothing is "
+            "said of the rest"
+        )
+    moved = tuple(at_speed(scene, speed_rad_s) for scene in scenes)
+    demand = Demand(moved, speed_rad_s, frame_s, target, turns)
+    _refuse_frame(demand)
+    for scene in moved:
+        refuse_singular(scene, turns * demand.period_s)
+    return demand
+
+
+def _refuse_frame(demand: Demand) -> None:
+    """Refuse a frame that is too long, or so short that a run has too many. Raises
+    CrankcheckError."""
+    per_turn, turn = demand.frames_per_turn, f"a turn at {demand.speed_rad_s:g} rad/s"
+    if per_turn * MOST_SUBSTEPS < LEAST_STEPS_PER_TURN:
+        longest = demand.period_s * MOST_SUBSTEPS / LEAST_STEPS_PER_TURN
+        raise CrankcheckError(
+            f"--dt {demand.frame_s:g}: {turn} takes {demand.period_s:.4g} s, and needs at least "
+            f"{LEAST_STEPS_PER_TURN} steps: too long a frame, even in {MOST_SUBSTEPS} sub-steps; "
+            f"give one of {longest:.3g} s at most"
+        )
+    frames = demand.turns * per_turn
+    turns = MOST_SEARCHED / (2.0 * per_turn * demand.least)
+    if not demand.turns <= turns:
+        fewer = f"take --turns {turns:.3g}, or " if turns >= 1.0 else ""
+        raise CrankcheckError(
+            f"--dt {demand.frame_s:g} --turns {demand.turns:g}: {frames:.6g} frames, "
+            f"{per_turn:.4g} in {turn}; at most {MOST_SEARCHED // 2} steps are run: {fewer}ask "
+            "for a longer frame or a faster crank, as a slower one has the smaller errors"
+        )

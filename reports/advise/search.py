@@ -1,0 +1,217 @@
+"""What a choice reaches at the frame itself, and with how few sub-steps of it the target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from functools import partial
+
+from models.scene import Scene
+from reports.advise.choices import Choice
+from reports.advise.demand import Demand
+from reports.advise.evidence import Evidence
+from reports.advise.look import LONGER, Look, look
+from reports.plan.coarsest import coarsest
+from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.scheduler import as_they_end
+
+LIMITS = Limits(time_s=30.0)
+"""Of a run; the longest has `plan.steps.MOST_STEPS`, and takes a few seconds."""
+ENDS_A_SEARCH = ("unsupported", "timeout", "crashed")
+"""How a run ends that no other step mends, or that cost its process or its time."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The worst of the scenes with so many sub-steps in a frame."""
+
+    substeps: int
+    scene: str
+    seen: Look
+
+    @property
+    def error(self) -> float:
+        return self.seen.error
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What came of a choice.
+
+    ``at_frame`` is the worst with one step to a frame, None where such a step is too long for a
+    turn. ``promise`` is the worst with the fewest sub-steps that reach the target, over the whole
+    run of every scene now; ``held_at`` are the larger numbers that were seen to reach it too. Where
+    none does it is None, and ``nearest`` has the least error over the target of all that were
+    looked at; ``unsteady`` reach it, and larger numbers do not. ``ended`` is the run that ended the
+    search, where one did.
+    """
+
+    choice: Choice
+    at_frame: Worst | None
+    promise: Worst | None
+    nearest: Worst | None
+    held_at: tuple[int, ...] = ()
+    unsteady: tuple[int, ...] = ()
+    runs: int = 0
+    ended: Look | None = None
+
+
+def search_all(
+    demand: Demand,
+    wanted: Sequence[Choice],
+    known: Evidence,
+    jobs: int,
+    done: Callable[[Reached], None] = lambda _: None,
+) -> list[Reached]:
+    """Search for every choice, several at a time, each in a process that it may crash."""
+    results: dict[int, Reached] = {}
+    work = partial(_reached, demand, known)
+    with closing(as_they_end(work, wanted, jobs, LIMITS)) as ends:
+        for index, reached in ends:
+            results[index] = reached
+            done(reached)
+    return [results[index] for index in range(len(wanted))]
+
+
+class EndedError(Exception):
+    """A run after which no other is tried with the same settings."""
+
+    def __init__(self, worst: Worst) -> None:
+        super().__init__(worst.seen.reason)
+        self.worst = worst
+
+
+@dataclass
+class _Looks:
+    """The looks at a choice so far, by number of sub-steps and scene."""
+
+    demand: Demand
+    known: Evidence
+    child: Isolated[Look]
+    choice: Choice
+    seen: dict[int, dict[str, Look]] = field(default_factory=dict)
+    runs: int = 0
+    _last: dict[str, float] = field(default_factory=dict)
+
+    def worst(self, substeps: int, *, whole: bool = False) -> Worst:
+        """The worst of the scenes, or the first that is over the target, unless the ``whole`` is
+        asked for; that which was worst last is looked at first. Raises EndedError where no other
+        step would do."""
+        here = self.seen.setdefault(substeps, {})
+        for scene in sorted(self.demand.scenes, key=lambda s: -self._last.get(s.name, math.inf)):
+            if scene.name not in here:
+                here[scene.name] = self._read(scene, substeps) or self._run(scene, substeps)
+            self._last[scene.name] = error = here[scene.name].error
+            if math.isinf(error) or (error > self.demand.target and not whole):
+                break
+        return self.worst_seen(substeps)
+
+    def confirmed(self, substeps: int) -> bool:
+        """Whether all that was read of a study reaches the target in runs now, too."""
+        here = self.seen[substeps]
+        for scene in self.demand.scenes:
+            if here[scene.name].studied:
+                here[scene.name] = self._run(scene, substeps)
+        return self.worst_seen(substeps).error <= self.demand.target
+
+    def forget_the_study(self) -> None:
+        """Keep what was run now alone."""
+        self.known = Evidence()
+        run = {
+            substeps: {name: seen for name, seen in here.items() if not seen.studied}
+            for substeps, here in self.seen.items()
+        }
+        self.seen = {substeps: here for substeps, here in run.items() if here}
+
+    def reached(self, substeps: int) -> bool:
+        """Whether every scene was seen to reach the target."""
+        here = self.seen[substeps]
+        whole = len(here) == len(self.demand.scenes)
+        return whole and all(seen.error <= self.demand.target for seen in here.values())
+
+    def worst_seen(self, substeps: int) -> Worst:
+        """The worst of the scenes that were looked at."""
+        here = self.seen[substeps]
+        name = max(here, key=lambda name: here[name].error)
+        return Worst(substeps, name, here[name])
+
+    def _read(self, scene: Scene, substeps: int) -> Look | None:
+        """What the study has between its steps; None where it has nothing."""
+        error = self.known.error(scene, self.choice, self.demand.steps_per_turn(substeps))
+        return None if error is None else Look(error, studied=True)
+
+    def _run(self, scene: Scene, substeps: int) -> Look:
+        """A run now; a longer one where the error grows, and is not over the target yet."""
+        seen = self._call(scene, substeps)
+        if seen.grows and seen.error <= self.demand.target:
+            seen = self._call(scene, substeps, LONGER)
+        if seen.status in ENDS_A_SEARCH:
+            raise EndedError(Worst(substeps, scene.name, seen))
+        return seen
+
+    def _call(self, scene: Scene, substeps: int, longer: float = 1.0) -> Look:
+        self.runs += 1
+        cell = self.demand.cell(scene, self.choice, substeps, longer)
+        found = self.child.call(look, cell)
+        return Look(math.inf, found.status, found.reason) if isinstance(found, Lost) else found
+
+
+def _reached(demand: Demand, known: Evidence, child: Isolated[Look], choice: Choice) -> Reached:
+    """The search for one choice."""
+    looks = _Looks(demand, known, child, choice)
+    at_frame, promise, nearest, last = None, None, None, None
+    try:
+        first = looks.worst(demand.least, whole=True)
+        at_frame = first if demand.least == 1 else None
+        if substeps := _fewest(looks):
+            promise = looks.worst(substeps)
+        else:
+            nearest = _nearest(looks)
+        at_frame = at_frame and looks.worst(1, whole=True)  # as far as it was run since
+    except EndedError as ended:
+        last = ended.worst.seen
+        at_frame = at_frame or (ended.worst if ended.worst.substeps == 1 else None)
+    within = sorted(n for n in looks.seen if looks.reached(n))
+    return Reached(
+        choice=choice,
+        at_frame=at_frame,
+        promise=promise,
+        nearest=nearest,
+        held_at=tuple(n for n in within if promise and n > promise.substeps),
+        unsteady=() if promise else tuple(within),
+        runs=looks.runs,
+        ended=last,
+    )
+
+
+def _fewest(looks: _Looks) -> int | None:
+    """The fewest sub-steps that reach the target, and do so in runs now.
+
+    What the study promises is run; where that is over the target, all is looked for by runs.
+    """
+    demand = looks.demand
+
+    def found(start: int) -> int | None:
+        def error(substeps: int) -> float:
+            return looks.worst(substeps).error
+
+        return coarsest(error, demand.target, start, demand.least, demand.most)
+
+    substeps = found(demand.least)
+    if substeps is None or looks.confirmed(substeps):
+        return substeps
+    looks.forget_the_study()
+    return found(substeps)
+
+
+def _nearest(looks: _Looks) -> Worst | None:
+    """The least error over the target of all that were looked at; None where no run came to its
+    end."""
+    over = [looks.worst_seen(n) for n in looks.seen if not looks.reached(n)]
+    finite = [worst for worst in over if math.isfinite(worst.error)]
+    if not finite:
+        return None
+    least = min(finite, key=lambda worst: (worst.error, worst.substeps))
+    return looks.worst(least.substeps, whole=True)

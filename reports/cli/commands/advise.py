@@ -1,0 +1,86 @@
+"""`crankcheck advise`: what engines reach at a frame time, and the sub-steps to a target."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+
+from models.errors import CrankcheckError, listed
+from models.files import parse_scene, scene_texts
+from models.scene import Scene
+from reports.advise.advice import Advice, offers
+from reports.advise.choices import choices
+from reports.advise.demand import demanded
+from reports.advise.document import document
+from reports.advise.evidence import Evidence, evidence, stored_choices, stored_scenes
+from reports.advise.prices import prices, timings
+from reports.advise.search import Reached, search_all
+from reports.advise.table import show
+from reports.cli.measuring import AdviseRequest
+from reports.output.console import tell
+from reports.output.provenance import provenance
+from reports.output.write import check_outputs, write
+from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.results.lines import lines
+from reports.store.reader import Stored, read_store
+from reports.workers.progress import progress_bar
+from sim.registry import engine
+
+USUAL_SCENES = ("fourbar-lecture-1", "slider-crank-central")
+"""What is advised on where no scene is named: a loop of pins, and one with a slider."""
+
+
+def run_advise(request: AdviseRequest, console: Console, progress: Console) -> int:
+    """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
+    where none could be run. Raises CrankcheckError for what can be told of the request before
+    anything runs."""
+    stored = _study(request)
+    scenes, texts = _scenes(request, stored)
+    demand = demanded(scenes, request.speed, request.dt_s, request.target, request.turns)
+    engines = chosen_engines(request.engines)
+    check_outputs({"--json": request.json})
+    every = lines(stored) if stored else ()
+    wanted = choices(engines, stored_choices(every))
+    known = evidence(stored, every, demand, texts, wanted) if stored else Evidence()
+    with progress_bar(progress, "settings", len(wanted)) as advance:
+        found = search_all(demand, wanted, known, request.jobs, lambda _: advance())
+    _refuse_unrun(found)
+    with progress_bar(progress, "timings", timings(demand, found)) as advance:
+        priced = prices(demand, found, advance)
+    facts = provenance({name: engine(name).version() for name in engines})
+    named = bool(request.scenes or stored)
+    advice = Advice(demand, offers(found, priced), priced.noise, known, facts, named)
+    try:
+        if request.json is not None:
+            write(request.json, document(advice))
+    finally:  # a full disk costs the file, and not the advice with it
+        show(console, advice)
+    return 0 if advice.promises else 1
+
+
+def _study(request: AdviseRequest) -> Stored | None:
+    """The study that was given. Raises CrankcheckError for a folder that is none."""
+    if request.study is None:
+        return None
+    stored = read_store(request.study)
+    tell(stored.notice)
+    return stored
+
+
+def _scenes(
+    request: AdviseRequest, stored: Stored | None
+) -> tuple[Sequence[Scene], Mapping[str, str]]:
+    """The scenes that were named, else those of the study, else the usual ones; their texts."""
+    if stored is not None and not request.scenes:
+        texts = stored_scenes(stored)
+        return [parse_scene(text, f"{stored.folder}: {n}") for n, text in texts.items()], texts
+    names = request.scenes or USUAL_SCENES
+    return chosen_scenes(names), scene_texts(names)
+
+
+def _refuse_unrun(found: Sequence[Reached]) -> None:
+    """Raise CrankcheckError where no engine can hold a scene."""
+    if all(one.ended is not None and one.ended.status == "unsupported" for one in found):
+        ends = {one.ended.reason: one.choice.label for one in found if one.ended}
+        raise CrankcheckError(listed("advise", [f"{label}: {why}" for why, label in ends.items()]))

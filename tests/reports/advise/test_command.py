@@ -1,0 +1,227 @@
+"""`crankcheck advise` from the command line: its promises held by other runs, and mistakes."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from models.files import find_scene, load_scene, read_text
+from models.scene import Scene
+from reports.advise.demand import at_speed
+from reports.cli import app
+from reports.compare.beside import Beside, Truth
+from reports.compare.compare import places
+from reports.quantities import named
+from sim.run import run
+from tests.worlds.bare import BARE
+
+FRAMES = {"60 Hz": (0.0166667, 10.0), "2 ms": (0.002, 50.0)}
+TARGET, TURNS = 1e-3, 10.0
+Told = Mapping[str, tuple[Result, Mapping[str, Any]]]
+LINE = ["advise", "--dt", "0.0166667", "--speed", "10", "--target", "1e-3"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick() -> Any:
+    """Times are not what is looked at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.advise.prices.ROUNDS", 2)
+        yield
+
+
+def advise(*args: str) -> Result:
+    return CliRunner().invoke(app, ["advise", *args], catch_exceptions=False)
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> Told:
+    """What was printed and written for each frame, of the usual scenes and of the four-bar."""
+    folder = tmp_path_factory.mktemp("advice")
+    results = {}
+    for name, (dt, speed) in FRAMES.items():
+        path = folder / "advice.json"
+        scenes = () if name == "60 Hz" else ("fourbar-lecture-1",)
+        numbers = ("--dt", str(dt), "--speed", str(speed), "--target", str(TARGET))
+        result = advise(*scenes, *numbers, "--json", str(path))
+        results[name] = result, json.loads(path.read_text())
+    return results
+
+
+def place_error(scene: Scene, one: Mapping[str, Any], dt_s: float, turns: float) -> float:
+    """The error of place of a run as a user of the parts would make it."""
+    truth = Truth(scene, bound=False)
+    done = run(
+        scene,
+        truth.start,
+        one["engine"],
+        one["profile"],
+        dt_s=dt_s,
+        steps=int(turns * scene.driver.law.period_s / dt_s),
+        settings=one["settings"],
+    )
+    assert done.status == "ok", done.reason
+    errors = [each for each in places(Beside.of(truth, done)) if each.quantity in named("place")]
+    return max(each.pure for each in errors)
+
+
+def promises(content: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    return [one for one in content["settings"] if one["promise"]]
+
+
+def best(content: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    names = content["best"]
+    return [one for one in content["settings"] if f"{one['engine']} {one['name']}" in names]
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_its_promises_are_held_by_runs_of_both_engines(frame: str, told: Told) -> None:
+    result, content = told[frame]
+    dt, speed = FRAMES[frame]
+    assert result.exit_code == 0, result.output
+    scenes = [at_speed(load_scene(name), speed) for name in content["asked"]["scenes"]]
+    kept = promises(content)
+    assert {one["engine"] for one in best(content)} == {"mujoco", "pymunk"}
+    assert len(kept) >= 6
+    for one in kept:
+        n, promised = one["promise"]["substeps"], one["promise"]["place_error"]
+        found = max(place_error(scene, one, dt / n, TURNS) for scene in scenes)
+        assert found <= TARGET
+        assert found == pytest.approx(promised, rel=1e-3)  # the last part of a turn is cut off
+        if n > 1:  # and no fewer would do
+            assert max(place_error(scene, one, dt / (n - 1), TURNS) for scene in scenes) > TARGET
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_the_best_keep_them_for_long_and_at_finer_steps(frame: str, told: Told) -> None:
+    _, content = told[frame]
+    dt, speed = FRAMES[frame]
+    for one in best(content):
+        n = one["promise"]["substeps"]
+        for name in content["asked"]["scenes"]:
+            scene = at_speed(load_scene(name), speed)
+            assert place_error(scene, one, dt / n, 5 * TURNS) <= TARGET
+            for finer in (n + 1, 2 * n):
+                assert place_error(scene, one, dt / finer, TURNS) <= TARGET
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_what_each_reaches_at_the_frame_is_what_a_run_gives(frame: str, told: Told) -> None:
+    _, content = told[frame]
+    dt, speed = FRAMES[frame]
+    for one in content["settings"]:
+        scene = at_speed(load_scene(one["at_frame"]["scene"]), speed)
+        found = place_error(scene, one, dt, TURNS)
+        assert found == pytest.approx(one["at_frame"]["place_error"], rel=1e-2)
+        assert one["at_frame"]["word"].startswith("within" if found <= TARGET else "over")
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_a_pasted_snippet_keeps_the_promise(frame: str, told: Told) -> None:
+    """In a four-bar that knows nothing of crankcheck; pymunk's is run once a frame, and steps it
+    all."""
+    _, content = told[frame]
+    dt, speed = FRAMES[frame]
+    for one in promises(content):
+        n, per_turn = one["promise"]["substeps"], one["promise"]["steps_per_turn"]
+        runs = per_turn / n if one["engine"] == "pymunk" else per_turn
+        assert f"{n} step{'s' * (n > 1)} a frame" in " ".join(one["snippet"].split())
+        assert repr(dt / n) in one["snippet"]
+        found = BARE[one["engine"]](one["snippet"], round(runs), speed)
+        assert found <= TARGET, one["snippet"]
+
+
+def test_it_is_printed_for_a_person(told: Told) -> None:
+    result, content = told["60 Hz"]
+    flat = " ".join(result.stdout.split())
+    assert max(len(line.rstrip()) for line in result.stdout.splitlines()) <= 100
+    for one in content["settings"]:
+        assert f"{one['engine']} {one['name']}" in flat
+    for one in best(content):
+        assert one["snippet"] in result.stdout
+    assert "37.7 in a turn; error of place up to 0.001 over 10 turns" in flat
+    assert "takes your own" in flat
+    assert f"mujoco {content['provenance']['mujoco']}" in flat
+    assert "takes your own" not in told["2 ms"][0].stdout
+
+
+def test_where_nothing_reaches_the_exit_code_is_1(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("reports.advise.demand.MOST_SUBSTEPS", 2)
+    result = advise("fourbar-lecture-1", "--engine", "pymunk", *LINE[1:-1], "1e-9", "--turns", "2")
+    assert result.exit_code == 1, result.output
+    assert "NOTHING REACHES 1e-09 with up to 2 sub-steps a frame: nearest is" in result.stdout
+    assert "space.step" not in result.stdout
+
+
+def test_a_study_is_read_where_it_covers_what_is_asked(store: Path, tmp_path: Path) -> None:
+    """At 2 rad/s, not the 10 of the study; its scenes, as none are named."""
+    path = tmp_path / "advice.json"
+    numbers = ("--dt", "0.0166667", "--speed", "2", "--target", "1e-3", "--turns", "2")
+    result = advise(*numbers, "--study", str(store), "--engine", "mujoco", "--json", str(path))
+    assert result.exit_code == 0, result.output
+    content = json.loads(path.read_text())
+    assert content["asked"]["scenes"] == ["fourbar-lecture-1", "slotted-lever"]
+    assert content["study"]["lines"] == 2
+    found = {one["name"]: one for one in content["settings"]}
+    assert found["tuned"]["promise"]["measured"] == "now"
+    assert found["tuned"]["runs"] == 2
+    assert found["as-shipped"]["at_frame"]["measured"] == "now"
+    flat = " ".join(result.stdout.split())
+    assert "Run now: mujoco as-shipped: solref_timeconst_s in seconds, measured at" in flat
+    assert "read between the steps of the study in" in flat
+
+
+def test_a_study_that_covers_nothing_is_told_and_all_is_run(store: Path) -> None:
+    numbers = ("--dt", "0.01", "--speed", "10", "--target", "0.1")
+    only = ("--engine", "pymunk", "--turns", "1")
+    result = advise("whitworth", *numbers, "--study", str(store), *only)
+    assert result.exit_code == 0, result.output
+    flat = " ".join(result.stdout.split())
+    assert "serves: all was run now" in flat
+    assert "Run now: whitworth: not in the study" in flat
+
+
+def test_scenes_that_no_engine_can_hold_are_bad_input(tmp_path: Path) -> None:
+    text = read_text(find_scene("scotch-yoke")).replace("mass_kg = 0.1\n", "")
+    path = tmp_path / "massless.toml"
+    path.write_text(text.replace('"scotch-yoke"', '"massless"'))
+    result = advise(str(path), *LINE[1:], "--engine", "mujoco")
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert "advise: mujoco " in result.stderr
+    assert "mass" in result.stderr
+
+
+def link(folder: Path) -> str:
+    """A link in the place of a file."""
+    (folder / "other").touch()
+    (folder / "link.json").symlink_to(folder / "other")
+    return str(folder / "link.json")
+
+
+MISTAKES: Mapping[str, tuple[Callable[[Path], list[str]], str]] = {
+    "frame": (lambda _: ["--dt", "0"], "--dt 0: give a number above 0"),
+    "speed": (lambda _: ["--speed", "0"], "--speed 0: give the driver's speed in rad/s"),
+    "target": (lambda _: ["--target", "nan"], "--target nan: give an error of place"),
+    "turns": (lambda _: ["--turns", "1e9"], "--turns 1e.09: .* frames"),
+    "engine": (lambda _: ["--engine", "mujocco"], "engine 'mujocco': unknown; did you mean muj"),
+    "scene": (lambda _: ["fourbar-lectur-1"], "neither a shipped scene nor a file. Did you mean"),
+    "law": (lambda _: ["tangent"], "scene tangent: its driver does not turn at a constant speed"),
+    "no study": (lambda folder: ["--study", str(folder)], "no store of a sweep there"),
+    "link": (lambda folder: ["--json", link(folder)], "link.json: a link, to"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_told_at_once_with_exit_code_2(mistake: str, tmp_path: Path) -> None:
+    make, words = MISTAKES[mistake]
+    result = CliRunner().invoke(app, [*LINE, *make(tmp_path)], catch_exceptions=False)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert result.stderr.count("crankcheck: ") == 1
+    assert re.search(words, result.stderr), result.stderr
