@@ -1,4 +1,5 @@
-"""What a page carries inside: JSON that can not end its script, series at two bytes a sample."""
+"""What a page carries inside: JSON that can not end its script, series at two or four bytes a
+sample."""
 
 from __future__ import annotations
 
@@ -51,6 +52,14 @@ def packed(rows: Array) -> dict[str, object]:
         "scales": scales,
         "base64": base64.b64encode(whole.tobytes()).decode("ascii"),
     }
+
+
+def singles(row: Array) -> dict[str, object]:
+    """Samples (T,) as one text: 32-bit floats, little-endian, in base64, for what is read off to
+    its last digits; what is not finite stays so."""
+    with np.errstate(over="ignore"):  # beyond 3.4e38 it has no end
+        numbers = np.asarray(row, dtype=np.float64).astype("<f4")
+    return {"samples": numbers.size, "singles": base64.b64encode(numbers.tobytes()).decode("ascii")}
 
 
 def size_of(series: int, samples: int) -> int:

@@ -28,6 +28,13 @@ def error_text(value: float | None, digits: int = 2) -> str:
     return short(value, digits)
 
 
+def readable(value: float, digits: int = 3) -> str:
+    """A number with few digits: 0.0123, 345, 6.7e-5; what is not finite by its name."""
+    if value == 0.0 or 1e-3 <= abs(value) < 1e5:
+        return f"{value:.{digits}g}" if abs(value) < 10.0**digits else f"{value:.0f}"
+    return short(value, digits)
+
+
 def duration(value_s: float | None) -> str:
     """A time in the unit that gives it one to three digits before the point."""
     if value_s is None or not math.isfinite(value_s):

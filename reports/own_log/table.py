@@ -43,8 +43,8 @@ def _failures(console: Console, judged: JudgedLog) -> None:
     for cause in judged.causes:
         if cause.name not in ADVICE:
             hanging(console, "  cause: ", cause_text(cause.text, cause.correction), style="cyan")
-    if unexplained := _unexplained(judged):
-        hanging(console, "  cause: ", f"none that is known explains {few(unexplained, 6)}",
+    if rest := unexplained(judged):
+        hanging(console, "  cause: ", f"none that is known explains {few(rest, 6)}",
                 style="cyan")  # fmt: skip
     console.print()
 
@@ -77,7 +77,7 @@ def _toml(value: object) -> str:
     return f'"{value}"' if isinstance(value, str) else f"{value}"
 
 
-def _unexplained(judged: JudgedLog) -> list[str]:
+def unexplained(judged: JudgedLog) -> list[str]:
     """Columns that are out of tolerance, and that no cause is known of."""
     told = {column for cause in judged.causes for column in cause.columns}
     out = (row for row in log_rows(judged) if row.verdict == "out")

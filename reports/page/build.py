@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from reports.drawing.packed import embedded, policy
-from reports.output.numbers import NONE, count, duration, error_text
+from reports.output.numbers import NONE, count, duration, error_text, readable
 from reports.page.sections import SECTIONS
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
@@ -150,7 +150,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"error": error_text, "duration": duration}
+    environment.filters |= {"error": error_text, "readable": readable, "duration": duration}
     environment.globals |= {"dash": NONE, "infinite": math.inf}
     return environment
 

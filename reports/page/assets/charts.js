@@ -63,8 +63,9 @@ crankcheck.chart = (() => {
       modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("ink") },
       dragmode: finger ? false : "zoom", // a finger scrolls the page
       ...own,
-      xaxis: axis(own.xaxis),
-      yaxis: axis({ ...own.yaxis, title: { standoff: 6, ...own.yaxis.title } }),
+      ...Object.fromEntries(Object.entries(own).filter(([name]) => /^[xy]axis/.test(name)).map(([name, each]) => [
+        name, axis(name.startsWith("y") ? { ...each, title: { standoff: 6, ...each.title } } : each),
+      ])),
     };
   }
 

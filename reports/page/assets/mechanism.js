@@ -37,9 +37,10 @@ crankcheck.mechanism = (() => {
 
   /**
    * Draw into an SVG element. Gives `samples`, `degrees(position)`, and
-   * `show(position, overlays, factor)`, which draws overlays `{rows, paint, trail}` and tells
-   * whether any of them was cut off: at `reach` times the size of the drawing. With a `trail` the
-   * way that its points have come is drawn.
+   * `show(position, overlays, factor)`, which draws overlays `{rows, paint, trail, only, width}` and
+   * tells whether any of them was cut off: at `reach` times the size of the drawing. With a `trail`
+   * the way that its points have come is drawn; `only` names the `links` that are drawn, the
+   * points of `blocks`, and those that get `marks` of their own.
    */
   return (element, drawing, reach = FARTHEST) => {
     const scene = read(drawing);
@@ -93,9 +94,11 @@ crankcheck.mechanism = (() => {
       return exact + Math.max(-TURNED, Math.min(TURNED, off || 0));
     }
 
-    /** The links and blocks of the reference or of a run. */
+    /** The links and blocks of the reference or of a run; of a run that has `only` some, these. */
     function bodies(position, run) {
+      const { links, blocks: those, marks } = run?.only ?? {};
       const found = scene.links.map((link) => {
+        if (links && !links.includes(link.name)) return null;
         const corners = link.points.map((name) => place(name, position, run));
         if (corners.some((corner) => corner === null)) return null;
         const plate = corners.length > 2;
@@ -103,6 +106,7 @@ crankcheck.mechanism = (() => {
         return path(corners, { class: kind }, plate);
       });
       const blocks = scene.sliders.map((slider) => {
+        if (those && !those.includes(slider.point)) return null;
         const middle = place(slider.point, position, run);
         if (middle === null) return null;
         const angle = direction(slider, position, run);
@@ -112,7 +116,13 @@ crankcheck.mechanism = (() => {
         ]);
         return path(corners, { class: "block" }, true);
       });
-      return [...found, ...blocks].filter(Boolean);
+      const lone = (marks ?? []).map((name) => {
+        const middle = place(name, position, run);
+        if (middle === null) return null;
+        const [cx, cy] = toScreen(middle);
+        return svg("circle", { class: "mark", cx, cy, r: 8 });
+      });
+      return [...found, ...blocks, ...lone].filter(Boolean);
     }
 
     /** A line through the places of a point, in parts where some are missing. */
@@ -172,7 +182,7 @@ crankcheck.mechanism = (() => {
       reference.replaceChildren(...bodies(position));
       // Runs that lie on each other are seen as rims: the first is the widest.
       over.replaceChildren(...runs.map((run, i) =>
-        svg("g", { class: `run ${run.paint}`, "stroke-width": Math.min(2 + 2 * (runs.length - 1 - i), 6.5) },
+        svg("g", { class: `run ${run.paint}`, "stroke-width": run.width ?? Math.min(2 + 2 * (runs.length - 1 - i), 6.5) },
           ...trails(position, run), ...bodies(position, run))));
       pins.replaceChildren(...names.flatMap((name) => pin(name, position)));
       return runs.some((run) => run.cut);

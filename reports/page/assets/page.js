@@ -12,10 +12,17 @@ const crankcheck = (() => {
     return found && JSON.parse(found.textContent);
   }
 
+  const viewed = (base64) => new DataView(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer);
+
+  /** Numbers from the form of `reports.drawing.packed.singles`. */
+  function singles(packed) {
+    const whole = viewed(packed.singles);
+    return Float64Array.from({ length: packed.samples }, (_, i) => whole.getFloat32(4 * i, true));
+  }
+
   /** Rows of numbers from the form of `reports.drawing.packed.packed`; what is missing is NaN. */
   function unpacked(packed) {
-    const bytes = Uint8Array.from(atob(packed.base64), (c) => c.charCodeAt(0));
-    const whole = new DataView(bytes.buffer);
+    const whole = viewed(packed.base64);
     return packed.scales.map((scale, row) => {
       const values = new Float64Array(packed.samples);
       for (let i = 0; i < packed.samples; i += 1) {
@@ -52,6 +59,12 @@ const crankcheck = (() => {
     if (value === null || !Number.isFinite(value)) return "–";
     if (value === 0) return "0";
     return value.toExponential(digits - 1).replace("e+", "e");
+  }
+
+  /** A number with few digits, without an exponent where it needs none: 0.0123, 345, 6.7e-5. */
+  function readable(value, digits = 3) {
+    const size = Math.abs(value);
+    return size === 0 || (size >= 1e-3 && size < 1e5) ? String(Number(value.toPrecision(digits))) : short(value, digits);
   }
 
   /** A time in the unit that suits it. */
@@ -100,7 +113,7 @@ const crankcheck = (() => {
 
   themeButton();
   return {
-    embedded, unpacked, html, svg, colour, short, duration, onTheme,
+    embedded, unpacked, singles, html, svg, colour, short, readable, duration, onTheme,
     looks: embedded("looks") ?? [],
     calm: matchMedia("(prefers-reduced-motion: reduce)"),
   };

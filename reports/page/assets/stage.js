@@ -118,5 +118,5 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
     }, { threshold: 0.5 }).observe(picture);
   }
 
-  return { set, draw, run, greet, start };
+  return { set, draw, run, greet, start, makeVisible };
 };

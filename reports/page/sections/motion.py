@@ -48,7 +48,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
         title="Scene by scene",
         template="motion.html",
         words={
-            "scenes": [_told(scene) for scene in scenes],
+            "scenes": [scene_words(scene) for scene in scenes],
             "thinned": steps < max(len(line.cells) for line in report.lines),
             "held": steps,
         },
@@ -74,7 +74,7 @@ def _sizes(report: Report, scene: Scene) -> dict[str, int]:
     return {key: size_of(rows, len(one["time_s"])) for key, one in traces.items() if one}
 
 
-def _told(scene: Scene) -> dict[str, object]:
+def scene_words(scene: Scene) -> dict[str, object]:
     """A scene in words: its source, its driver, and what theory says of it."""
     try:
         theory = facts(scene, analyse(scene))

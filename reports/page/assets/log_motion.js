@@ -1,0 +1,45 @@
+"use strict";
+// The mechanism as the closed form has it, and over it what a log says of it.
+
+(() => {
+  const own = crankcheck.embedded("motion");
+  const stretch = document.getElementById("motion-stretch");
+  const time = document.getElementById("motion-time");
+  const FARTHEST = 40; // far out of the picture, over the size of the drawing
+  let shown = null;
+
+  const overlays = () => shown.pieces.map((piece) => ({
+    name: piece.name, rows: (piece.unpacked ??= crankcheck.unpacked(piece.rows)), only: piece.only, width: 3,
+    paint: piece.apart ? "logged apart" : "logged",
+  }));
+
+  /** The position at which the log is farthest off. */
+  function farthest(mechanism) {
+    const rows = overlays().map((each) => each.rows);
+    let [most, found] = [0, 0];
+    for (let at = 0; at < mechanism.samples; at += 1) {
+      const off = Math.max(0, ...rows.map((each) => mechanism.farthest(each, at)));
+      if (off > most) [most, found] = [off, at];
+    }
+    return found;
+  }
+
+  const stage = crankcheck.stage("motion", {
+    overlays,
+    home: farthest, reach: FARTHEST,
+    drawn: (mechanism, position) => {
+      const at = shown.start + ((shown.end - shown.start) * position) / (mechanism.samples - 1);
+      time.textContent = `t = ${Number(at.toPrecision(5))} s`;
+    },
+  });
+
+  function choose() {
+    shown = own.stretches[Number(stretch?.value ?? 0)];
+    stage.set(shown.drawing);
+    stage.makeVisible();
+  }
+
+  stretch?.addEventListener("change", choose);
+  choose();
+  stage.start();
+})();
