@@ -170,9 +170,11 @@
     draw();
   });
   for (const link of document.querySelectorAll("a[data-channel]")) {
-    link.addEventListener("click", () => {
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
       channel.value = link.dataset.channel;
       choose();
+      document.getElementById("channels").scrollIntoView({ behavior: "instant" });
       channel.focus({ preventScroll: true });
     });
   }

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from models.array import Array
 from models.scene import Scene
+from reports.compare.beside import Truth
 from reports.drawing.moving import FARTHEST, drawn_links, moving_points
 from reports.drawing.packed import packed
 from reports.logs.channel import Reading
@@ -58,11 +59,17 @@ class LoggedBodies:
         return np.asarray(np.clip(np.vstack([*places, *angles]), -reach, reach))
 
 
-def logged_bodies(judged: JudgedLog, time_s: Array) -> LoggedBodies:
-    """What the log says of the bodies at instants (T,). Raises CrankcheckError."""
-    scene, truth = judged.beside.scene, judged.beside.truth.at(time_s)
+def truth_of_all(judged: JudgedLog) -> Truth:
+    """The truth that the log is judged by, of every point: what is judged may need fewer."""
+    return replace(judged.beside.truth, bound=False, points=None, _motions={})
+
+
+def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBodies:
+    """What the log says of the bodies at instants (T,), beside a truth of every point. Raises
+    CrankcheckError."""
+    scene, truth = judged.beside.scene, truth_of.at(time_s)
     errors = [
-        (reading, _error_at(judged, reading, time_s))
+        (reading, _error_at(truth_of, reading, time_s))
         for reading in judged.log.readings
         if reading.channel.kind.order == 0
     ]
@@ -79,16 +86,14 @@ def _angles_out(judged: JudgedLog) -> frozenset[str]:
     return frozenset(row.error.body for row in angles if row.verdict == "out")
 
 
-def _error_at(judged: JudgedLog, reading: Reading, time_s: Array) -> Array:
+def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
     """The error of a reading between its instants by straight lines, NaN beyond them."""
     after = np.searchsorted(reading.instants, time_s)
     # The first row says how many whole turns an angle is off throughout.
     near = np.unique(np.concatenate([[0], after - 1, after]))
     rows = near[(near >= 0) & (near < reading.instants.size)]
     own = reading.instants[rows]
-    error = reading.channel.error(
-        reading.values[rows], reading.channel.expected(judged.beside.truth.at(own))
-    )
+    error = reading.channel.error(reading.values[rows], reading.channel.expected(truth.at(own)))
     return np.interp(time_s, own, error, left=math.nan, right=math.nan)
 
 

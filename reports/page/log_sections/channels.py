@@ -7,13 +7,16 @@ from collections.abc import Iterator, Sequence
 
 from models.laws import Oscillating
 from reports.drawing.packed import packed, singles
-from reports.output.numbers import readable
+from reports.output.numbers import count, readable
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import share_of
 from reports.own_log.table import taken_text
 from reports.page.log_sections.curves import Curve, Samples
-from reports.page.log_sections.foreign_text import name_text, sentence_text
+from reports.page.log_sections.foreign_text import name_text
 from reports.page.sections.section import Section
+
+TITLE = 24
+"""Characters of a column that stand along its axis, on a phone as well."""
 
 
 def build(judged: JudgedLog, drawn: Sequence[Curve], has_places: bool) -> Section:
@@ -61,7 +64,7 @@ def _embedded(judged: JudgedLog, curve: Curve, axes: dict[str, int]) -> dict[str
     """A channel as the script reads it."""
     near = None if curve.near is None else _samples(curve.near, axes)
     return {
-        "label": name_text(curve.column, 40),
+        "label": name_text(curve.column, TITLE),
         "unit": curve.unit,
         "told": [*_told(judged, curve)],
         "turn": curve.turn,
@@ -94,7 +97,7 @@ def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
 
 def _told(judged: JudgedLog, curve: Curve) -> Iterator[str]:
     """A channel in sentences: what it was read as, how far it is off, and what that may be."""
-    yield sentence_text(f"{curve.column}: {curve.name}, in {curve.unit}.")
+    yield f"{name_text(curve.column)}: {curve.name}, in {curve.unit}."
     largest = f"{readable(abs(curve.largest), 4)} {curve.unit}"
     yield f"Its largest error is {largest}, at t = {curve.worst_s:.6g} s."
     if not curve.judged:
@@ -108,7 +111,8 @@ def _told(judged: JudgedLog, curve: Curve) -> Iterator[str]:
         yield f"{told}, {readable(row.limit.number)} ({row.limit.origin})."
     if curve.turns:
         way = "up" if curve.turns > 0 else "down"
-        yield f"Whole turns do not count: the closed form is drawn {abs(curve.turns)} {way}."
+        turns = count(abs(curve.turns), "turn")
+        yield f"Whole turns do not count: the closed form is drawn {turns} {way}."
     if curve.reading is not None and curve.reading.channel.relative_to:
         yield "The truth is that of both links."
     if curve.whole.is_thinned:

@@ -35,16 +35,21 @@ def build(judged: JudgedLog, facts: Mapping[str, str]) -> Section:
 
 def _settings(judged: JudgedLog) -> dict[str, str]:
     """What the log was judged by."""
-    time_s = judged.log.time_s
+    log = judged.log
+    time_s = log.time_s
+    stamp = f"{name_text(log.stamp[0])}, in {log.stamp[1]}"
+    if log.zero_s:
+        stamp += f", less {log.zero_s:.9g} s"
     limits = {
         name: f"{readable(limit.number)} ({limit.origin})"
         for name, limit in judged.limits.items()
         if judged.errors and any(row.tolerance == name for row in judged.errors.rows)
     }
     return {
-        "log": name_text(judged.log.source),
+        "log": name_text(log.source),
         "scene": judged.scene.name,
         "rows": f"{time_s.size}, t = {time_s[0]:.6g} to {time_s[-1]:.6g} s",
+        **({"time": stamp} if log.stamp[0] else {}),
         "drive": judged.drive,
         "step": f"{judged.step_s:g} s" if judged.step_s else "not known",
         **{f"limit of {name}": told for name, told in limits.items()},

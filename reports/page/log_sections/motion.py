@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.array import Array
+from models.motion import Motion
 from reports.drawing.moving import INSTANTS, drawing
 from reports.own_log.judged import JudgedLog
-from reports.page.log_sections.bodies import LoggedBodies, logged_bodies
+from reports.page.log_sections.bodies import LoggedBodies, logged_bodies, truth_of_all
 from reports.page.log_sections.curves import Curve, turn_s
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
@@ -37,7 +38,8 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section | None:
     if not has_places(judged):
         return None
     shown = [(each, _instants(each)) for each in stretches(judged, drawn)]
-    bodies = [logged_bodies(judged, time_s) for _, time_s in shown]
+    truth = truth_of_all(judged)
+    bodies = [logged_bodies(judged, truth, time_s) for _, time_s in shown]
     return Section(
         anchor="motion",
         title="In motion",
@@ -54,7 +56,7 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section | None:
                 {
                     "start": stretch.start_s,
                     "end": stretch.end_s,
-                    "drawing": _drawing(judged, time_s, body),
+                    "drawing": _drawing(truth.at(time_s), body),
                     "pieces": body.embedded(time_s.size),
                 }
                 for (stretch, time_s), body in zip(shown, bodies, strict=True)
@@ -65,10 +67,9 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section | None:
     )
 
 
-def _drawing(judged: JudgedLog, time_s: Array, bodies: LoggedBodies) -> dict[str, object]:
+def _drawing(truth: Motion, bodies: LoggedBodies) -> dict[str, object]:
     """The truth to be drawn, with room for what the log has of it."""
-    truth = judged.beside.truth.at(time_s)
-    shape = drawing(judged.beside.scene, time_s, truth)
+    shape = drawing(bodies.scene, truth.time_s, truth)
     right = np.concatenate([point.position for point in truth.points.values()])
     low, high = right.min(axis=0), right.max(axis=0)
     beyond = ROOM * float(np.max(high - low))

@@ -7,10 +7,17 @@ from collections.abc import Sequence
 from models.errors import few
 from reports.causes.cause import Cause
 from reports.judge.rules import RULES
-from reports.logs.units import UNITS
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow, log_rows, share_of
-from reports.own_log.table import fit_text, taken_text, unexplained, verdict_line
+from reports.own_log.rows import LogRow, share_of
+from reports.own_log.table import (
+    fit_text,
+    missing_text,
+    rest_text,
+    shown_rows,
+    taken_text,
+    unexplained,
+    verdict_line,
+)
 from reports.page.log_sections.curves import Curve
 from reports.page.log_sections.foreign_text import name_text, sentence_text, toml_text
 from reports.page.sections.section import Section
@@ -22,7 +29,7 @@ MOST = 300
 def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section:
     """The section; its columns lead to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
-    rows = sorted(log_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
+    rows = sorted(shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))
     unused = judged.log.unused
     return Section(
         anchor="verdict",
@@ -40,9 +47,10 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section:
             "fit": fit_text(judged) if judged.fit else "",
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
-            "not_judged": judged.not_judged,
+            "rest": rest_text(judged),
+            "not_judged": missing_text(judged),
             "unused": [(name_text(name), sentence_text(why)) for name, why in unused[:MOST]],
-            "more": len(unused) - MOST,
+            "number": len(unused),
         },
         scripts=("copying.js",),
         styles=("log.css",),
@@ -50,18 +58,16 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section:
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:
-    """A row of the table. The error is in the unit of the column as well, where that is another."""
+    """A row of the table; a gap leads to its curve as well."""
     error = row.error
-    own = row.units[0] if len(row.units) == 1 else error.unit
-    factor = next((units[own] for units in UNITS.values() if own in units), 1.0)
     gap = f"gap of {error.body}"
     columns = row.columns or ((gap,) if gap in numbers else ())
     return {
         "within": row.verdict == "within",
         "columns": [(name_text(name, 40), numbers.get(name)) for name in columns],
         "what": row.what,
-        "maximum": error.maximum / factor,
-        "unit": own,
+        "maximum": error.maximum / row.per_unit,
+        "unit": row.unit,
         "pure": error.pure,
         "share": share_of(error),
         "limit": row.limit.number,
