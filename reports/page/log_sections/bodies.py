@@ -87,14 +87,18 @@ def _angles_out(judged: JudgedLog) -> frozenset[str]:
 
 
 def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
-    """The error of a reading between its instants by straight lines, NaN beyond them."""
+    """The error of a reading between its instants by straight lines, NaN beyond them; that of an
+    angle without whole turns."""
     after = np.searchsorted(reading.instants, time_s)
-    # The first row says how many whole turns an angle is off throughout.
-    near = np.unique(np.concatenate([[0], after - 1, after]))
+    near = np.unique(np.concatenate([after - 1, after]))
     rows = near[(near >= 0) & (near < reading.instants.size)]
     own = reading.instants[rows]
     error = reading.channel.error(reading.values[rows], reading.channel.expected(truth.at(own)))
-    return np.interp(time_s, own, error, left=math.nan, right=math.nan)
+    turns = reading.channel.kind.turns
+    there = np.interp(
+        time_s, own, np.unwrap(error) if turns else error, left=math.nan, right=math.nan
+    )
+    return np.remainder(there + math.pi, math.tau) - math.pi if turns else there
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:

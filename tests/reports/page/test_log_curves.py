@@ -73,6 +73,15 @@ def test_the_phase_is_the_angle_of_the_crank_within_a_turn() -> None:
     assert curve.whole.phase == pytest.approx([90.0, 270.0, 90.0, 270.0, 90.0], abs=1e-6)
 
 
+def test_a_crank_that_is_back_at_zero_begins_anew() -> None:
+    scene = load_scene("fourbar-double-crank")
+    motion = motion_of(scene, turns=7.0, samples=8)
+    (curve,) = curves(
+        judged(motion.time_s, {"rocker_deg": angles(motion)["rocker_deg"]}, scene), ROOM
+    )
+    assert curve.whole.phase == pytest.approx(np.zeros(8), abs=1e-6)
+
+
 def test_the_phase_of_a_crank_that_swings_is_the_part_of_its_period() -> None:
     scene = load_scene("fourbar-double-rocker")
     motion = motion_of(scene, turns=2.0, samples=9)

@@ -23,7 +23,7 @@ from reports.page.build import _plotly
 from reports.page.log_page import log_page
 from reports.page.log_sections.motion import stretches
 from reports.page.log_sections.verdict import map_lines
-from tests.reports.page.judged_logs import FACTS, angles, judged, motion_of, points
+from tests.reports.page.judged_logs import FACTS, TURN_S, angles, judged, motion_of, points
 from tests.reports.page.test_page import EVIL, Outline
 
 MOTION = motion_of()
@@ -211,14 +211,14 @@ def test_of_many_turns_the_first_the_last_and_the_worst_are_drawn() -> None:
     one = judged(motion.time_s, angles(motion, rocker=off))
     names = [each.name for each in stretches(one, curves(one, 100_000))]
     assert names == ["the turn of the largest error", "the first turn", "the last turn"]
-    off[300], off[2] = 0.0, 1.0
+    off[300], off[70] = 0.0, 1.0  # 0.7 of a turn: its own turn begins at 0.2
     one = judged(motion.time_s, angles(motion, rocker=off))
     found = stretches(one, curves(one, 100_000))
     assert [each.name for each in found] == [
         "the turn of the largest error, the first turn",
         "the last turn",
     ]
-    assert found[0].start_s == 0.0
+    assert found[0].start_s == pytest.approx(0.2 * TURN_S)
     assert found[1].end_s == pytest.approx(motion.time_s[-1])
 
 

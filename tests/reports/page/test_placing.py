@@ -130,6 +130,28 @@ def test_a_slider_goes_along_its_guide_and_takes_its_rod_with_it() -> None:
     assert np.allclose(piece.off["C"], [1e-3, 0.0])
 
 
+def test_a_slider_on_a_lever_goes_along_the_lever() -> None:
+    scene = load_scene("shaper")
+    motion = motion_of(scene)
+    columns = {"B_displacement_mm": 1e3 * motion.sliders["B"].displacement + 1.0}
+    found = drawn(judged(motion.time_s, columns, scene))
+    lever = motion.links["lever"].theta[::36]
+    along = 1e-3 * np.column_stack([np.cos(lever), np.sin(lever)])
+    assert np.allclose(found.pieces[0].off["B"], along, atol=1e-12)
+    assert found.pieces[0].links == ("crank",)
+
+
+def test_whole_turns_that_were_lost_on_the_way_turn_nothing_in_the_drawing() -> None:
+    scene = load_scene("shaper")
+    motion = motion_of(scene)
+    column = np.degrees(motion.links["lever"].theta) + 360.0 * (motion.time_s > 0.3)
+    one = judged(motion.time_s, {"lever_deg": column}, scene)
+    last = motion.time_s[motion.time_s <= 0.3][-1]
+    for time_s in (np.array([0.4, 0.5]), last + np.array([0.0, 1e-3])):  # after it, and across
+        turned = logged_bodies(one, truth_of_all(one), time_s).turned["lever"]
+        assert np.allclose(turned, 0.0, atol=1e-9)
+
+
 def test_a_link_that_slides_is_drawn_along_with_its_point() -> None:
     scene = load_scene("scotch-yoke")
     motion = motion_of(scene)
