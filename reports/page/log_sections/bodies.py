@@ -87,18 +87,16 @@ def _angles_out(judged: JudgedLog) -> frozenset[str]:
 
 
 def _error_at(truth: Truth, reading: Reading, time_s: Array) -> Array:
-    """The error of a reading between its instants by straight lines, NaN beyond them; that of an
-    angle without whole turns."""
+    """The error of a reading between its instants by straight lines, NaN beyond them; whole turns
+    that an angle loses on the way are no error."""
     after = np.searchsorted(reading.instants, time_s)
     near = np.unique(np.concatenate([after - 1, after]))
     rows = near[(near >= 0) & (near < reading.instants.size)]
     own = reading.instants[rows]
     error = reading.channel.error(reading.values[rows], reading.channel.expected(truth.at(own)))
-    turns = reading.channel.kind.turns
-    there = np.interp(
-        time_s, own, np.unwrap(error) if turns else error, left=math.nan, right=math.nan
-    )
-    return np.remainder(there + math.pi, math.tau) - math.pi if turns else there
+    if reading.channel.kind.turns:
+        error = np.unwrap(error)
+    return np.interp(time_s, own, error, left=math.nan, right=math.nan)
 
 
 def _turned(errors: Sequence[tuple[Reading, Array]], samples: int) -> dict[str, Array]:
