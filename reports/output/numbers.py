@@ -32,7 +32,8 @@ def readable(value: float, digits: int = 3) -> str:
     """A number with few digits: 0.0123, 345, 6.7e-5; what is not finite by its name."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:
         return f"{value:.{digits}g}" if abs(value) < 10.0**digits else f"{value:.0f}"
-    return short(value, digits)
+    mantissa, e, exponent = short(value, digits).partition("e")
+    return f"{mantissa.rstrip('0').rstrip('.') if e else mantissa}{e}{exponent}"
 
 
 def duration(value_s: float | None) -> str:

@@ -16,7 +16,7 @@
   /** An axis with its series unpacked, once. */
   function axisOf(one) {
     const axis = own.axes[one.axis];
-    axis.t ??= singles(axis.time).map((t) => axis.start + t);
+    axis.t ??= singles(axis.time).map((t) => Number(axis.start) + t);
     axis.at ??= unpacked(axis.phase)[0];
     return axis;
   }
@@ -111,6 +111,7 @@
     const x = phase ? axis.at : axis.t;
     const breaks = seams(one, x);
     const dots = phase && one.thinned;
+    const sixths = phase && own.round === 360 ? { dtick: 60 } : {};
     const ends = phase ? [0, own.round] : [x[0], x.at(-1)];
     const places = broken(x, breaks);
     const line = (name, series, more = {}) => ({
@@ -136,7 +137,7 @@
       ],
       layout: {
         hovermode: "x",
-        xaxis: { title: { text: phase ? own.phase : "time [s]" }, anchor: "y2", zeroline: false, range: ends },
+        xaxis: { title: { text: phase ? own.phase : "time [s]" }, anchor: "y2", zeroline: false, range: ends, ...sixths },
         yaxis: { title: { text: `${crankcheck.escaped(one.label)} [${unit}]` }, domain: [0.46, 1], zeroline: false },
         yaxis2: { ...errorAxis(one, heights), domain: [0, 0.38], anchor: "x" },
         shapes: band(one, heights?.[0]), annotations: label(one, x[worst], sized[worst], ends, logarithmic),

@@ -28,8 +28,10 @@
     overlays,
     home: farthest, reach: FARTHEST,
     drawn: (mechanism, position) => {
-      const at = shown.start + ((shown.end - shown.start) * position) / (mechanism.samples - 1);
-      time.textContent = `t = ${Number(at.toPrecision(5))} s`;
+      const [start, end] = [shown.start, shown.end].map(Number);
+      const at = start + ((end - start) * position) / (mechanism.samples - 1);
+      const places = Math.max(0, 4 - Math.floor(Math.log10(end - start)));
+      time.textContent = `t = ${Number(at.toFixed(places))} s`;
     },
   });
 

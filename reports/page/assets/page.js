@@ -64,7 +64,7 @@ const crankcheck = (() => {
   /** A number with few digits, without an exponent where it needs none: 0.0123, 345, 6.7e-5. */
   function readable(value, digits = 3) {
     const size = Math.abs(value);
-    return size === 0 || (size >= 1e-3 && size < 1e5) ? String(Number(value.toPrecision(digits))) : short(value, digits);
+    return size === 0 || (size >= 1e-3 && size < 1e5) ? String(Number(value.toPrecision(digits))) : short(value, digits).replace(/\.?0+e/, "e");
   }
 
   /** A time in the unit that suits it. */

@@ -80,7 +80,7 @@ def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
     start = float(samples.time_s[0])
     axis = json.dumps(
         {
-            "start": start,
+            "start": repr(start),  # with all its digits
             "time": singles(samples.time_s - start),
             "phase": packed(samples.phase),
         },

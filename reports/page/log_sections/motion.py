@@ -54,8 +54,8 @@ def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section | None:
         embedded={
             "stretches": [
                 {
-                    "start": stretch.start_s,
-                    "end": stretch.end_s,
+                    "start": repr(stretch.start_s),  # with all its digits
+                    "end": repr(stretch.end_s),
                     "drawing": _drawing(truth.at(time_s), body),
                     "pieces": body.embedded(time_s.size),
                 }

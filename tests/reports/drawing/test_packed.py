@@ -11,8 +11,17 @@ import re
 import numpy as np
 import pytest
 
-from reports.drawing.packed import LEVELS, embedded, packed, policy, size_of
-from reports.output.numbers import DIGITS, NONE, count, duration, error_text, finite, listed
+from reports.drawing.packed import LEVELS, embedded, packed, policy, singles, size_of
+from reports.output.numbers import (
+    DIGITS,
+    NONE,
+    count,
+    duration,
+    error_text,
+    finite,
+    listed,
+    readable,
+)
 
 HOSTILE = "</script><script>alert(1)</script><!--\u2028\u2029&'\""
 
@@ -42,6 +51,16 @@ def test_packed_samples_come_back_to_a_part_of_their_row(scale: float) -> None:
     assert found["samples"] == 91
 
 
+def test_single_samples_come_back_to_seven_digits() -> None:
+    row = np.array([0.0, 123.456789, -1e-30, 1e300, np.nan])
+    told = singles(row)
+    found = np.frombuffer(base64.b64decode(str(told["singles"])), dtype="<f4")
+    assert told["samples"] == 5
+    assert found[:3] == pytest.approx(row[:3], rel=1e-7, abs=1e-38)
+    assert np.isposinf(found[3])
+    assert np.isnan(found[4])
+
+
 def test_packed_samples_that_are_missing_are_told_from_zero() -> None:
     found = packed(np.array([[math.nan, 0.0, math.inf, 1.0], [0.0, 0.0, 0.0, math.nan]]))
     whole = np.frombuffer(base64.b64decode(str(found["base64"])), "<i2").reshape(2, 4)
@@ -61,6 +80,18 @@ def test_the_policy_lets_the_own_scripts_run_and_nothing_else() -> None:
     assert "default-src 'none'" in found
     assert "http" not in found
     assert "unsafe-eval" not in found
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (0.001, "0.001"), (0.01234, "0.0123"), (-3.016, "-3.02"), (345.6, "346"),
+        (12345.6, "12346"), (1e-4, "1e-4"), (1.2e-4, "1.2e-4"), (-4.567e-9, "-4.57e-9"),
+        (1e5, "1e5"), (math.inf, "inf"), (math.nan, "nan"),
+    ],
+)  # fmt: skip
+def test_numbers_are_told_without_an_exponent_where_they_need_none(value: float, text: str) -> None:
+    assert readable(value) == text
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page
 
+from analytic.kinematics import solve
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.log_page import log_page
 from tests.reports.page.conftest import Opened
-from tests.reports.page.judged_logs import FACTS, TURN_S, angles, judged, motion_of, points
+from tests.reports.page.judged_logs import FACTS, SCENE, TURN_S, angles, judged, motion_of, points
 from tests.reports.page.test_browser import (
     CONTROLS,
     NAMELESS,
@@ -249,6 +250,19 @@ def test_hostile_text_does_nothing(phone: Opened) -> None:
     assert "\u202e" not in page.locator("body").inner_text()
     assert "\\u202e" in page.locator("#verdict").inner_text()
     assert phone.said == []
+
+
+def test_times_far_from_zero_keep_their_digits(open_page: Open, tmp_path: Path) -> None:
+    turn = motion_of(samples=91)
+    late = 12345.678 + turn.time_s
+    columns = angles(solve(SCENE, late))
+    opened = open_page(written(judged(late, columns), tmp_path))
+    opened.show("channels")
+    assert np.allclose(trace(opened.page, "logged")["x"], late, atol=1e-6)
+    opened.page.locator("#motion-slider").focus()
+    opened.page.keyboard.press("End")
+    told = opened.page.locator("#motion-time").inner_text()
+    assert float(told.split()[2]) == pytest.approx(late[-1], abs=1e-4)
 
 
 def test_what_the_log_has_not_is_not_drawn_over_the_truth(phone: Opened) -> None:
