@@ -59,6 +59,14 @@ def test_a_lost_turn_of_an_angle_that_is_not_wrapped_is_an_error() -> None:
     assert worst(log) == pytest.approx(2 * np.pi)
 
 
+def test_a_turn_lost_early_is_no_wrapping_though_the_rest_is_within_one_turn() -> None:
+    lost = CRANK.theta - 2 * np.pi * (CRANK.theta > CRANK.theta[0] + 4.0)
+    short = CRANK.theta < CRANK.theta[0] + 9.0
+    log = log_of({"t": TIME_S[short], "crank": lost[short]})
+    assert np.ptp(lost[short]) <= 2 * np.pi
+    assert not log.readings[0].channel.wrapped
+
+
 def test_an_angle_relative_to_another_link_is_compared_as_such() -> None:
     log = log_of({"t": TIME_S, "rocker_rel_coupler_rad": ROCKER.theta - COUPLER.theta})
     assert worst(log) < 1e-12
