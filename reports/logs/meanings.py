@@ -15,7 +15,7 @@ from reports.logs.channel import Channel, Log, Reading
 from reports.logs.columns import Columns
 from reports.logs.instants import instants, refuse_far
 from reports.logs.kinds import KINDS
-from reports.logs.map_file import ChannelTable, Map
+from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
 from reports.logs.names import Meaning, Named, meaning, time_of
 from reports.logs.spelling import DIMENSION
 from reports.logs.units import UNITS, si
@@ -170,7 +170,7 @@ def _meaning(
 ) -> Channel | _Gap | str:
     """What a column is, or why nothing is made of it. Raises CrankcheckError."""
     if told and told.ignore:
-        return "the map leaves it out"
+        return LEFT_OUT
     if told is None or told.of is None or told.kind is None:
         found = meaning(column, named, told.unit or "" if told else "")
         if isinstance(found, str):

@@ -14,7 +14,7 @@ from models.files import load_scene
 from reports.compare.beside import Truth
 from reports.logs.channel import Log
 from reports.logs.columns import columns_of
-from reports.logs.map_file import map_of, map_text, read_map
+from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import understood
 
 SCENE = load_scene("fourbar-lecture-1")
@@ -116,7 +116,7 @@ def test_the_map_that_is_written_is_the_log_that_was_read(tmp_path: Path) -> Non
     told = [{"column": 'odd "name" \\ of crank', "of": "crank", "kind": "angle", "unit": "rad",
              "delay_s": 1e-4}]  # fmt: skip
     log = log_of(columns, channel=told)
-    (tmp_path / "map.toml").write_text(map_text(log), encoding="utf-8")
+    (tmp_path / "map.toml").write_text(map_text(log, FileTable()), encoding="utf-8")
     again = understood(columns_of(pd.DataFrame(columns)), SCENE, read_map(tmp_path / "map.toml"))
     assert [each.channel for each in again.readings] == [each.channel for each in log.readings]
     assert np.array_equal(again.time_s, log.time_s)

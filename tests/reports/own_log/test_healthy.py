@@ -5,7 +5,7 @@ The limit is 1e-3 rad, or of a length; what a dress takes away is less.
 
 from __future__ import annotations
 
-import math
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -297,18 +297,32 @@ def test_a_log_that_begins_late_in_a_later_turn_is_the_same(judge: Judge) -> Non
     assert result.exit_code == 0, result.output + result.stderr
 
 
-def test_the_map_that_is_written_reads_the_log_as_its_names_do(
+@pytest.mark.parametrize("name", ["units in brackets", "decimal commas", "names that say nothing"])
+def test_the_map_that_is_written_reads_the_log_in_the_same_way(
+    name: str, judge: Judge, tmp_path: Path
+) -> None:
+    guise = GUISES[name]
+    text = guise.dress.text(guise.log(FOURBAR, 1.0))
+    written, first, again = (tmp_path / each for each in ("written.toml", "1.json", "2.json"))
+    mapped = guise.map(FOURBAR)
+    assert judge(PLAIN, text, "--write-map", str(written), mapped=mapped).exit_code == 0
+    judge(PLAIN, text, "--json", str(first), mapped=mapped)
+    result = judge(PLAIN, text, "--map", str(written), "--json", str(again))
+    assert result.exit_code == 0, result.output + result.stderr
+    one, other = (json.loads(each.read_text(encoding="utf-8"))["errors"] for each in (first, again))
+    assert one == other
+
+
+def test_a_column_that_a_map_ignores_is_ignored_by_the_map_that_is_written(
     judge: Judge, tmp_path: Path
 ) -> None:
-    guise = GUISES["units in brackets"]
-    text = guise.dress.text(guise.log(FOURBAR, 1.0))
+    log = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), SHORT)
+    text = Dress().text({**log, "rocker.theta_rad": log["rocker_deg"]})
     written = tmp_path / "written.toml"
-    first = judge(PLAIN, text, "--write-map", str(written))
-    assert first.exit_code == 0, first.output + first.stderr
-    again = judge(PLAIN, text, "--map", str(written))
-    assert again.exit_code == 0, again.output + again.stderr
-    assert math.isclose(guise.columns[0].per, DEG)
-    assert 'unit = "deg"' in written.read_text(encoding="utf-8")
+    mapped = '[[channel]]\ncolumn = "rocker.theta_rad"\nignore = true'
+    assert judge(PLAIN, text, "--write-map", str(written), mapped=mapped).exit_code == 0
+    result = judge(PLAIN, text, "--map", str(written))
+    assert result.exit_code == 0, result.output + result.stderr
 
 
 @pytest.mark.parametrize(
