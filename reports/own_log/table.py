@@ -80,10 +80,11 @@ def _toml(value: object) -> str:
 
 
 def _unexplained(judged: JudgedLog) -> list[str]:
-    """Columns that are out of tolerance, and that no cause is known of."""
+    """Columns that are out of tolerance, and that no cause is known of; where it is known of the x
+    of a point, its y may be right."""
     told = {column for cause in judged.causes for column in cause.columns}
-    out = (row for row in log_rows(judged) if row.verdict == "out")
-    left = dict.fromkeys(c for row in out for c in row.columns if c not in told)
+    out = (row for row in log_rows(judged) if row.verdict == "out" and told.isdisjoint(row.columns))
+    left = dict.fromkeys(column for row in out for column in row.columns)
     return [column_text(column) for column in left]
 
 

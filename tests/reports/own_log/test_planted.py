@@ -53,6 +53,7 @@ def blamed(judge: Judge, tmp_path: Path) -> Callable[..., tuple[str, list[str]]]
         assert len(causes) == 1, [cause["text"] for cause in causes]
         (cause,) = causes
         assert cause["text"][:40] in " ".join(result.output.split())
+        assert "none that is known" not in result.output
         return cause["text"], cause["columns"]
 
     return run
