@@ -6,7 +6,6 @@ together the other way, and one whose coupler is 1 % longer than the drawing say
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -162,10 +161,12 @@ def lost_turn(log: Log, column: str, turn: float = 360.0) -> Log:
 
 
 def smoothed(log: Log, column: str, rows: float) -> Log:
-    """A low-pass of the first order, with a time constant of so many rows."""
-    series = log[column].copy()
-    share = 1.0 - math.exp(-1.0 / rows)
-    for k in range(1, series.size):
+    """A low-pass of the first order, with a time constant of so many rows, of which some may be
+    longer than others."""
+    series, clock = log[column].copy(), next(iter(log.values()))
+    steps = np.diff(clock)
+    shares = 1.0 - np.exp(-steps / (rows * np.mean(steps)))
+    for k, share in enumerate(shares, 1):
         series[k] = series[k - 1] + share * (series[k] - series[k - 1])
     return {**log, column: series}
 
