@@ -6,7 +6,7 @@ import io
 import re
 import warnings
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,8 @@ MOST_ROWS = 2_000_000
 MOST_COLUMNS = 2_000
 MOST_SHEET_BYTES = 400_000_000
 """Of a workbook when it is unpacked."""
+MOST_CELLS = 20_000_000
+"""Of a sheet, from the first to the last."""
 COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*")
 
 
@@ -86,6 +88,8 @@ class Columns:
                 continue
             try:
                 if isinstance(cell, bool) or not isinstance(cell, int | float | str):
+                    raise ValueError
+                if "_" in str(cell):  # which Python takes for a number
                     raise ValueError
                 found[row] = float(cell)
             except (ValueError, OverflowError):
@@ -226,13 +230,33 @@ def _sheet(source: str, raw: bytes, layout: Layout) -> Columns:
                 hint = suggestion(layout.sheet, names, "the sheets are")
                 raise UnreadableError(f"no sheet {layout.sheet!r}; {hint}")
             name = layout.sheet or names[0]
-            frame = book.parse(name, header=None)
+            frame = _cells(book.book[name])
     except UnreadableError:
         raise
     except Exception as error:  # whatever a damaged archive makes of its reader
         why = cut(f"{type(error).__name__}: {error}".splitlines()[0], 200)
         raise UnreadableError(f"no workbook that can be read: {why}") from None
     return _of_cells(source, frame, name, len(names))
+
+
+def _cells(sheet: Any) -> pd.DataFrame:
+    """The cells of a sheet. Raises UnreadableError where they are far apart: a frame is as long and
+    wide as the last of them, whatever the file says of its size."""
+    sheet.reset_dimensions()
+    rows: list[Sequence[object]] = []
+    for row in sheet.iter_rows(values_only=True):
+        last = max((at for at, cell in enumerate(row) if cell is not None), default=-1)
+        rows.append(row[: last + 1])
+    while rows and not rows[-1]:
+        rows.pop()
+    wide = max(map(len, rows), default=0)
+    refuse_many(len(rows), wide, MOST_ROWS, MOST_COLUMNS)
+    if len(rows) * wide > MOST_CELLS:
+        raise UnreadableError(
+            f"cells up to row {len(rows)} and column {wide}; at most {MOST_CELLS} are read: clear "
+            "those that are far away, or save the sheet as CSV"
+        )
+    return pd.DataFrame(rows)
 
 
 def _of_cells(source: str, frame: pd.DataFrame, sheet: str, sheets: int) -> Columns:

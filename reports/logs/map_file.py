@@ -41,6 +41,8 @@ from reports.logs.units import UNITS
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
 Name = Annotated[str, Field(min_length=1, max_length=400)]
 KIND_NAMES = (*dict.fromkeys(name for _, name in KINDS), "gap")
+LEFT_OUT = "the map leaves it out"
+"""Why a column is not used that a map has ignored."""
 
 
 class Table(BaseModel):
@@ -144,14 +146,18 @@ def _check_words(map_: Map, place: str) -> None:
         raise CrankcheckError(listed(place, faults))
 
 
-def map_text(log: Log) -> str:
-    """The map of a log as its columns were understood, with what was not as remarks."""
+def map_text(log: Log, file: FileTable) -> str:
+    """The map of a log as its columns were understood, with what was not as remarks, and what the
+    map that it was read by says of the file."""
+    told = file.model_dump(exclude_defaults=True)
+    head = ["[file]", *(f"{key} = {_text(value)}" for key, value in told.items()), ""]
     lines = [
         "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
         "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
         "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
         "# A reading is sign * (number + offset); ignore = true leaves a column out.",
         "",
+        *(head if told else []),
         "[time]",
         f"column = {_text(log.stamp[0])}",
         f"unit = {_text(log.stamp[1])}",
@@ -161,6 +167,9 @@ def map_text(log: Log) -> str:
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]
     for column, reason in log.unused:
+        if reason == LEFT_OUT:
+            lines += ["", "[[channel]]", f"column = {_text(column)}", "ignore = true"]
+            continue
         lines += ["", f"# {' '.join(reason.split())}", "# [[channel]]",
                   f"# column = {_text(column)}"]  # fmt: skip
         lines += ['# of = ""', '# kind = ""', '# unit = ""']

@@ -15,10 +15,13 @@ from reports.logs.channel import Channel, Log, Reading
 from reports.logs.columns import Columns
 from reports.logs.instants import instants, refuse_far
 from reports.logs.kinds import KINDS
-from reports.logs.map_file import ChannelTable, Map
+from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
 from reports.logs.names import Meaning, Named, meaning, time_of
 from reports.logs.spelling import DIMENSION
 from reports.logs.units import UNITS, si
+
+DIGITS = 2e-3
+"""What rounding may add to half a turn [rad]: that to 3.142."""
 
 
 @dataclass(frozen=True)
@@ -99,11 +102,14 @@ class _Reader:
 
     def reading(self, channel: Channel, told: ChannelTable | None) -> Reading:
         """The numbers of a channel in SI, and their instants."""
-        raw = self.columns.numbers(channel.column) + channel.offset
-        values = channel.sign * UNITS[channel.kind.dimension][channel.unit] * raw
+        unit = UNITS[channel.kind.dimension][channel.unit]
+        raw = self.columns.numbers(channel.column)
+        values = channel.sign * unit * (raw + channel.offset)
         if channel.kind.turns:
             wrapped = told.wrapped if told else None
-            channel = replace(channel, wrapped=_is_wrapped(values) if wrapped is None else wrapped)
+            if wrapped is None:
+                wrapped = _is_wrapped(unit * raw)
+            channel = replace(channel, wrapped=wrapped)
         own = self.others.get(channel.time, self.time_s)
         if channel.delay_s:
             own = own + channel.delay_s
@@ -111,9 +117,12 @@ class _Reader:
 
 
 def _is_wrapped(angle_rad: Array) -> bool:
-    """Whether an angle stays within one turn, and jumps by more than half of one."""
+    """Whether an angle, as it was logged, stays within a turn from -pi or from 0 on, and jumps by
+    more than half of one; within another turn it may have lost one."""
     leaps = np.abs(np.diff(angle_rad)) > math.pi
-    return bool(leaps.any() and np.ptp(angle_rad) <= math.tau * (1.0 + 1e-6))
+    least, most = float(np.min(angle_rad)), float(np.max(angle_rad))
+    within = (low - DIGITS <= least and most <= low + math.tau + DIGITS for low in (-math.pi, 0.0))
+    return bool(leaps.any()) and any(within)
 
 
 def _times(columns: Columns, map_: Map) -> dict[str, str]:
@@ -161,7 +170,7 @@ def _meaning(
 ) -> Channel | _Gap | str:
     """What a column is, or why nothing is made of it. Raises CrankcheckError."""
     if told and told.ignore:
-        return "the map leaves it out"
+        return LEFT_OUT
     if told is None or told.of is None or told.kind is None:
         found = meaning(column, named, told.unit or "" if told else "")
         if isinstance(found, str):

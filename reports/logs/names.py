@@ -105,7 +105,8 @@ def time_of(column: str) -> tuple[str, str] | None:
     name = " ".join(words)
     if name not in TIMES and name not in ("velocity time", "acceleration time"):
         return None
-    return "time" if name in TIMES else name, _one_unit(column, unit) or si("time")
+    unit = _one_unit(column, unit) or si("time")
+    return ("time" if name in TIMES else name, unit) if DIMENSION[unit] == "time" else None
 
 
 def meaning(column: str, named: Named, told: str = "") -> Meaning | str:

@@ -40,7 +40,7 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
     cells = [
         (
             "ok" if row.verdict == "within" else "OUT",
-            ", ".join(row.columns) or "-",
+            row.names,
             row.what,
             row.size,
             f"{error_text(row.error.pure)} {share_of(row.error)}",

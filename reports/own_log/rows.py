@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from models.errors import cut, harmless
 from reports.compare.errors import Error
 from reports.judge.tolerance import Limit, in_passage
 from reports.logs.beside_truth import readings_of
@@ -16,6 +17,8 @@ from reports.output.numbers import error_text
 from reports.own_log.judged import JudgedLog
 from reports.quantities import QUANTITIES
 
+LONGEST = 60
+"""Characters of a column's name that are shown."""
 KINDS = ("total", "start", "passage")
 """Kinds of errors that have limits."""
 
@@ -43,6 +46,11 @@ class LogRow:
         return self.error.source != "reported" or self.error.kind != "total"
 
     @property
+    def names(self) -> str:
+        """The columns as they are shown, - for none."""
+        return ", ".join(map(column_text, self.columns)) or "-"
+
+    @property
     def taken(self) -> float:
         """The part of the limit that it takes; no end where it is not finite."""
         if not math.isfinite(self.error.pure):
@@ -52,6 +60,11 @@ class LogRow:
     @property
     def verdict(self) -> Literal["within", "out"]:
         return "within" if self.taken <= 1.0 else "out"
+
+
+def column_text(column: str) -> str:
+    """The name of a column, short, and as text that does nothing to a terminal."""
+    return cut(harmless(column[:LONGEST]), LONGEST)
 
 
 def log_rows(judged: JudgedLog) -> list[LogRow]:

@@ -10,12 +10,12 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from models.errors import few
+from models.errors import few, harmless
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count, error_text, short
 from reports.own_log.judged import JudgedLog
-from reports.own_log.rows import LogRow, log_rows, share_of
+from reports.own_log.rows import LogRow, column_text, log_rows, share_of
 
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
@@ -37,7 +37,9 @@ def _failures(console: Console, judged: JudgedLog) -> None:
     """What is out of tolerance, rule by rule, and what explains it."""
     if not judged.failures:
         return
-    console.print(Text(f"OUT  {judged.log.source}, scene {judged.scene.name}", "bold red"))
+    console.print(
+        Text(f"OUT  {harmless(judged.log.source)}, scene {judged.scene.name}", "bold red")
+    )
     for finding in judged.failures:
         hanging(console, f"  {finding.rule} ", f"{RULES[finding.rule].title}: {finding.text}")
     for cause in judged.causes:
@@ -78,10 +80,12 @@ def _toml(value: object) -> str:
 
 
 def unexplained(judged: JudgedLog) -> list[str]:
-    """Columns that are out of tolerance, and that no cause is known of."""
+    """Columns that are out of tolerance, and that no cause is known of; where it is known of the x
+    of a point, its y may be right."""
     told = {column for cause in judged.causes for column in cause.columns}
-    out = (row for row in log_rows(judged) if row.verdict == "out")
-    return list(dict.fromkeys(c for row in out for c in row.columns if c not in told))
+    out = (row for row in log_rows(judged) if row.verdict == "out" and told.isdisjoint(row.columns))
+    left = dict.fromkeys(column for row in out for column in row.columns)
+    return [column_text(column) for column in left]
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
@@ -100,7 +104,7 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
         error = row.error
         cells: list[Text | str] = [
             Text("ok", "green") if row.verdict == "within" else Text("OUT", "bold red"),
-            Text(", ".join(row.columns) or "-"),
+            Text(row.names),
             Text(row.what),
             row.size,
             f"{error_text(error.pure)} {share_of(error)}",
@@ -157,7 +161,7 @@ def unused_lines(judged: JudgedLog) -> list[str]:
     """The columns that nothing was made of, a line for each reason."""
     reasons: dict[str, list[str]] = {}
     for column, reason in judged.log.unused:
-        reasons.setdefault(reason, []).append(column)
+        reasons.setdefault(reason, []).append(column_text(column))
     return [f"{few(columns, FEW)}: {reason}" for reason, columns in reasons.items()]
 
 

@@ -37,7 +37,7 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     map_ = read_map(request.map) if request.map else Map()
     log = understood(read_columns(request.log, map_.layout), scene, map_)
     if request.write_map is not None:
-        write(request.write_map, map_text(log))
+        write(request.write_map, map_text(log, map_.file))
         told = harmless(f"{request.write_map}: what {request.log} says, as it was understood")
         console.print(told, highlight=False, markup=False)
         return 0

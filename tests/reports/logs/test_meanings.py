@@ -14,7 +14,7 @@ from models.files import load_scene
 from reports.compare.beside import Truth
 from reports.logs.channel import Log
 from reports.logs.columns import columns_of
-from reports.logs.map_file import map_of, map_text, read_map
+from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import understood
 
 SCENE = load_scene("fourbar-lecture-1")
@@ -57,6 +57,14 @@ def test_a_lost_turn_of_an_angle_that_is_not_wrapped_is_an_error() -> None:
     log = log_of({"t": TIME_S, "crank": lost})
     assert not log.readings[0].channel.wrapped
     assert worst(log) == pytest.approx(2 * np.pi)
+
+
+def test_a_turn_lost_early_is_no_wrapping_though_the_rest_is_within_one_turn() -> None:
+    lost = CRANK.theta - 2 * np.pi * (CRANK.theta > CRANK.theta[0] + 4.0)
+    short = CRANK.theta < CRANK.theta[0] + 9.0
+    log = log_of({"t": TIME_S[short], "crank": lost[short]})
+    assert np.ptp(lost[short]) <= 2 * np.pi
+    assert not log.readings[0].channel.wrapped
 
 
 def test_an_angle_relative_to_another_link_is_compared_as_such() -> None:
@@ -108,7 +116,7 @@ def test_the_map_that_is_written_is_the_log_that_was_read(tmp_path: Path) -> Non
     told = [{"column": 'odd "name" \\ of crank', "of": "crank", "kind": "angle", "unit": "rad",
              "delay_s": 1e-4}]  # fmt: skip
     log = log_of(columns, channel=told)
-    (tmp_path / "map.toml").write_text(map_text(log), encoding="utf-8")
+    (tmp_path / "map.toml").write_text(map_text(log, FileTable()), encoding="utf-8")
     again = understood(columns_of(pd.DataFrame(columns)), SCENE, read_map(tmp_path / "map.toml"))
     assert [each.channel for each in again.readings] == [each.channel for each in log.readings]
     assert np.array_equal(again.time_s, log.time_s)

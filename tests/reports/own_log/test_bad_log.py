@@ -1,0 +1,198 @@
+"""Logs and maps that can not be judged: each is refused with exit code 2 and one message, which
+names the place, what was found and what would work; nothing is written, and it takes no longer, and
+hardly more memory, than a log of the same size that is right."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from reports.workers.isolated import Isolated, Limits, Lost
+from tests.worlds.bad_log_tables import PARQUET, WORKBOOKS
+from tests.worlds.bad_log_texts import HEADER, LARGE, ROWS, SPECIAL, TEXTS, Made, text
+from tests.worlds.fuzzing import Ended, attempt
+
+PLAIN = "judge fourbar-lecture-1 FILE --target 1e-3 -o OUT.html --json OUT.json"
+SOONER_S, LESS = 2.0, 300_000_000
+"""Processor time [s] and memory [byte], those of imports counted."""
+
+
+OPTIONS: dict[str, str] = {
+    "judge fourbar-lecture-1 FILE": "--step.*--target|--target.*--step",
+    "judge fourbar-lecture-1 FILE --target x": "'x' is not a number above 0",
+    "judge fourbar-lecture-1 FILE --target 0": "'0' is not a number above 0",
+    "judge fourbar-lecture-1 FILE --target -1": "'-1' is not a number above 0|No such option",
+    "judge fourbar-lecture-1 FILE --target nan": "'nan' is not a number above 0",
+    "judge fourbar-lecture-1 FILE --target inf": "'inf' is not a number above 0",
+    "judge fourbar-lecture-1 FILE --target angel=1e-3": "'angel' is no quantity; .*angle",
+    "judge fourbar-lecture-1 FILE --target angle=": "'' is not a number above 0",
+    "judge fourbar-lecture-1 FILE --target =1": "'' is no quantity",
+    "judge fourbar-lecture-1 FILE --step 0": "--step.*0",
+    "judge fourbar-lecture-1 FILE --step -1": "--step",
+    "judge fourbar-lecture-1 FILE --step nan": "--step",
+    "judge fourbar-lecture-1 FILE --step 1e300": "--step",
+    "judge fourbar-lecture-1 FILE --target 1e-3 --require rockr": "'rockr'.*rocker",
+    "judge fourbar-lecture-1 FILE --target 1e-3 --drive logd": "'logd'.*logged",
+    "judge fourbar-lecture-1 FILE --target 1e-3 --write-map nowhere/map.toml": "nowhere",
+    "judge nowhere FILE --target 1e-3": "nowhere",
+    "judge fourbar-lecture-1 FILE --target 1e-3 --map nowhere.toml": "nowhere.toml",
+    "judge fourbar-lecture-1 FILE --target 1e-3 --format pdf": "'pdf'",
+    "judge fourbar-lecture-1 FILE --target 1e-3 -o OUT.pdf": "pdf",
+}
+MAPS: dict[str, tuple[str, str]] = {
+    "a column that is not there": (
+        '[[channel]]\ncolumn = "rockr_deg"', "'rockr_deg' is not in .*rocker_deg",
+    ),
+    "a column of times that is not there": (
+        '[time]\ncolumn = "tme_s"', "'tme_s' is not in .*time_s",
+    ),
+    "a body that is not there": (
+        '[[channel]]\ncolumn = "rocker_deg"\nof = "rockr"\nkind = "angle"',
+        "of: 'rockr' is not in scene fourbar-lecture-1; .*rocker",
+    ),
+    "a unit that is not there": (
+        '[[channel]]\ncolumn = "rocker_deg"\nunit = "degs"', "'degs' is unknown; .*deg",
+    ),
+    "a unit of something else": (
+        '[[channel]]\ncolumn = "rocker_deg"\nunit = "mm"', "mm is a unit of length, and",
+    ),
+    "a unit of time that is not there": ('[time]\nunit = "sec"', "'sec' is no unit of time; .*s"),
+    "a kind that is not there": (
+        '[[channel]]\ncolumn = "rocker_deg"\nkind = "angel"', "'angel' is unknown; .*angle",
+    ),
+    "a kind of something else": (
+        '[[channel]]\ncolumn = "rocker_deg"\nkind = "vx"', "'vx' is no kind of reading of link roc",
+    ),
+    "another link that is not there": (
+        '[[channel]]\ncolumn = "rocker_deg"\nrelative_to = "couplr"', "'couplr'; .*coupler",
+    ),
+    "a link against itself": (
+        '[[channel]]\ncolumn = "rocker_deg"\nrelative_to = "rocker"', "'rocker'; .*another link",
+    ),
+    "a body that does not carry the pin": (
+        '[[channel]]\ncolumn = "C_x_mm"\non = "crank"', "'crank' does not carry C; .*coupler",
+    ),
+    "an unknown key": (
+        '[[channel]]\ncolumn = "rocker_deg"\nunits = "deg"', "channel.1.units: unknown key; .*unit",
+    ),
+    "an unknown table": ("[colums]\na = 1", "colums: unknown key; "),
+    "a table for a list": ('[channel]\ncolumn = "rocker_deg"', "channel"),
+    "a column told twice": (
+        '[[channel]]\ncolumn = "rocker_deg"\n[[channel]]\ncolumn = "rocker_deg"', "told twice",
+    ),
+    "two columns for one quantity": (
+        '[[channel]]\ncolumn = "rocker_deg"\nof = "crank"\nkind = "angle"',
+        "two columns for one quantity, angle of crank: 'crank_deg' and 'rocker_deg'",
+    ),
+    "a sign that is none": ('[[channel]]\ncolumn = "rocker_deg"\nsign = 2', "channel.1.sign: foun"),
+    "a text for a number": (
+        '[[channel]]\ncolumn = "rocker_deg"\noffset = "1"', "channel.1.offset: found '1'",
+    ),
+    "an infinite offset": (
+        '[[channel]]\ncolumn = "rocker_deg"\noffset = inf', "channel.1.offset: found inf",
+    ),
+    "a channel without a column": ('[[channel]]\nof = "rocker"', "channel.1.column: missing; add"),
+    "a separator that is none": ('[file]\nseparator = "|||"', "file.separator: found"),
+    "a time that is none": (
+        '[[channel]]\ncolumn = "rocker_deg"\ntime = "C_x_mm"', "'C_x_mm' is no column of times",
+    ),
+    "no TOML": ("[[channel", "not valid TOML"),
+    "all columns left out": (
+        "".join(f'[[channel]]\ncolumn = "{c}"\nignore = true\n' for c in HEADER.split(",")[1:]),
+        "no column is of scene",
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Case:
+    """A file, a command on it, words of the message, and a map."""
+
+    made: Made
+    words: str
+    command: str = PLAIN
+    name: str = "log.csv"
+    mapped: str = ""
+
+
+def cases() -> Iterator[tuple[str, Case]]:
+    for name, (made, words) in {**TEXTS, **LARGE}.items():
+        yield name, Case(made, words)
+    for name, (made, words) in SPECIAL.items():
+        for ending in ("csv", "xlsx", "parquet"):
+            yield f"{name} .{ending}", Case(made, words, name=f"log.{ending}")
+    for name, (made, words) in PARQUET.items():
+        yield f"Parquet, {name}", Case(made, words, name="log.parquet")
+    for name, (made, words) in WORKBOOKS.items():
+        yield f"workbook, {name}", Case(made, words, name="log.xlsx")
+    for command, words in OPTIONS.items():
+        yield command, Case(text(*ROWS), words, command)
+    for name, (mapped, words) in MAPS.items():
+        yield f"map, {name}", Case(text(*ROWS), words, mapped=mapped)
+    without = [",".join([*row.split(",")[:1], *row.split(",")[2:]]) for row in [HEADER, *ROWS]]
+    yield (
+        "logged without the crank",
+        Case(
+            "\n".join(without).encode(), "no angle of crank .*log crank_", f"{PLAIN} --drive logged"
+        ),
+    )
+    swinging = text(*ROWS, header=HEADER.replace("crank_deg", "lever_deg"))
+    yield (
+        "fitted to a lever that swings",
+        Case(
+            swinging, "driver of tangent has no constant speed", "judge tangent FILE --drive fitted"
+        ),
+    )
+    yield "another ending", Case(text(*ROWS), "found '.docx'; use .csv, .tsv", name="log.docx")
+    yield "no ending", Case(text(*ROWS), "found no ending; use .csv", name="log")
+
+
+CASES = dict(cases())
+
+
+@pytest.fixture(scope="module")
+def apart() -> Iterator[Isolated[Ended]]:
+    """A process that bad input is tried in: it may hang, or fill memory."""
+    # Arrow lays claim to more than a gigabyte, of which it takes next to nothing.
+    process: Isolated[Ended] = Isolated(Limits(time_s=30.0, memory_gb=5.0))
+    yield process
+    process.close()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_is_refused_at_once_with_one_message(
+    name: str, apart: Isolated[Ended], tmp_path: Path
+) -> None:
+    case = CASES[name]
+    arguments = case.command.split()
+    if case.mapped:
+        (tmp_path / "map.toml").write_text(case.mapped, encoding="utf-8")
+        arguments += ["--map", str(tmp_path / "map.toml")]
+    ended = apart.call(partial(attempt, name=case.name), case.made, *arguments)
+    assert not isinstance(ended, Lost), ended
+    assert ended.faults == []
+    assert ended.code == 2, ended.output + ended.errors
+    assert ended.errors.count("crankcheck: ") == 1
+    assert len(ended.errors) < 9000
+    assert re.search(case.words, " ".join(ended.errors.split()), re.DOTALL), ended.errors[:500]
+    assert ended.files == ()
+    assert ended.took_s < SOONER_S
+    assert ended.peak - ended.before < LESS
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root reads every file")
+def test_a_log_that_may_not_be_read_is_refused(apart: Isolated[Ended]) -> None:
+    def locked(path: Path) -> None:
+        path.write_bytes(text(*ROWS))
+        path.chmod(0)
+
+    ended = apart.call(partial(attempt, name="log.csv"), locked, *PLAIN.split())
+    assert isinstance(ended, Ended)
+    assert ended.code == 2
+    assert "ermission" in ended.errors

@@ -1,0 +1,151 @@
+"""Ten faults in the log of a stranger, on three linkages: each is out, and the fault is named with
+its channel; nothing else is blamed.
+
+What is planted, and where, says `tests.worlds.planted_log`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from tests.reports.own_log.conftest import Judge
+from tests.reports.own_log.test_healthy import disguised
+from tests.worlds.planted_log import COLUMNS, CULPRITS, Planted, averaged, planted, stuck
+from tests.worlds.stranger import LINKAGES
+from tests.worlds.stranger_log import Dress, Log, even, logged, uneven
+from tests.worlds.stranger_map import map_text
+
+PER_TURN = 60
+TURNS = 2.0
+WORDS = {
+    "swapped columns": "each other's readings",
+    "wrong unit": "is in (rad|m|mm/s), not in (deg|mm|m/s)",
+    "wrong sign": "has the wrong sign",
+    "late channel": r"belongs 2\.50 samples .* earlier",
+    "drifted clock": r"clock of the log runs (0\.1 %|1000 ppm|1e\+03 ppm) fast",
+    "other branch": "other assembly",
+    "scaled length": r"length .* \(\+1 %\)",
+    "stuck sample": "sticks: .* repeats the one before",
+    "lost turn": "loses whole turns: -1 at sample",
+    "filtered signal": "low-pass of first order",
+}
+"""What the cause says of each fault."""
+EITHER = list(product(LINKAGES, WORDS))
+
+
+@pytest.fixture
+def blamed(judge: Judge, tmp_path: Path) -> Callable[..., tuple[str, list[str]]]:
+    """The text of the one cause that is told of a log that is out, and its columns."""
+
+    def run(scene: str, log: Log, *options: str, mapped: str = "") -> tuple[str, list[str]]:
+        document = tmp_path / "judged.json"
+        text = Dress().text(log)
+        result = judge(scene, text, "--json", str(document), *options, mapped=mapped)
+        assert result.exit_code == 1, result.output + result.stderr
+        causes = json.loads(document.read_text(encoding="utf-8"))["causes"]
+        assert len(causes) == 1, [cause["text"] for cause in causes]
+        (cause,) = causes
+        assert cause["text"][:40] in " ".join(result.output.split())
+        assert "none that is known" not in result.output
+        return cause["text"], cause["columns"]
+
+    return run
+
+
+def holds(case: Planted, words: str, text: str, columns: list[str]) -> None:
+    """A cause names the fault, and what it is of."""
+    assert re.search(words, text), text
+    assert re.search(rf"\b{case.named}\b", text), text
+    if case.columns:
+        assert set(columns) == set(case.columns)
+        assert all(column in text for column in case.columns), text
+
+
+@pytest.mark.parametrize(("scene", "fault"), EITHER)
+def test_a_fault_is_named_with_its_channel(
+    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
+) -> None:
+    case = planted(scene, even(LINKAGES[scene], TURNS, PER_TURN))[fault]()
+    holds(case, WORDS[fault], *blamed(scene, case.log))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "fault"), EITHER)
+def test_at_uneven_times_too(
+    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Only here are times uneven and faults in: what looks for one may count on even steps."""
+    case = planted(scene, uneven(LINKAGES[scene], 2.0, 120))[fault]()
+    holds(case, WORDS[fault], *blamed(scene, case.log))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "fault"), EITHER)
+def test_in_all_guises_at_once_too(
+    scene: str, fault: str, blamed: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Only here do faults meet angles of joints, wrapped ones, and rates said to be late."""
+    linkage, culprits = LINKAGES[scene], CULPRITS[scene]
+    plain = {culprits.turn, *culprits.swapped} if fault in ("lost turn", "swapped columns") else {}
+    columns = [
+        old if old.header in plain else replace(new, header=old.header)
+        for old, new in zip(COLUMNS[scene], disguised(scene).columns, strict=True)
+    ]
+    mapped = map_text(linkage, columns)
+    case = planted(scene, uneven(linkage, 2.0, 120), columns)[fault]()
+    holds(case, WORDS[fault], *blamed(scene, case.log, mapped=mapped))
+
+
+@pytest.mark.parametrize("scene", LINKAGES)
+def test_rates_half_a_sample_late_are_told_and_the_map_that_is_told_mends_it(
+    scene: str, blamed: Callable[..., tuple[str, list[str]]], judge: Judge
+) -> None:
+    linkage = LINKAGES[scene]
+    step_s = linkage.period_s / PER_TURN
+    columns = [
+        replace(column, later_s=-step_s / 2.0) if column.what in ("omega", "vx", "vy") else column
+        for column in COLUMNS[scene]
+    ]
+    log = logged(linkage, even(linkage, TURNS, PER_TURN), columns)
+    text, blamed_columns = blamed(scene, log)
+    assert "belong 0.50 samples" in text
+    assert "earlier" in text
+    late = {column.header for column in columns if column.later_s}
+    assert set(blamed_columns) == late - {f"{linkage.crank}_omega_rad_s"}  # which is constant
+    told = "\n".join(
+        f'[[channel]]\ncolumn = "{column}"\ndelay_s = {-step_s / 2.0!r}' for column in late
+    )
+    assert judge(scene, Dress().text(log), mapped=told).exit_code == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", LINKAGES)
+def test_a_mean_that_is_not_late_is_a_filter_too(
+    scene: str, blamed: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Only here is a signal filtered without delay."""
+    column = CULPRITS[scene].filtered
+    log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
+    text, columns = blamed(scene, averaged(log, column, 21))
+    assert columns == [column]
+    assert "mean over 21 samples" in text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", LINKAGES)
+def test_several_samples_that_stick_are_told_as_one_stretch(
+    scene: str, blamed: Callable[..., tuple[str, list[str]]]
+) -> None:
+    """Only here does a sensor stick for longer than a sample."""
+    column = CULPRITS[scene].stuck
+    log = logged(LINKAGES[scene], even(LINKAGES[scene], TURNS, PER_TURN), COLUMNS[scene])
+    text, columns = blamed(scene, stuck(log, column, 6))
+    assert columns == [column]
+    assert re.search(r"sticks: samples \d+ to \d+ ", text), text

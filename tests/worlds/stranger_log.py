@@ -1,0 +1,152 @@
+"""What that somebody logs of them: columns of any name and unit, at any times, in any dress.
+
+Nothing is interpolated: a channel that is late is the linkage at an earlier time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from tests.worlds.stranger import Array, Course, Linkage, course
+
+Log = dict[str, Array]
+"""Numbers as they are written, by header; the time is the first column."""
+DEG, MM, RPM = 180.0 / math.pi, 1e3, 30.0 / math.pi
+"""How many make one SI unit."""
+ANGULAR = ("angle", "omega", "alpha")
+PLANE = {"x": (0, 0), "y": (0, 1), "vx": (1, 0), "vy": (1, 1), "ax": (2, 0), "ay": (2, 1)}
+"""The rate of a point, and its axis."""
+SEED = 20260512
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: ``what`` of a body or point, ``per`` SI unit so many.
+
+    An angle may be wrapped into the turn that begins at ``turn_from`` [deg], and be that against a
+    ``parent``. What stands in a row may belong to an instant ``later_s`` after its time; then comes
+    ``offset``, in the unit of the column.
+    """
+
+    header: str
+    of: str
+    what: str
+    per: float = 1.0
+    turn_from: float | None = None
+    parent: str = ""
+    on: str = ""
+    later_s: float = 0.0
+    offset: float = 0.0
+
+    def numbers(self, linkage: Linkage, time_s: Array) -> Array:
+        """The column (T,) in rows of those times [s]."""
+        motion = moved(linkage, time_s + self.later_s)
+        series = self._series(motion, self.of)
+        if self.parent:
+            series = series - self._series(motion, self.parent)
+        if self.turn_from is not None:
+            low = math.radians(self.turn_from)
+            series = np.mod(series - low, math.tau) + low
+        return series * self.per + self.offset
+
+    def _series(self, motion: Course, name: str) -> Array:
+        if self.what in ANGULAR:
+            return motion.angle(name)[ANGULAR.index(self.what)]
+        rate, axis = PLANE[self.what]
+        return motion.point(name, self.on)[rate][:, axis]
+
+
+def moved(linkage: Linkage, time_s: Array) -> Course:
+    """The linkage at those times; one of them before 0 is of the turns before."""
+    return _moved(_Same(linkage), np.ascontiguousarray(time_s).tobytes())
+
+
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A linkage that is the same if its numbers are."""
+
+    linkage: Linkage
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and repr(self.linkage) == repr(other.linkage)
+
+    def __hash__(self) -> int:
+        return hash(repr(self.linkage))
+
+
+@lru_cache(maxsize=64)
+def _moved(same: _Same, times: bytes) -> Course:
+    time_s = np.frombuffer(times)
+    turns = math.ceil(max(0.0, -time_s[0]) / same.linkage.period_s)  # it turns at constant speed
+    motion = course(same.linkage, time_s + turns * same.linkage.period_s)
+    k = 3 * list(same.linkage.bodies).index(same.linkage.crank) + 2
+    q = motion.q.copy()
+    q[:, k] -= turns * math.tau * math.copysign(1.0, same.linkage.speed_rad_s)
+    return replace(motion, time_s=time_s, q=q)
+
+
+def even(linkage: Linkage, turns: float = 2.0, samples_per_turn: int = 360) -> Array:
+    """The times [s] of a recorder."""
+    return np.arange(round(turns * samples_per_turn) + 1) * (linkage.period_s / samples_per_turn)
+
+
+def uneven(linkage: Linkage, turns: float = 2.0, samples_per_turn: int = 360) -> Array:
+    """The times [s] of a program that logs when it comes to it, the first of them late."""
+    regular = even(linkage, turns, samples_per_turn) + 0.0137
+    jitter = np.random.default_rng(SEED).uniform(-0.4, 0.4, regular.size)
+    return regular + jitter * (regular[1] - regular[0])
+
+
+def logged(
+    linkage: Linkage,
+    time_s: Array,
+    columns: Sequence[Column],
+    clock: str = "time_s",
+    per_second: float = 1.0,
+) -> Log:
+    """The columns at those times [s]."""
+    numbers = {column.header: column.numbers(linkage, time_s) for column in columns}
+    return {clock: time_s * per_second, **numbers}
+
+
+@dataclass(frozen=True)
+class Dress:
+    """How a log looks as a text. ``digits`` are significant ones; of none all are written."""
+
+    separator: str = ","
+    point: str = "."
+    comments: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    newline: str = "\n"
+    mark: bool = False
+    digits: int | None = None
+    quoted: bool = False
+
+    def text(self, log: Log) -> bytes:
+        """The log."""
+        headers = [f'"{name}"' if self.quoted else name for name in log]
+        lines = [*self.comments, self.separator.join(headers)]
+        lines += [self.separator.join(self.units)] if self.units else []
+        write = repr if self.digits is None else f"{{:.{self.digits}g}}".format
+        columns = [[write(x) for x in _plain(series)] for series in log.values()]
+        rows = (self.separator.join(row) for row in zip(*columns, strict=True))
+        lines += [row.replace(".", self.point) for row in rows]
+        whole = "".join(line + self.newline for line in lines)
+        return whole.encode("utf-8-sig" if self.mark else "utf-8")
+
+
+def _plain(series: Array) -> list[float]:
+    """The numbers (T,), those of single precision with no more digits than tell them apart."""
+    if series.dtype == np.float32:
+        return [float(str(x)) for x in series]
+    return series.tolist()
+
+
+def single(log: Log) -> Log:
+    """The log in single precision."""
+    return {name: series.astype(np.float32) for name, series in log.items()}
