@@ -156,7 +156,7 @@ def _write(path: Path, scene: Scene, motion: Motion) -> None:
         write(path, frame.to_csv(index=False, lineterminator="\n"))
     elif ending == ".parquet":
         # It brings the comparison, which nothing else here needs.
-        from reports.judge.frames import parquet
+        from reports.output.frame_file import parquet
 
         write(path, parquet(frame))
     else:
