@@ -1,8 +1,15 @@
 """crankcheck: which physics engine, with which settings, can you trust with a closed loop?
 
-The public face, the same in a checkout and where the wheel is installed. Importing it costs next to
-nothing: what stands behind a name is loaded when the name is first used. Where it is the command
-that begins, Ctrl-C is heard from here on.
+    verdict = crankcheck.check("fourbar-lecture-1", "mujoco")
+    print(verdict)
+
+The public face is what ``__all__`` lists, and `crankcheck.testing`: docs/python.md shows all of it.
+Every other module, class and function is private, and may change from one version to the next
+without a word in CHANGELOG.md.
+
+It is the same in a checkout and where the wheel is installed. Importing it costs next to nothing:
+what stands behind a name is loaded when the name is first used. Where it is the command that
+begins, Ctrl-C is heard from here on.
 """
 
 import sys
@@ -41,7 +48,6 @@ TYPE_CHECKING = False
 """As that of `typing`, whose import would take longer than all else here."""
 
 if TYPE_CHECKING:
-    from analytic.kinematics import solve, solve_driven
     from models.errors import (
         CrankcheckError,
         EngineError,
@@ -52,30 +58,52 @@ if TYPE_CHECKING:
     from models.files import load_scene
     from models.motion import Motion, State
     from models.scene import Scene
-    from reports.judge.cell import Cell, Checked, check
+    from reports.causes.cause import Cause
+    from reports.compare.errors import Error, Errors
+    from reports.face.cell_verdict import CellVerdict, check
+    from reports.face.comparison import Comparison, compare
+    from reports.face.log_verdict import LogVerdict, judge
+    from reports.face.report import report
+    from reports.face.simulation import Simulation, run
+    from reports.face.solution import Solution, solve, solve_driven
+    from reports.face.sweep import Sweep, sweep
+    from reports.judge.cell import Cell
+    from reports.judge.rules.rule import Finding
     from sim.engine import Run
-    from sim.run import run
 
     __version__: str
 
 __all__ = [
+    "Cause",
     "Cell",
-    "Checked",
+    "CellVerdict",
+    "Comparison",
     "CrankcheckError",
     "EngineError",
+    "Error",
+    "Errors",
+    "Finding",
+    "LogVerdict",
     "Motion",
     "ReachError",
     "Run",
     "Scene",
     "SceneError",
+    "Simulation",
+    "Solution",
     "State",
     "StructureError",
+    "Sweep",
     "__version__",
     "check",
+    "compare",
+    "judge",
     "load_scene",
+    "report",
     "run",
     "solve",
     "solve_driven",
+    "sweep",
 ]
 
 
@@ -84,8 +112,6 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
     def __getattr__(name: str) -> object:
         """What stands behind a name, imported now."""
         match name:
-            case "solve" | "solve_driven":
-                from analytic import kinematics as home
             case "CrankcheckError" | "EngineError" | "ReachError" | "SceneError" | "StructureError":
                 from models import errors as home
             case "load_scene":
@@ -94,12 +120,30 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from models import motion as home
             case "Scene":
                 from models import scene as home
-            case "Cell" | "Checked" | "check":
+            case "Cause":
+                from reports.causes import cause as home
+            case "Error" | "Errors":
+                from reports.compare import errors as home
+            case "CellVerdict" | "check":
+                from reports.face import cell_verdict as home
+            case "Comparison" | "compare":
+                from reports.face import comparison as home
+            case "LogVerdict" | "judge":
+                from reports.face import log_verdict as home
+            case "report":
+                from reports.face import report as home
+            case "Simulation" | "run":
+                from reports.face import simulation as home
+            case "Solution" | "solve" | "solve_driven":
+                from reports.face import solution as home
+            case "Sweep" | "sweep":
+                from reports.face import sweep as home
+            case "Cell":
                 from reports.judge import cell as home
+            case "Finding":
+                from reports.judge.rules import rule as home
             case "Run":
                 from sim import engine as home
-            case "run":
-                from sim import run as home
             case "__version__":
                 from reports.output.provenance import crankcheck_version
 

@@ -54,7 +54,7 @@ def shown(found: object) -> str:
     """What was found in a file, short enough for a message."""
     if isinstance(found, float) and not math.isfinite(found):
         return str(found)
-    return cut(repr(found))
+    return cut(repr(found) if isinstance(found, str) else " ".join(repr(found).split()))
 
 
 def listed(place: str, faults: Sequence[str]) -> str:

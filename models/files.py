@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os import PathLike, fspath
 from pathlib import Path
 from typing import TypeVar
 
@@ -26,27 +27,35 @@ def shipped() -> dict[str, Path]:
     return {path.stem: path for path in sorted(SCENE_FOLDER.glob("*.toml"))}
 
 
-def load_scene(name_or_path: str) -> Scene:
+def load_scene(name_or_path: str | PathLike[str]) -> Scene:
     """Read a shipped scene by name, or a scene file by path.
 
     Parameters
     ----------
-    name_or_path : str
+    name_or_path : str or path
         ``fourbar-lecture-1``, or anything that ends in ``.toml`` or names a file.
 
     Raises
     ------
     CrankcheckError
-        Nothing there; the message suggests the near names.
+        Nothing there (the message suggests the near names), or neither a name nor a path.
     SceneError
         A file with faults, all of them in one message.
     """
     return read_scene(find_scene(name_or_path))
 
 
-def find_scene(name_or_path: str) -> Path:
+def find_scene(name_or_path: str | PathLike[str]) -> Path:
     """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
     known = shipped()
+    try:
+        name_or_path = fspath(name_or_path)
+        if not isinstance(name_or_path, str):
+            raise TypeError
+    except TypeError:
+        raise CrankcheckError(
+            f"scene: found {shown(name_or_path)}; give a shipped name or the path of a scene file"
+        ) from None
     if name_or_path in known:
         return known[name_or_path]
     path = Path(name_or_path)

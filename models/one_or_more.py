@@ -11,7 +11,11 @@ def names_in(chosen: str | Iterable[str], what: str) -> tuple[str, ...]:
     """The chosen names, in order. Raises CrankcheckError for what is neither a name nor several."""
     if isinstance(chosen, str):
         return (chosen,)
-    names = tuple(chosen) if isinstance(chosen, Iterable) else (None,)
-    if not all(isinstance(name, str) for name in names):
+    names: tuple[str, ...] | None
+    try:
+        names = tuple(chosen)
+    except TypeError:  # also of an array of no dimension, which is called iterable
+        names = None
+    if names is None or not all(isinstance(name, str) for name in names):
         raise CrankcheckError(f"{what}: found {shown(chosen)}; give a name, or a list of names")
     return names

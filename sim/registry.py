@@ -18,6 +18,8 @@ ENGINES: Mapping[str, str] = {
     "pymunk": ".pymunk",
 }
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
+FIRST = next(iter(ENGINES))
+"""The one that is taken where one is enough, and none was named."""
 Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer"]
 """What an engine may lack."""
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import json
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
 import crankcheck
+from crankcheck import testing as crankcheck_testing
 from tests.worlds.command import COMMAND, PYTHON
 
 HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "pydantic", "typer")
@@ -43,6 +46,23 @@ def test_every_name_is_there_and_loads_no_engine_and_no_table() -> None:
         "print([name for name in ('mujoco', 'pymunk', 'pandas') if name in sys.modules])"
     )
     assert printed(PYTHON, "-P", "-c", code) == "[]\n"
+
+
+def test_asserting_in_tests_loads_no_engine_and_no_table() -> None:
+    code = (
+        "import sys\nfrom crankcheck.testing import assert_within\n"
+        "print([name for name in ('mujoco', 'pymunk', 'pandas') if name in sys.modules])"
+    )
+    assert printed(PYTHON, "-P", "-c", code) == "[]\n"
+
+
+def test_every_function_says_what_its_arguments_are() -> None:
+    functions = [getattr(crankcheck, name) for name in crankcheck.__all__ if name.islower()]
+    for function in [*filter(inspect.isfunction, functions), crankcheck_testing.assert_within]:
+        text = inspect.getdoc(function) or ""
+        for name in inspect.signature(function).parameters:
+            assert re.search(rf"\b{name}\b", text), f"{function.__name__}: {name}"
+        assert "Raises" in text
 
 
 def test_a_type_checker_sees_what_is_there() -> None:

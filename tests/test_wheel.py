@@ -149,19 +149,104 @@ def test_import_crankcheck_is_the_wheel_in_the_users_folder(installed: Path, min
     )
     done = ran(installed / "python", "-c", code, cwd=mine)
     module, path = done.stdout.split()
-    assert module == "crankcheck.models.motion"
+    assert module == "crankcheck.reports.face.solution"
     assert Path(path).is_relative_to(installed.parent)
 
 
+TYPED = {
+    "solve('shaper', np.zeros(1))": "crankcheck.reports.face.solution.Solution",
+    "solve('shaper', [0.0]).frame()": "pandas.core.frame.DataFrame",
+    "run(Path('a.toml'), 'mujoco', dt_s=1e-3)": "crankcheck.reports.face.simulation.Simulation",
+    "check('shaper').findings[0].level": ("Literal['pass'] | Literal['advice'] | Literal['fail']"),
+    "judge('shaper', 'log.csv', target=1e-3)": "crankcheck.reports.face.log_verdict.LogVerdict",
+    "judge('shaper', cc.run('shaper'))": "crankcheck.reports.face.cell_verdict.CellVerdict",
+    "compare('shaper', {'t': [0.0]}).errors": "crankcheck.reports.compare.errors.Errors",
+    "sweep(['shaper'], 'out').verdict": "Literal['within'] | Literal['out']",
+    "report('out')": "pathlib.Path",
+}
+"""What a user's type checker makes of calls."""
+REFUSED = {
+    "solve(3)": "arg-type",
+    "run('shaper', steps=90)": "call-arg",
+    "check('shaper', tolerance={'angle': 'x'})": "dict-item",
+    "judge('shaper', cc.run('shaper'), step_s=1e-3)": "call-overload",
+    "undo": "attr-defined",
+}
+
+
 def test_a_type_checker_sees_through_the_wheel(installed: Path, mine: Path) -> None:
-    (mine / "script.py").write_text(
-        "import crankcheck, numpy\n"
-        "reveal_type(crankcheck.solve(crankcheck.load_scene('shaper'), numpy.zeros(1)))\n"
-    )
+    lines = [*(f"reveal_type(cc.{call})" for call in TYPED), *(f"cc.{call}" for call in REFUSED)]
+    head = "from pathlib import Path\nimport numpy as np, crankcheck as cc\n"
+    text = "from crankcheck.testing import assert_within\nassert_within('a', 'b', angle='x')\n"
+    (mine / "script.py").write_text(head + "\n".join(lines) + "\n" + text)
     checker = [sys.executable, "-m", "mypy", "--python-executable", installed / "python"]
-    done = ran(*checker, "--strict", "script.py", cwd=mine)
-    assert done.returncode == 0, done.stdout
-    assert 'Revealed type is "crankcheck.models.motion.Motion"' in done.stdout
+    kept = ("--cache-dir", ROOT / ".mypy_cache" / "wheel")  # of numpy and pandas, which take long
+    done = ran(*checker, *kept, "--strict", "script.py", cwd=mine)
+    told = done.stdout.replace("Union[", "").replace("builtins.", "")
+    revealed = re.findall('Revealed type is "(.*)"', told)
+    assert revealed == list(TYPED.values()), done.stdout
+    assert re.findall(r"error: .*\[(.*)\]", told) == [*REFUSED.values(), "arg-type"], done.stdout
+
+
+FIVE_LINES = """\
+import crankcheck
+
+verdict = crankcheck.check("fourbar-lecture-1", "mujoco")
+print(verdict.verdict)
+print(verdict)
+"""
+PROJECT = """\
+import models.linkage, reports.table
+from crankcheck import solve
+from crankcheck.testing import assert_within
+
+LOG = {"time_s": models.linkage.TIME_S, "rocker_rad": models.linkage.rocker_rad()}
+
+
+def test_that_passes():
+    assert_within("fourbar-lecture-1", LOG, angle=1e-9)
+
+
+def test_that_fails():
+    assert_within("fourbar-lecture-1", {**LOG, "rocker_rad": reports.table.off(LOG)}, angle=1e-3)
+"""
+LINKAGE = """\
+import crankcheck
+
+TIME_S = [k / 100 for k in range(60)]
+
+
+def rocker_rad():
+    return crankcheck.solve("fourbar-lecture-1", TIME_S).links["rocker"].theta
+"""
+
+
+def test_five_lines_print_the_verdict_of_the_lectures_four_bar(installed: Path, mine: Path) -> None:
+    (mine / "five.py").write_text(FIVE_LINES)
+    done = ran(installed / "python", "five.py", cwd=mine)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("within\nprofile tuned (gated)\n")
+    assert "\nok fourbar-lecture-1      mujoco 1.2e-07 " in done.stdout
+    assert "\nWITHIN TOLERANCE: 1 cell (1 scene x 1 engine)\n" in done.stdout
+
+
+def test_a_project_with_packages_of_our_names_asserts_with_the_wheel(
+    installed: Path, mine: Path
+) -> None:
+    (mine / "models" / "linkage.py").write_text(LINKAGE)
+    (mine / "reports" / "table.py").write_text(
+        "def off(log):\n    return log['rocker_rad'] + 0.01\n"
+    )
+    (mine / "crankcheck").rmdir()
+    (mine / "test_linkage.py").write_text(PROJECT)
+    command = [installed / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    done = ran(*command, "--import-mode=prepend", "test_linkage.py", cwd=mine)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "1 failed, 1 passed" in done.stdout
+    told = [line.removeprefix("E").strip() for line in done.stdout.splitlines()]
+    assert "OUT  the log, scene fourbar-lecture-1" in told
+    assert "OUT OF TOLERANCE: 1 of 1 error over 60 samples of fourbar-lecture-1" in told
+    assert [line for line in told if line.startswith("OUT rocker_rad")]
 
 
 def test_tests_of_the_command_pass_against_that_of_the_wheel(installed: Path) -> None:

@@ -1,4 +1,4 @@
-"""The commands that show scenes, engines and the reference alone."""
+"""The commands that show scenes, engines, the reference alone, and one run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import app, command, guarded
+from reports.cli.application import StepS, StepsPerTurn, Turns, app, command, guarded
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
@@ -48,6 +48,35 @@ def solve(request: SolveRequest) -> int:
 
     verb.run_solve(request, terminal())
     return 0
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """What `run` was asked for, as given."""
+
+    scene: SceneName
+    engine: Annotated[
+        str | None, typer.Option(help="Engine; the first of `crankcheck engines` if none.")
+    ] = None
+    profile: Annotated[str, typer.Option(help="Profile of the engine.")] = "tuned"
+    dt_s: StepS = None
+    steps_per_turn: StepsPerTurn = None
+    turns: Turns = 2.0
+    every: Annotated[int, typer.Option(metavar="N", help="Log every N-th step.")] = 1
+    drive: Annotated[str, typer.Option(help="prescribed, servo, or free (nothing drives it).")] = (
+        "prescribed"
+    )
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
+    ] = None
+
+
+@command
+def run(request: RunRequest) -> int:
+    """Run a scene in an engine and write its log; exit 1 when the run did not end well."""
+    from reports.cli.commands import run as verb
+
+    return verb.run_run(request, terminal())
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""A motion as a pandas frame with units in the column names."""
+"""A motion, or the log of a run, as a pandas frame with units in the column names."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 
 from models.motion import BodyMotion, Motion
+from sim.engine import Run
 
 
-def motion_frame(motion: Motion) -> pd.DataFrame:
+def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
     """One row per sample: each link, point and slider with its rates, vectors also by length."""
     columns: dict[str, object] = {"time_s": motion.time_s}
     for name, link in motion.links.items():
@@ -25,13 +26,39 @@ def motion_frame(motion: Motion) -> pd.DataFrame:
         ):
             columns[f"{name}_{symbol}x_{unit}"] = vectors[:, 0]
             columns[f"{name}_{symbol}y_{unit}"] = vectors[:, 1]
-            if symbol:
+            if symbol and lengths:
                 columns[f"{name}_{symbol}_{unit}"] = np.hypot(vectors[:, 0], vectors[:, 1])
     for name, slider in motion.sliders.items():
         columns[f"{name}_slider_displacement_m"] = slider.displacement
         columns[f"{name}_slider_speed_m_s"] = slider.speed
         columns[f"{name}_slider_acceleration_m_s2"] = slider.acceleration
     return pd.DataFrame(columns)
+
+
+def run_frame(run: Run) -> pd.DataFrame:
+    """What a run logged, one row per sample, no rows where it logged nothing.
+
+    As `motion_frame`, but for lengths of vectors, and how far each pin and slider is open. The
+    instants that velocities and accelerations belong to stand beside those of the places where they
+    are others. What the engine does not report is left out.
+    """
+    if run.motion is None:
+        return pd.DataFrame({"time_s": np.zeros(0)})
+    frame = motion_frame(run.motion, lengths=False)
+    for name, gap_m in run.gaps.items():
+        frame[f"{name}_gap_m"] = gap_m
+    frame = frame.dropna(axis="columns", how="all")
+    instants = {"velocity_time_s": run.velocity_time_s}
+    if run.reports_accelerations:
+        instants["acceleration_time_s"] = run.acceleration_time_s
+    others = {
+        name: time_s
+        for name, time_s in instants.items()
+        if time_s is not None and np.any(time_s != run.motion.time_s)
+    }
+    for place, (name, time_s) in enumerate(others.items(), 1):
+        frame.insert(place, name, time_s)
+    return frame
 
 
 def cleaned(motion: Motion) -> Motion:

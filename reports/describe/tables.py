@@ -25,8 +25,8 @@ def digits(value: float) -> str:
 
 
 def position_tables(scene: Scene, motion: Motion) -> list[Table]:
-    """Links, points and sliders at one position; the Coriolis component of those on a moving guide,
-    where there are any."""
+    """Those that the motion has of links, points and sliders, at one position; the Coriolis
+    component of those on a moving guide, where there are any."""
     links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
     for name, link in motion.links.items():
         theta = float(link.theta[0])
@@ -39,9 +39,10 @@ def position_tables(scene: Scene, motion: Motion) -> list[Table]:
         row = [*point.position[0], *v, np.hypot(*v)]
         places.add_row(name, *(digits(float(value)) for value in row))
         rates.add_row(name, *(digits(float(value)) for value in (*a, np.hypot(*a))))
-    tables = [links, places, rates]
+    tables = [table for table in (links, places, rates) if table.row_count]
     if motion.sliders:
-        turned = coriolis(scene, motion)
+        whole = motion.sliders.keys() == scene.sliders.keys() and motion.links
+        turned = coriolis(scene, motion) if whole else {}
         heads = ("displacement m", "speed m/s", "acceleration m/s^2")
         sliders = _table("slider", (*heads, "Coriolis m/s^2") if turned else heads)
         for name, slider in motion.sliders.items():
@@ -64,7 +65,7 @@ def speed_table(speeds: SpeedFacts) -> Table:
 
 def certainty(motion: Motion) -> str:
     """What the reference may be wrong by, in a line."""
-    if motion.bound is None:
+    if motion.bound is None or not motion.bound.links:
         return ""
     links = motion.bound.links.values()
     theta = max(float(np.max(link.theta)) for link in links)
@@ -87,14 +88,14 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     for name, s in motion.sliders.items():
         rates = [("speed\nm/s", s.speed), ("accel.\nm/s^2", s.acceleration)]
         bodies.append((f"slider {name}", [("place\nm", s.displacement), *rates]))
-    driver = np.degrees(motion.links[scene.driver.link].theta)
+    driver = motion.links.get(scene.driver.link)
+    instants: Columns = [("\ntime\ns", motion.time_s)]
+    if driver is not None:
+        instants.append((f"{scene.driver.link}\ntheta\ndeg", np.degrees(driver.theta)))
     tables = []
     for first in range(0, len(bodies), together):
         table = plain_table(gap=2)
-        columns: Columns = [
-            ("\ntime\ns", motion.time_s),
-            (f"{scene.driver.link}\ntheta\ndeg", driver),
-        ]
+        columns = [*instants]
         for name, series in bodies[first : first + together]:
             owners = (name, "", "")
             columns += [(f"{o}\n{head}", v) for o, (head, v) in zip(owners, series, strict=True)]

@@ -13,21 +13,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from analytic.kinematics import solve
 from models.array import Array
-from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from reports.drawing.shape import MARGIN, PATH_SAMPLES, box_of, colours_of, guide_direction, turn_of
 
 FRAMES = 60
 STRIP = 6
-PATH_SAMPLES = 361
-MARGIN = 0.14
-"""Room around what moves, over its size."""
 INK = "#1f2933"
 GUIDE = "#9aa5b1"
-COLOURS = ("#d1495b", "#2e6f9e", "#3a7d44", "#b7791f", "#6b4e9b", "#00798c")
-"""Driver first; told apart in grey as well, by brightness."""
 
 
 def animation(scene: Scene) -> bytes:
@@ -95,16 +89,6 @@ def _legend(figure: Figure, scene: Scene) -> None:
     )
 
 
-def turn_of(scene: Scene, samples: int) -> Motion:
-    """One turn, both ends included; a driver that swings begins at an end of its swing, so that an
-    even number of equal parts of its period shows the other end as well."""
-    law = scene.driver.law
-    time_s = np.linspace(0.0, law.period_s, samples)
-    if isinstance(law, Oscillating):
-        time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
-    return solve(scene, time_s, bound=False)
-
-
 def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) -> None:
     """One position with the paths of the points behind it."""
     low, high = box_of(path)
@@ -124,22 +108,6 @@ def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) ->
     axes.tick_params(labelsize=7)
     axes.grid(color="#e4e7eb", linewidth=0.5)
     axes.set_axisbelow(True)
-
-
-def colours_of(scene: Scene) -> dict[str, str]:
-    """A colour for every link, the driver's first."""
-    names = [scene.driver.link, *(name for name in scene.links if name != scene.driver.link)]
-    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
-
-
-def box_of(path: Motion) -> tuple[Array, Array]:
-    """The corners of the box that is shown: all points at all times, and a margin."""
-    places = np.concatenate([point.position for point in path.points.values()])
-    low, high = places.min(axis=0), places.max(axis=0)
-    size = float(np.max(high - low))
-    # A mechanism on one line still needs some height.
-    spare = np.maximum(0.35 * size - (high - low), 0.0) / 2 + MARGIN * size
-    return np.asarray(low - spare), np.asarray(high + spare)
 
 
 def draw_bodies(
@@ -203,11 +171,3 @@ def _slider(
     across = np.array([-direction[1], direction[0]])
     corners = place + half @ np.array([direction, across])
     axes.fill(*corners.T, facecolor="white", edgecolor=INK, linewidth=1.2, zorder=4)
-
-
-def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
-    """The unit vector along a guide at a sample."""
-    angle = slider.direction_rad
-    if slider.on != GROUND:
-        angle += float(motion.links[slider.on].theta[index])
-    return np.array([math.cos(angle), math.sin(angle)])

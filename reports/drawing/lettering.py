@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,15 +46,15 @@ def place(
     centres: list[tuple[float, float]] = []
     boxes: list[tuple[float, float, float, float]] = []
     for label in labels:
-        tried = _candidates(label)
-        costs = [_cost(label, centre, heavy, light, boxes, frame) for centre in tried]
-        x, y = tried[int(np.argmin(costs))]
+        rings = list(_rings(label))
+        costs = [_costs(label, ring, heavy, light, boxes, frame) for ring in rings]
+        x, y = np.concatenate(rings)[int(np.argmin(np.concatenate(costs)))]
         centres.append((float(x), float(y)))
         boxes.append((float(x), float(y), *label.size))
     return centres
 
 
-def _candidates(label: Label) -> Array:
+def _rings(label: Label) -> Iterator[Array]:
     """Centres around each anchor, shape (k, 2), so that the edge is some way off it."""
     angle = np.linspace(0.0, math.tau, AROUND, endpoint=False) + math.pi / 4
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -62,33 +62,38 @@ def _candidates(label: Label) -> Array:
     # from the centre of a box to its edge along a direction
     with np.errstate(divide="ignore"):
         edge = np.min(half / np.abs(direction), axis=1)
-    rings = [direction * (label.radius + away + edge)[:, None] for away in AWAY]
-    return np.concatenate([anchor + ring for ring in rings for anchor in label.anchors])
+    for away in AWAY:
+        ring = direction * (label.radius + away + edge)[:, None]
+        yield (label.anchors[:, None, :] + ring).reshape(-1, 2)
 
 
-def _cost(
+def _costs(
     label: Label,
-    centre: Array,
+    centres: Array,
     heavy: Array,
     light: Array,
     boxes: Sequence[tuple[float, float, float, float]],
     frame: tuple[float, float],
-) -> float:
-    """What speaks against a place."""
+) -> Array:
+    """What speaks against each place (k, 2), shape (k,)."""
     half = np.array(label.size) / 2
-    room = float(np.min(_distance(heavy[:, :2], centre, half) - heavy[:, 2], initial=CLEAR))
+    room = np.min(_distance(heavy[:, :2], centres, half) - heavy[:, 2], axis=1, initial=CLEAR)
     for x, y, width, height in boxes:
-        gap = np.abs(centre - (x, y)) - half - np.array([width, height]) / 2
-        room = min(room, float(gap.max()) if gap.max() < 0 else float(np.hypot(*gap.clip(0.0))))
-    crossed = float(np.min(_distance(light, centre, half), initial=1.0)) < 0.01
+        gap = np.abs(centres - (x, y)) - half - np.array([width, height]) / 2
+        most = gap.max(axis=1)
+        room = np.minimum(room, np.where(most < 0, most, np.hypot(*gap.clip(0.0).T)))
+    crossed = np.min(_distance(light, centres, half), axis=1, initial=1.0) < 0.01
     middle = np.array(frame) / 2
-    out = float(np.maximum(np.abs(centre - middle) + half - middle, 0.0).sum())
-    off = float(np.linalg.norm(label.anchors - centre, axis=1).min())
-    hidden = 4.0 * max(-room, 0.0)
-    return CLEAR - room + hidden + NEAR_COST * off + LIGHT_COST * crossed + OUT_COST * out
+    out = np.maximum(np.abs(centres - middle) + half - middle, 0.0).sum(axis=1)
+    off = np.linalg.norm(label.anchors[:, None] - centres, axis=2).min(axis=0)
+    hidden = 4.0 * np.maximum(-room, 0.0)
+    costs = CLEAR - room + hidden + NEAR_COST * off + LIGHT_COST * crossed + OUT_COST * out
+    return np.asarray(costs)
 
 
-def _distance(points: Array, centre: Array, half: Array) -> Array:
-    """From points to a box, shape (n,); below 0 inside of it."""
-    away = np.abs(points - centre) - half
-    return np.asarray(np.hypot(*away.clip(0.0).T) + np.minimum(away.max(axis=1), 0.0))
+def _distance(points: Array, centres: Array, half: Array) -> Array:
+    """From points (n, 2) to boxes around centres (k, 2), shape (k, n); below 0 inside of one."""
+    away = np.abs(points - centres[:, None]) - half
+    across, along = away[..., 0], away[..., 1]
+    outside = np.hypot(np.maximum(across, 0.0), np.maximum(along, 0.0))
+    return np.asarray(outside + np.minimum(np.maximum(across, along), 0.0))

@@ -12,7 +12,7 @@ from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
 from reports.compare.asked import not_asked_for
-from reports.compare.beside import Beside, truth_of
+from reports.compare.beside import Beside, Truth, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
 from reports.judge.halving import followed
@@ -107,16 +107,26 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         return unfinished(cell, "unsupported", str(error)), None
     except CrankcheckError as error:
         return unfinished(cell, "crashed", f"no reference at the start: {error}"), None
+    return _judged(cell, truth, done, runs), done
+
+
+def check_run(cell: Cell, done: Run) -> Checked:
+    """As `check`, of a run that was made before, at no other step."""
+    return _judged(cell, truth_of(Same(cell.scene)), done, None)
+
+
+def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
+    """A run at the full step, compared and judged; finer ones are of ``runs``, if there are any."""
     try:
         errors = compare(Beside.of(truth, done))
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"
-        return unfinished(cell, "crashed", why), done
+        return unfinished(cell, "crashed", why)
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", left_words(errors.departure)
-    adapter, seen = runs.adapter, None
-    if cell.converge and errors:
+    adapter, seen = engine(cell.engine), None
+    if cell.converge and errors and runs:
         nature = adapter.placing, adapter.order
         seen = followed(truth, cell.dt_s, errors, cell.tolerance, runs.run, *nature)
     evidence = Evidence(
@@ -130,9 +140,9 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         profile=cell.profile,
         placing=adapter.placing,
         order=adapter.order,
-        unasked=tuple(runs.unasked),
+        unasked=tuple(runs.unasked) if runs else None,
     )
-    checked = Checked(
+    return Checked(
         **vars(evidence),
         cell=cell,
         version=done.version,
@@ -140,7 +150,6 @@ def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
         findings=judge(evidence),
         warnings=done.warnings,
     )
-    return checked, done
 
 
 @dataclass(frozen=True)

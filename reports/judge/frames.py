@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Sequence
 
 import pandas as pd
@@ -19,10 +18,3 @@ def error_frame(checked: Iterable[Checked]) -> pd.DataFrame:
 def cell_frame(checked: Sequence[Checked]) -> pd.DataFrame:
     """One row per cell, failures included with their status and reason."""
     return pd.DataFrame([cell_row(one) for one in checked])
-
-
-def parquet(frame: pd.DataFrame) -> bytes:
-    """The content of a Parquet file that holds the frame, without its index."""
-    buffer = io.BytesIO()
-    frame.to_parquet(buffer, index=False)
-    return buffer.getvalue()

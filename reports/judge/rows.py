@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from reports.compare.errors import ErrorKind, largest
+from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
-from reports.judge.tolerance import DEFAULTS
+from reports.judge.tolerance import DEFAULTS, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -37,19 +37,24 @@ def error_rows(checked: Checked) -> list[dict[str, object]]:
     """One row per quantity, body, source and kind of a cell."""
     if checked.errors is None:
         return []
-    return [
-        identity(checked)
-        | {name: getattr(error, name) for name in AS_THEY_ARE}
-        | {
-            "maximum_pure": error.pure,
-            "limit_pure": checked.limits[error.tolerance].number if error.kind == "total" else None,
-            "time_of_maximum_s": error.time_of_maximum_s,
-            "driver_at_maximum_rad": error.driver_at_maximum_rad,
-            "reference_bound": error.bound,
-            "samples": error.samples,
-        }
-        for error in checked.errors.rows
-    ]
+    own = identity(checked)
+    return [own | error_row(error, checked.limits) for error in checked.errors.rows]
+
+
+def error_row(error: Error, limits: Mapping[str, Limit] | None = None) -> dict[str, object]:
+    """One error as a flat row; with limits, that which it is held to."""
+    limit = None
+    if limits is not None:
+        limit = {"limit_pure": limits[error.tolerance].number if error.kind == "total" else None}
+    return {
+        **{name: getattr(error, name) for name in AS_THEY_ARE},
+        "maximum_pure": error.pure,
+        **(limit or {}),
+        "time_of_maximum_s": error.time_of_maximum_s,
+        "driver_at_maximum_rad": error.driver_at_maximum_rad,
+        "reference_bound": error.bound,
+        "samples": error.samples,
+    }
 
 
 def cell_row(checked: Checked) -> dict[str, object]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from reports.logs.columns import Columns
 from reports.logs.instants import instants, refuse_far
 from reports.logs.kinds import KINDS
 from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
-from reports.logs.names import Meaning, Named, meaning, time_of
+from reports.logs.names import LENGTH, Meaning, Named, meaning, time_of
 from reports.logs.spelling import DIMENSION
 from reports.logs.units import UNITS, si
 
@@ -68,6 +68,8 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
             gaps.append(found)
         else:
             channels.append(found)
+    channels, lengths = _without_lengths(channels, told)
+    unused += lengths
     channels, copies, spare = _slots(channels, scene)
     unused += spare
     if not (channels or gaps):
@@ -257,6 +259,25 @@ def _check_roles(
         raise CrankcheckError(
             f"{where}, on: {on!r} does not carry {of}; {of} is on {', '.join(bodies) or 'no link'}"
         )
+
+
+def _without_lengths(
+    channels: Sequence[Channel], told: Container[str]
+) -> tuple[list[Channel], list[tuple[str, str]]]:
+    """The channels without lengths of vectors, which are those that a map does not tell of, of a
+    slider's point whose components are there, beside the slider's own."""
+    parts = {(each.of, each.kind.order) for each in channels if each.kind.body_kind == "point"}
+    sliders = [each for each in channels if each.kind.body_kind == "slider"]
+    own = {(each.of, each.kind.order) for each in sliders if "slider" in each.column.lower()}
+    lengths = [
+        each
+        for each in sliders
+        if "slider" not in each.column.lower()
+        and each.column not in told
+        and (each.of, each.kind.order) in parts & own
+    ]
+    kept = [each for each in channels if each not in lengths]
+    return kept, [(each.column, LENGTH) for each in lengths]
 
 
 def _slots(

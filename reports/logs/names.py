@@ -34,6 +34,7 @@ FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "
            "block", "log", "sensor", "at", "on", "signal", "value"}  # fmt: skip
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 DRIVERS = {"driver", "input", "motor"}
+LENGTH = "it is the length of a vector, whose components are judged"
 SHORT = 2
 """Names of bodies up to this length are told apart by case: `a` is an acceleration, `A` a point."""
 
@@ -216,7 +217,7 @@ def _kind(
             chosen = [k for k in chosen if k.dimension == (dimension or "length")]
         return chosen[0] if chosen else _unknown(words, "slider", unit)
     if list(words) in (["v"], ["a"]):
-        return "it is the length of a vector, whose components are judged"
+        return LENGTH
     return _unknown(words, "point", unit)
 
 

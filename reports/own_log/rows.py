@@ -9,6 +9,7 @@ from typing import Literal
 
 from models.errors import cut, harmless
 from reports.compare.errors import Error
+from reports.judge.rules.start import start_limit
 from reports.judge.tolerance import Limit, in_passage
 from reports.logs.beside_truth import readings_of
 from reports.logs.channel import Reading
@@ -79,6 +80,9 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
         limit = judged.limits[error.tolerance]
         if error.kind == "passage":
             limit = in_passage(error.tolerance, limit, errors)
+        elif error.kind == "start":
+            number = start_limit(error.tolerance, judged, errors)
+            limit = Limit(number, f"{limit.origin} at the start")
         read = [
             each
             for each in readings_of(judged.log, error.quantity, error.body)

@@ -99,7 +99,7 @@ def _table(rows: Sequence[LogRow], width: int) -> Table:
     table.add_column("limit", justify="right", no_wrap=True)
     table.add_column("taken", justify="right", no_wrap=True)
     if width >= WIDE:
-        table.add_column("at t\n[s]", justify="right", no_wrap=True)
+        table.add_column("at t\ns", justify="right", no_wrap=True)
     for row in sorted(rows, key=lambda row: row.verdict == "within"):
         error = row.error
         cells: list[Text | str] = [

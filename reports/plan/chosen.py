@@ -31,15 +31,26 @@ def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
     scenes: dict[str, Scene] = {}
     for name in dict.fromkeys(names_in(names, "scenes") or shipped()):
         scene = load_scene(name)
-        check_names(scene)
-        # Whether it has a closed form, and can follow its driver through a period.
-        turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
-        solve(scene, turn, points=(), sliders=(), bound=False)
+        refuse_unfollowed(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
                 f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
             )
     return list(scenes.values())
+
+
+def refuse_unfollowed(scene: Scene) -> None:
+    """Refuse a scene without a closed form, or that can not follow its driver through a period.
+
+    Raises
+    ------
+    CrankcheckError
+        Also a tolerance of something that is no quantity; a StructureError or ReachError of the
+        reference, which names group or range.
+    """
+    check_names(scene)
+    turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
+    solve(scene, turn, points=(), sliders=(), bound=False)
 
 
 def chosen_engines(names: str | Sequence[str]) -> list[str]:

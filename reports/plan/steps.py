@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, shown
 from models.scene import Scene
 from reports.compare.beside import SETTLING
 
@@ -16,27 +17,40 @@ MOST_STEPS = 300_000
 MOST_SEARCHED = 200_000
 """Of a run of a search: some seconds. A finer step can not be what a search for the cheapest one is
 after."""
+MOST_UNLOGGED = 1_000_000_000
+"""Some hours of work, where few of the steps are logged."""
 STEPS_PER_TURN = 720.0
 
 
 def counted(
-    scene: Scene, dt_s: float | None, steps_per_turn: float | None, turns: float
+    scene: Scene,
+    dt_s: float | None,
+    steps_per_turn: float | None,
+    turns: float,
+    *,
+    every: int = 1,
+    least: int = LEAST_STEPS,
 ) -> tuple[float, int]:
     """Step [s] and number of steps for a scene, from --dt or --steps-per-turn (default 720).
+
+    Every ``every``-th step is logged; there are at least ``least``.
 
     Raises
     ------
     CrankcheckError
-        A number that is not above 0, too few steps in a turn, too many or too few in all.
+        Both ways to set the step, a number that is not above 0, too few steps in a turn, too many
+        or too few in all.
     """
-    positive("--turns", turns, "turns; 1 is one period of the driver")
+    if dt_s is not None and steps_per_turn is not None:
+        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
+    turns = positive("--turns", turns, "turns; 1 is one period of the driver")
     period = scene.driver.law.period_s
     if dt_s is not None:
-        positive("--dt", dt_s, "seconds, such as 1e-3")
+        dt_s = positive("--dt", dt_s, "seconds, such as 1e-3")
         option, per_turn = f"--dt {dt_s:g}", period / dt_s
     else:
         per_turn = STEPS_PER_TURN if steps_per_turn is None else steps_per_turn
-        positive("--steps-per-turn", per_turn, "steps, such as 720")
+        per_turn = positive("--steps-per-turn", per_turn, "steps, such as 720")
         option = f"--steps-per-turn {per_turn:g}"
     if per_turn < LEAST_STEPS_PER_TURN * (1 - 1e-12):
         raise CrankcheckError(
@@ -45,21 +59,29 @@ def counted(
             f"{period / LEAST_STEPS_PER_TURN:.4g} s"
         )
     steps = turns * per_turn * (1 - 1e-12)  # may be infinite
-    if not steps <= MOST_STEPS:
+    most = min(MOST_STEPS * every, MOST_UNLOGGED)
+    if not steps <= most:
         raise CrankcheckError(
             f"{option} --turns {turns:g}: {steps:.6g} steps of {scene.name}; at most "
-            f"{MOST_STEPS} are logged; take a longer step or fewer turns"
+            f"{most}{' are logged' * (every == 1)}; take a longer step or fewer turns"
         )
-    if steps <= LEAST_STEPS - 1:
+    if steps <= least - 1:
         raise CrankcheckError(
             f"{option} --turns {turns:g}: {math.ceil(steps)} steps of {scene.name}; an "
             f"engine takes up its pins in the first {SETTLING}, so a run has at least "
-            f"{LEAST_STEPS}: take {LEAST_STEPS / per_turn:.3g} turns or more, or a shorter step"
+            f"{least}: take {least / per_turn:.3g} turns or more, or a shorter step"
         )
     return dt_s or period / per_turn, math.ceil(steps)
 
 
-def positive(option: str, value: float, unit: str) -> None:
-    """Refuse a number that is not above 0. Raises CrankcheckError that names the unit."""
-    if not (math.isfinite(value) and value > 0.0):
-        raise CrankcheckError(f"{option} {value:g}: give a number above 0, in {unit}")
+def positive(option: str, value: float, unit: str) -> float:
+    """The number, which is above 0. Raises CrankcheckError that names the unit for any other."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise CrankcheckError(f"{option}: found {shown(value)}; give a number above 0, in {unit}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not (math.isfinite(number) and number > 0.0):
+        raise CrankcheckError(f"{option} {number:g}: give a number above 0, in {unit}")
+    return number

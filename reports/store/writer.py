@@ -8,12 +8,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion
 from models.regular import UnreadableError
-from reports.describe.frame import motion_frame
-from reports.judge.frames import parquet
+from reports.describe.frame import run_frame
+from reports.output.frame_file import parquet
 from reports.output.write import check_folder, refuse_link, write
 from reports.store.examine import examine
 from reports.store.folder import has_parts, paths_of
@@ -22,6 +20,7 @@ from reports.store.manifest import MANIFEST, Manifest, read_manifest
 from reports.store.mending import mend
 from reports.store.part import open_part, write_part
 from reports.store.schema import DAMAGED, LOCK, TABLES, TRAJECTORIES, table
+from sim.engine import Run
 
 EVERY_S = 1.0
 """What is lost when the process is killed is the work of so many seconds, at most."""
@@ -103,12 +102,9 @@ class Writer:
         """Add what the steps of a cell cost."""
         self._add("timings", row)
 
-    def trajectory(self, key: str, motion: Motion, gaps: Mapping[str, Array]) -> None:
-        """Keep a whole motion, one file per cell."""
-        frame = motion_frame(motion)
-        for name, gap in gaps.items():
-            frame[f"{name}_gap_m"] = gap
-        write(self.folder / "trajectories" / f"{key}.parquet", parquet(frame))
+    def trajectory(self, key: str, run: Run) -> None:
+        """Keep a whole run, one file per cell."""
+        write(self.folder / "trajectories" / f"{key}.parquet", parquet(run_frame(run)))
 
     def forget(self, keys: Collection[str]) -> None:
         """Take cells out of the store; the others are in it at every moment."""

@@ -48,14 +48,14 @@ def connected(address: str) -> Client:
 
 
 def on_cluster(
-    client: Client, cells: Sequence[Cell], limits: Limits, keep_motion: bool
+    client: Client, cells: Sequence[Cell], limits: Limits, keep_run: bool
 ) -> Generator[tuple[int, MeasuredCell | Lost]]:
     """As `measured` of every cell, each in a child process of the Dask worker that has it; yields
     index and outcome of each as it ends. The client is closed when this is."""
     from distributed import as_completed
 
     try:
-        futures = client.map(_there, cells, limits=limits, keep_motion=keep_motion, pure=False)
+        futures = client.map(_there, cells, limits=limits, keep_run=keep_run, pure=False)
         indices = {future.key: index for index, future in enumerate(futures)}
         ended = as_completed(futures, with_results=True)  # type: ignore[no-untyped-call]
         del futures  # a cluster keeps a result as long as somebody has its future
@@ -65,7 +65,7 @@ def on_cluster(
         client.close()  # type: ignore[no-untyped-call]  # not annotated
 
 
-def _there(cell: Cell, limits: Limits, keep_motion: bool) -> MeasuredCell | Lost:
+def _there(cell: Cell, limits: Limits, keep_run: bool) -> MeasuredCell | Lost:
     """One cell in the child process of this thread of a Dask worker."""
     child: Isolated[MeasuredCell] | None = getattr(_own, "child", None)
     if child is not None and child.limits != limits:
@@ -73,4 +73,4 @@ def _there(cell: Cell, limits: Limits, keep_motion: bool) -> MeasuredCell | Lost
         child = None
     if child is None:
         child = _own.child = Isolated(limits)
-    return child.call(measured, cell, keep_motion)
+    return child.call(measured, cell, keep_run)

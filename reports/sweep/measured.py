@@ -11,12 +11,12 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.motion import Motion
 from reports.compare.last_turn import trace
 from reports.judge.cell import Cell, examined
 from reports.judge.rows import cell_row, error_rows
 from reports.output.provenance import crankcheck_version
 from reports.workers.isolated import Isolated, Lost
+from sim.engine import Run
 from sim.run import time_run
 
 REPEATS = 2
@@ -32,21 +32,19 @@ Repeats = tuple[float, ...]
 
 @dataclass(frozen=True)
 class MeasuredCell:
-    """A cell that was run: its row, the rows of its errors, its last turn, and the whole motion
-    where that was asked for. ``crankcheck`` is the version that ran it."""
+    """A cell that was run: its row, the rows of its errors, its last turn, and the run itself where
+    that was asked for. ``crankcheck`` is the version that ran it."""
 
     row: Mapping[str, object]
     errors: tuple[Mapping[str, object], ...] = ()
     trace: Mapping[str, Array] = field(default_factory=dict)
     crankcheck: str = ""
-    motion: Motion | None = None
-    gaps: Mapping[str, Array] = field(default_factory=dict)
+    run: Run | None = None
 
 
-def measured(cell: Cell, keep_motion: bool) -> MeasuredCell:
+def measured(cell: Cell, keep_run: bool) -> MeasuredCell:
     """Run a cell, compare it and judge it."""
     checked, run = examined(cell)
-    motion = None if run is None else run.motion
     cost = None if run is None else run.cost
     row = cell_row(checked) | {
         # Logged, and with other cells at work beside it: kept, and never compared.
@@ -58,8 +56,7 @@ def measured(cell: Cell, keep_motion: bool) -> MeasuredCell:
         errors=tuple(error_rows(checked)),
         trace=trace(cell.scene, run) if run and checked.errors else {},
         crankcheck=crankcheck_version(),
-        motion=motion if keep_motion else None,
-        gaps=run.gaps if run and keep_motion else {},
+        run=run if run and run.motion and keep_run else None,
     )
 
 

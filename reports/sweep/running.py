@@ -59,7 +59,7 @@ class Running:
     progress: Console
 
     def errors(
-        self, keep_motion: bool, jobs: int, client: Client | None = None, again: bool = False
+        self, keep_run: bool, jobs: int, client: Client | None = None, again: bool = False
     ) -> Done:
         """Run every cell that the store has not, and those that a limit ended which is wider now;
         with ``again`` all that timed out or crashed.
@@ -75,9 +75,9 @@ class Running:
         failed: dict[str, Counter[str]] = {}
         cells = [task.cell for task in missing]
         if client is None:
-            ends = as_they_end(partial(_measured, keep_motion), cells, jobs, self.limits)
+            ends = as_they_end(partial(_measured, keep_run), cells, jobs, self.limits)
         else:
-            ends = on_cluster(client, cells, self.limits, keep_motion)
+            ends = on_cluster(client, cells, self.limits, keep_run)
         with progress_bar(self.progress, "errors", len(missing)) as advance, closing(ends):
             for index, how in ends:
                 task = missing[index]
@@ -127,8 +127,8 @@ class Running:
             "limit_s": self.limits.time_s,
             "memory_gb": self.limits.memory_gb,
         }
-        if outcome.motion is not None:
-            self.writer.trajectory(task.key, outcome.motion, outcome.gaps)
+        if outcome.run is not None:
+            self.writer.trajectory(task.key, outcome.run)
         row = {**names, **outcome.row, "version": task.version}
         self.writer.cell(row, outcome.errors, outcome.trace)
 
@@ -161,9 +161,9 @@ class Running:
             )
 
 
-def _measured(keep_motion: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
+def _measured(keep_run: bool, child: Isolated[MeasuredCell], cell: Cell) -> MeasuredCell | Lost:
     """A cell in a child process."""
-    return child.call(measured, cell, keep_motion)
+    return child.call(measured, cell, keep_run)
 
 
 def _lost(task: Task, lost: Lost) -> MeasuredCell:

@@ -38,13 +38,13 @@ from models.errors import EngineError, ReachError
 from models.files import parse_scene
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Link, Point, Scene, Slider, span
+from models.scene_text import scene_text
 from models.tree import plan
 from reports.compare.compare import curvature
 from reports.judge.tolerance import DEFAULTS
 from sim.pymunk.settings import TUNED
 from tests.worlds.contraction import contraction
 from tests.worlds.layouts import Layout
-from tests.worlds.scene_text import scene_text
 from tests.worlds.strategies import FORMS, MARGIN, Designed, swinging, with_dyads
 
 CROSSED = tuple(form for form in FORMS if form.startswith("PRP"))

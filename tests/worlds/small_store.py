@@ -46,7 +46,7 @@ def _add(
     cell = Cell(
         one, engine, profile, dt_s, 2 * steps, profile == "tuned", settings=settings, converge=False
     )
-    found = measured(cell, keep_motion=False)
+    found = measured(cell, keep_run=False)
     line = f"{scene} {engine} {variant}"
     names = {
         "key": f"{line} {steps}",

@@ -21,9 +21,9 @@ from models.errors import ReachError
 from models.files import parse_scene
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
+from models.scene_text import scene_text
 from tests.analytic.wide_chain import Angle, Given
 from tests.worlds.layouts import Layout
-from tests.worlds.scene_text import scene_text
 from tests.worlds.strategies import FORMS, swinging, with_dyads
 
 KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")

@@ -11,6 +11,7 @@ from rich.progress import Progress
 
 from reports.cli.checking import SelftestRequest
 from reports.judge.cell import Checked
+from reports.output.frame_file import csv
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
@@ -66,7 +67,7 @@ def _write(
     """Every output that was asked for, each whole or not at all."""
     rows = [place_row(one, place) for one in verdicts for place in one.places]
     texts = (
-        pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"),
+        csv(pd.DataFrame(rows)),
         _json(verdicts, sound, passed, rows, facts),
     )
     folder = request.folder

@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import io
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from rich.console import Console
 
 from analytic.kinematics import solve, solve_driven
 from analytic.mechanism.cycle import Along
-from analytic.structure.mobility import Structure, analyse
+from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, harmless, suggestion
 from models.files import load_scene
 from models.motion import Motion
 from models.passing import passing
 from models.scene import Scene
 from reports.cli.showing import SolveRequest
-from reports.describe.facts import facts, speed_facts
-from reports.describe.frame import cleaned, motion_frame
-from reports.describe.law import describe_law
-from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
-from reports.output.provenance import crankcheck_version
-from reports.output.write import check_file, clean, write
-from reports.plan.singular import continued_note, singular_note
+from reports.describe.facts import speed_facts
+from reports.describe.frame import motion_frame
+from reports.face.solution_text import show_heading, show_motion, show_notes, show_position
+from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
+from reports.output.write import check_file
 
-ENDINGS = (".csv", ".parquet", ".xlsx")
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
@@ -36,7 +30,6 @@ MOST_DEG = 1e6
 """As in a scene file: an angle that is larger has lost the digits that are within a turn."""
 ENDLESS = 10**15
 """Steps beyond which a float does not count them."""
-SHEET_ROWS = 1_048_575
 
 
 def run_solve(request: SolveRequest, console: Console) -> None:
@@ -63,33 +56,16 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         told = harmless(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
         console.print(told, highlight=False, markup=False)
         return
-    console.print(heading(scene, structure, along), highlight=False, markup=False)
-    if (speeds := speed_facts(scene, along, clockwise=request.clockwise)) and speeds.rows:
-        console.print(speed_table(speeds), "")
+    speeds = speed_facts(scene, along, clockwise=request.clockwise)
+    show_heading(console, scene, structure, along, speeds)
     if request.at_deg is not None:
-        for table in position_tables(scene, cleaned(motion)):
-            console.print(table, "")
-        console.print(certainty(motion), style="dim", highlight=False)
+        show_position(console, scene, motion)
     else:
-        for table in motion_tables(scene, cleaned(motion), console.width):
-            console.print(table, "")
+        show_motion(console, scene, motion)
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )
-    for note in filter(None, (continued_note(motion), singular_note(scene, motion))):
-        console.print(note, style="yellow", highlight=False, markup=False)
-
-
-def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
-    """What the mechanism is, and what the theory says of it as a whole."""
-    groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
-    lines = [
-        f"{scene.name}: {scene.source}",
-        f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
-        f"groups in solving order: {groups}",
-        *facts(scene, structure, along),
-    ]
-    return "\n".join(lines) + "\n"
+    show_notes(console, scene, motion)
 
 
 def _along(scene: Scene, text: str) -> Along:
@@ -150,29 +126,5 @@ def _over(scene: Scene, request: SolveRequest) -> Motion:
 
 def _write(path: Path, scene: Scene, motion: Motion) -> None:
     """The motion as a file of the kind that the ending says."""
-    frame = motion_frame(motion)
-    ending = path.suffix.lower()
-    if ending == ".csv":
-        write(path, frame.to_csv(index=False, lineterminator="\n"))
-    elif ending == ".parquet":
-        # It brings the comparison, which nothing else here needs.
-        from reports.judge.frames import parquet
-
-        write(path, parquet(frame))
-    else:
-        write(path, _workbook(frame, scene))
-
-
-def _workbook(frame: pd.DataFrame, scene: Scene) -> bytes:
-    """A workbook: the motion, and where it comes from."""
-    facts = {"scene": scene.name, "source": scene.source, "crankcheck": crankcheck_version()}
-    buffer = io.BytesIO()
-    with pd.ExcelWriter(buffer, engine="openpyxl") as book:
-        shown = frame.rename(columns=clean)
-        shown.to_excel(book, sheet_name="motion", index=False, freeze_panes=(1, 1))
-        origin = pd.DataFrame({"what": list(facts), "value": [clean(v) for v in facts.values()]})
-        origin.to_excel(book, sheet_name="source", index=False)
-        for row in book.sheets["source"].iter_rows():
-            for cell in row:
-                cell.data_type = "s"  # a text that begins with "=" is no formula
-    return buffer.getvalue()
+    origin = {"scene": scene.name, "source": scene.source}
+    write_frame(path, motion_frame(motion), "motion", origin)

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
 from reports.cli.measuring import StabilityRequest
+from reports.output.frame_file import csv
 from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
@@ -121,5 +122,5 @@ def _write(folder: Path, matrix: Matrix) -> None:
 
     write(folder / FILE, to_json(matrix))
     rows = [vars(run) | {"command": command(run)} for run in matrix.runs]
-    write(folder / TABLE, pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"))
+    write(folder / TABLE, csv(pd.DataFrame(rows)))
     write(folder / PAGE, stability_page(matrix))

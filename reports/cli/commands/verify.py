@@ -15,10 +15,11 @@ from reports.cli.checking import VerifyRequest
 from reports.diff.junit import suite as diff_suite
 from reports.diff.terminal import show as show_diff
 from reports.judge.cell import Cell, Checked
-from reports.judge.frames import cell_frame, error_frame, parquet
+from reports.judge.frames import cell_frame, error_frame
 from reports.judge.rows import cell_row
 from reports.judge.tolerance import parse
 from reports.output.console import tell
+from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
@@ -91,8 +92,6 @@ def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> i
 def plan(request: VerifyRequest) -> list[Cell]:
     """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
     tolerance = parse(request.tolerance)
-    if request.dt_s is not None and request.steps_per_turn is not None:
-        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(f"--drive {request.drive!r}: unknown; use prescribed or servo")
     scenes = chosen_scenes(request.scenes)
@@ -159,7 +158,7 @@ def _write(request: VerifyRequest, results: Results) -> None:
 def _content(name: str, results: Results) -> str:
     """The text of one output."""
     if name.endswith(".csv"):
-        return cell_frame(results.checked).to_csv(index=False, lineterminator="\n")
+        return csv(cell_frame(results.checked))
     if name.endswith(".xml"):
         verification = suite(results.checked, results.facts)
         return junit(verification, *([diff_suite(results.diff)] if results.diff else []))

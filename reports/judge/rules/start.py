@@ -27,11 +27,7 @@ class StartWithin:
         rows = [row for row in errors.rows if row.kind == "start"] if errors else []
         if errors is None or not rows:
             return None
-        limits = {
-            row.tolerance: _settled(row.tolerance, evidence, errors)
-            + allowance(row.tolerance, errors)
-            for row in rows
-        }
+        limits = {row.tolerance: start_limit(row.tolerance, evidence, errors) for row in rows}
 
         def part(row: Error) -> float:
             taken = row.pure / limits[row.tolerance]
@@ -42,6 +38,11 @@ class StartWithin:
         level: Level = "pass" if worst.pure <= limit else "fail"
         text = f"{worst.tolerance}, {place(worst)}; limit {limit:.2g} {share(worst)}"
         return Finding(self.id, level, text, worst.pure, limit)
+
+
+def start_limit(tolerance: str, evidence: Evidence, errors: Errors) -> float:
+    """What a rate of the first samples is held to, as a pure number."""
+    return _settled(tolerance, evidence, errors) + allowance(tolerance, errors)
 
 
 def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:

@@ -26,7 +26,7 @@ TEXT = 'name = "a"\nsize = 1.0\n'
 @pytest.fixture(scope="module")
 def outcome(fourbar: Scene) -> MeasuredCell:
     cell = Cell(fourbar, "pymunk", "tuned", fourbar.driver.law.period_s / 90, 180, converge=False)
-    return measured(cell, keep_motion=True)
+    return measured(cell, keep_run=True)
 
 
 def names(key: str) -> dict[str, object]:
@@ -124,13 +124,14 @@ def test_all_parts_have_one_schema(tmp_path: Path, outcome: MeasuredCell) -> Non
 
 
 def test_trajectories_are_kept_beside_the_rows(tmp_path: Path, outcome: MeasuredCell) -> None:
-    assert outcome.motion is not None
+    assert outcome.run is not None
+    assert outcome.run.motion is not None
     with Writer(tmp_path / "s", Manifest()) as writer:
-        writer.trajectory("k1", outcome.motion, outcome.gaps)
+        writer.trajectory("k1", outcome.run)
     found = pq.read_table(tmp_path / "s" / "trajectories" / "k1.parquet").to_pandas()
-    np.testing.assert_array_equal(found.time_s, outcome.motion.time_s)
-    np.testing.assert_array_equal(found.rocker_theta_rad, outcome.motion.links["rocker"].theta)
-    np.testing.assert_array_equal(found.C_gap_m, outcome.gaps["C"])
+    np.testing.assert_array_equal(found.time_s, outcome.run.motion.time_s)
+    np.testing.assert_array_equal(found.rocker_theta_rad, outcome.run.motion.links["rocker"].theta)
+    np.testing.assert_array_equal(found.C_gap_m, outcome.run.gaps["C"])
 
 
 def test_a_changed_scene_of_the_same_name_is_refused(tmp_path: Path, outcome: MeasuredCell) -> None:

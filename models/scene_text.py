@@ -1,0 +1,94 @@
+"""The text of a scene's file, of a scene that has none."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from numbers import Integral
+
+from models.errors import CrankcheckError
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.scene import Scene, Slider
+
+Table = Mapping[str, object]
+
+
+def scene_text(scene: Scene) -> str:
+    """TOML that reads as the scene (`models.files.parse_scene`), but for the last digit of angles,
+    which are in degrees there. Raises CrankcheckError for a law of another kind."""
+    lines = [
+        f"{name} = {_value(value)}"
+        for name, value in (
+            ("name", scene.name),
+            ("source", scene.source),
+            ("note", scene.note),
+            ("gravity_m_s2", scene.gravity_m_s2),
+        )
+    ]
+    for head, table in _tables(scene):
+        lines += ["", f"[{head}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
+    """The tables of the file, in its order."""
+    yield "ground", {"points": scene.ground}
+    for name, link in scene.links.items():
+        yield (
+            f"links.{name}",
+            {
+                "points": link.points,
+                "mass_kg": link.mass_kg,
+                "centre_m": link.centre_m,
+                "inertia_kg_m2": link.inertia_kg_m2,
+            },
+        )
+    for name, slider in scene.sliders.items():
+        yield f"sliders.{name}", _slider(slider)
+    yield "driver", {"link": scene.driver.link, **_law(scene.driver.law)}
+    yield "branch", scene.branch
+    yield "tolerance", scene.tolerance
+
+
+def _slider(slider: Slider) -> Table:
+    table: dict[str, object] = {
+        "point": slider.point,
+        "on": slider.on,
+        "through_m": slider.through_m,
+        "direction_deg": math.degrees(slider.direction_rad),
+    }
+    if slider.link is not None:
+        return {**table, "link": slider.link, "angle_deg": math.degrees(slider.angle_rad)}
+    return {**table, "mass_kg": slider.mass_kg, "inertia_kg_m2": slider.inertia_kg_m2}
+
+
+def _law(law: Law) -> Table:
+    if isinstance(law, Oscillating):
+        return {
+            "law": "oscillating",
+            "centre_deg": math.degrees(law.centre_rad),
+            "amplitude_deg": math.degrees(law.amplitude_rad),
+            "frequency_rad_s": law.frequency_rad_s,
+            "phase_deg": math.degrees(law.phase_rad),
+        }
+    if not isinstance(law, ConstantSpeed | FromRest | Accelerating):
+        name = type(law).__name__
+        raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")
+    start = {"start_deg": math.degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
+    if isinstance(law, FromRest):
+        return {"law": "from-rest", **start, "rise_s": law.rise_s}
+    if isinstance(law, Accelerating):
+        return {"law": "accelerating", **start, "acceleration_rad_s2": law.acceleration_rad_s2}
+    return start
+
+
+def _value(value: object) -> str:
+    """A value in TOML."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+    if isinstance(value, Sequence):
+        return f"[{', '.join(map(_value, value))}]"
+    return repr(int(value) if isinstance(value, Integral) else float(value))  # type: ignore[arg-type]

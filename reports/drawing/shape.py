@@ -1,0 +1,64 @@
+"""How a mechanism stands and moves on paper: a turn of it, the box that holds that, and colours."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.array import Array
+from models.laws import Oscillating
+from models.motion import Motion
+from models.scene import GROUND, Scene, Slider
+
+PATH_SAMPLES = 361
+MARGIN = 0.14
+"""Room around what moves, over its size."""
+COLOURS = ("#d1495b", "#2e6f9e", "#3a7d44", "#b7791f", "#6b4e9b", "#00798c")
+"""Driver first; told apart in grey as well, by brightness."""
+TRIED = 24
+"""Positions of a turn of which the clearest is drawn."""
+
+
+def turn_of(scene: Scene, samples: int) -> Motion:
+    """One turn, both ends included; a driver that swings begins at an end of its swing, so that an
+    even number of equal parts of its period shows the other end as well."""
+    law = scene.driver.law
+    time_s = np.linspace(0.0, law.period_s, samples)
+    if isinstance(law, Oscillating):
+        time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
+    return solve(scene, time_s, bound=False)
+
+
+def clearest(path: Motion) -> int:
+    """The index of the position in which the points stand farthest apart, of some over a turn."""
+    places = np.stack([point.position for point in path.points.values()], axis=1)
+    tried = np.linspace(0, len(places) - 1, TRIED, endpoint=False).round().astype(int)
+    apart = np.linalg.norm(places[tried][:, :, None] - places[tried][:, None, :], axis=-1)
+    pairs = np.sort(apart[:, *np.triu_indices(places.shape[1], 1)], axis=1)
+    return int(tried[int(np.argmax(pairs[:, :2].sum(axis=1)))])
+
+
+def box_of(path: Motion) -> tuple[Array, Array]:
+    """The corners of the box that is shown: all points at all times, and a margin."""
+    places = np.concatenate([point.position for point in path.points.values()])
+    low, high = places.min(axis=0), places.max(axis=0)
+    size = float(np.max(high - low))
+    # A mechanism on one line still needs some height.
+    spare = np.maximum(0.35 * size - (high - low), 0.0) / 2 + MARGIN * size
+    return np.asarray(low - spare), np.asarray(high + spare)
+
+
+def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:
+    """The unit vector along a guide at a sample."""
+    angle = slider.direction_rad
+    if slider.on != GROUND:
+        angle += float(motion.links[slider.on].theta[index])
+    return np.array([math.cos(angle), math.sin(angle)])
+
+
+def colours_of(scene: Scene) -> dict[str, str]:
+    """A colour for every link, the driver's first."""
+    names = [scene.driver.link, *(name for name in scene.links if name != scene.driver.link)]
+    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}

@@ -1,0 +1,167 @@
+"""A mechanism in one position as an SVG picture, for a page whose colours are not known.
+
+Lines and letters have the colour of the text around them, links one that is seen on white and on
+black. It stands on its own: no script, no style sheet, nothing to load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion
+from models.scene import GROUND, Scene, Slider
+from reports.drawing.names import Name, Sheet, names, rail
+from reports.drawing.shape import MARGIN, box_of, clearest, guide_direction, turn_of
+
+WIDTH, HEIGHT = 440, 320
+"""The largest picture [px]; the mechanism's own shape makes it narrower or lower."""
+INCH = 96
+SAMPLES = 181
+BLOCK = (11.0, 7.0)
+"""Half the length and half the width of a slider's block [px]."""
+LETTER, LINK_NAME = 14, 12
+"""Size of letters and names [px]."""
+COLOURS = ("#d9596b", "#4a86c8", "#459150", "#b97f1f", "#9070c8", "#15889a")
+"""Links, the driver first: at least 3 to 1 against white and against black."""
+
+
+@dataclass(frozen=True)
+class _Paper:
+    """What turns metres into pixels: the upper left corner [m] and the scale."""
+
+    left: float
+    top: float
+    per_m: float
+
+    def at(self, places: Array) -> Array:
+        """Places [m], (..., 2), in pixels from the upper left corner, y down."""
+        return np.asarray((places - (self.left, self.top)) * (self.per_m, -self.per_m))
+
+
+def svg(scene: Scene, logged: Motion | None = None) -> str:
+    """The mechanism where its points stand farthest apart, and their paths over a turn.
+
+    Paths of ``logged``, the motion of a run, are drawn over those of the reference. Raises
+    CrankcheckError where the mechanism can not go through a turn.
+    """
+    path = turn_of(scene, SAMPLES)
+    low, high = box_of(path)
+    at = clearest(path)
+    per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))
+    wide, tall = (float(each) * per_m for each in high - low)
+    paper = _Paper(float(low[0]), float(high[1]), per_m)
+    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    colours = colours_of(scene)
+    spare_m = 0.08 * size
+    sheet = Sheet(low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH)
+    degrees = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
+    title = f"{scene.name}, {scene.driver.link} at {degrees:.0f} deg"
+    parts = [
+        *_paths(scene, path, paper, 'opacity="0.35" stroke-width="1.2"'),
+        *(_paths(scene, logged, paper, 'opacity="0.8" stroke-dasharray="3 4"') if logged else ()),
+        *_guides(scene, path, at, paper, spare_m, colours),
+        *(_feet(path.points[name].position[at], paper, size) for name in scene.ground),
+        *(_bar(scene, name, path, at, paper, colours[name]) for name in scene.links),
+        *(_block(slider, path, at, paper) for slider in scene.sliders.values()),
+        *(_pin(point.position[at], paper) for point in path.points.values()),
+        *(_text(name, paper) for name in names(scene, path, at, sheet, _size)),
+    ]
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{wide:.0f}" '
+        f'height="{tall:.0f}" viewBox="0 0 {wide:.0f} {tall:.0f}" style="max-width:100%" '
+        f'fill="none" stroke="currentColor"><title>{escape(title)}</title>{"".join(parts)}</svg>'
+    )
+
+
+def colours_of(scene: Scene) -> dict[str, str]:
+    """A colour for every link, the driver's first."""
+    driver = scene.driver.link
+    order = [driver, *(name for name in scene.links if name != driver)]
+    return {name: COLOURS[index % len(COLOURS)] for index, name in enumerate(order)}
+
+
+def _paths(scene: Scene, motion: Motion, paper: _Paper, look: str) -> Iterable[str]:
+    """The ways of the points that move, as far as they are finite."""
+    for name, point in motion.points.items():
+        places = point.position[np.isfinite(point.position).all(axis=1)]
+        few = places[:: max(1, len(places) // SAMPLES)]
+        if name not in scene.ground and len(few) > 1:
+            yield f'<polyline points="{_points(paper.at(few))}" {look}/>'
+
+
+def _guides(
+    scene: Scene, path: Motion, at: int, paper: _Paper, spare_m: float, colours: dict[str, str]
+) -> Iterable[str]:
+    """The lines that sliders run on, as far as they do."""
+    for slider in scene.sliders.values():
+        ends = rail(slider, path, at, spare_m)[[0, -1]]
+        colour = "currentColor" if slider.on == GROUND else colours[slider.on]
+        yield (
+            f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="1.5" '
+            'stroke-dasharray="7 4" opacity="0.8"/>'
+        )
+
+
+def _bar(scene: Scene, name: str, path: Motion, at: int, paper: _Paper, colour: str) -> str:
+    """A bar between two points; of more points a plate."""
+    corners = [path.points[point].position[at] for point in scene.links[name].points]
+    places = _points(paper.at(np.array(corners)))
+    inside = f'fill="{colour}" fill-opacity="0.2"' if len(corners) > 2 else ""
+    return (
+        f'<polygon points="{places}" stroke="{colour}" stroke-width="5" stroke-linejoin="round" '
+        f'stroke-linecap="round" {inside}/>'
+    )
+
+
+def _block(slider: Slider, path: Motion, at: int, paper: _Paper) -> str:
+    """The block of a slider, along its line."""
+    direction = guide_direction(slider, path, at)
+    across = np.array([-direction[1], direction[0]])
+    half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * BLOCK / paper.per_m
+    corners = path.points[slider.point].position[at] + half @ np.array([direction, across])
+    places = _points(paper.at(corners))
+    return (
+        f'<polygon points="{places}" stroke-width="1.5" fill="currentColor" fill-opacity="0.15"/>'
+    )
+
+
+def _feet(place: Array, paper: _Paper, size: float) -> str:
+    """What a pin of the ground stands on."""
+    foot = 0.035 * size
+    corners = place + np.array([[0.0, 0.0], [-foot, -1.6 * foot], [foot, -1.6 * foot]])
+    return (
+        f'<polygon points="{_points(paper.at(corners))}" fill="currentColor" opacity="0.55" '
+        'stroke="none"/>'
+    )
+
+
+def _pin(place: Array, paper: _Paper) -> str:
+    x, y = paper.at(place)
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="currentColor" stroke="none"/>'
+
+
+def _text(name: Name, paper: _Paper) -> str:
+    x, y = paper.at(np.array([name.x, name.y]))
+    size, style = (LETTER, "") if name.is_point else (LINK_NAME, ' font-style="italic"')
+    return (
+        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" font-family="sans-serif"{style} '
+        f'text-anchor="middle" dominant-baseline="central" fill="currentColor" stroke="none">'
+        f"{escape(name.text)}</text>"
+    )
+
+
+def _size(text: str, is_point: bool) -> tuple[float, float]:
+    """About the width and height of a text [inch], whose font is the reader's own."""
+    pixels = LETTER if is_point else LINK_NAME
+    return 0.6 * pixels * len(text) / INCH, 0.75 * pixels / INCH
+
+
+def _points(places: Sequence[Array] | Array) -> str:
+    """Corners as SVG has them."""
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)

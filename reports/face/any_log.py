@@ -1,0 +1,102 @@
+"""What a user hands in to be judged, as a log: a file, a frame, arrays by name, or a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.scene import Scene
+from reports.face.arguments import kind_of, path_of
+from reports.face.simulation import Simulation
+from reports.face.solution import Solution
+from reports.logs.channel import Log
+from reports.logs.map_file import Map, map_of, read_map
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LogLike: TypeAlias = "str | PathLike[str] | pd.DataFrame | Mapping[str, Sequence[float]] | Motion"
+"""A log: a file, a frame, columns by name, or a motion."""
+MapLike = str | PathLike[str] | Mapping[str, Any] | None
+"""What columns mean: a file, or what would stand in it."""
+
+
+def _told(map_: MapLike) -> Map:
+    """What a user says of columns. Raises CrankcheckError with every fault of it."""
+    if map_ is None:
+        return Map()
+    return map_of(map_, "--map") if isinstance(map_, Mapping) else read_map(path_of(map_, "--map"))
+
+
+def log_of(scene: Scene, log: object, map_: MapLike = None) -> Log:
+    """A log of a scene, of whatever kind. Raises CrankcheckError."""
+    told = _told(map_)
+    if isinstance(log, Motion):
+        _refuse_map(map_, "a motion")
+        _refuse_other(scene, log)
+        from reports.logs.of_motion import log_of_motion
+
+        return log_of_motion(scene, log)
+    from reports.logs.columns import columns_of, read_columns
+    from reports.logs.meanings import understood
+
+    if isinstance(log, str | PathLike):
+        return understood(read_columns(path_of(log, "log"), told.layout), scene, told)
+    frame, source = _frame_of(log)
+    return understood(columns_of(frame, source), scene, told)
+
+
+def refuse_other_scene(scene: Scene, run: Run) -> None:
+    """Refuse a run that is not of the scene, or that nothing drove. Raises CrankcheckError."""
+    mechanism = run.mechanism if isinstance(run, Simulation) else None
+    if run.scene != scene.name or mechanism not in (None, scene):
+        other = f"another {run.scene}" if run.scene == scene.name else run.scene
+        raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
+    if run.drive == "free":
+        raise CrankcheckError(
+            f"the run of {run.scene} is of drive free: nothing says where it should be; run it "
+            "prescribed, or servo"
+        )
+
+
+def _refuse_other(scene: Scene, motion: Motion) -> None:
+    """Refuse the solution of another scene. Raises CrankcheckError."""
+    if isinstance(motion, Solution) and motion.scene != scene:
+        raise CrankcheckError(
+            f"the motion is of {motion.scene.name}, not of {scene.name}; give the scene of both"
+        )
+
+
+def _refuse_map(map_: MapLike, what: str) -> None:
+    if map_ is not None:
+        raise CrankcheckError(f"--map: {what} has no columns to be told of; leave it out")
+
+
+def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
+    """A frame, its times among its columns, and what it is called. Raises CrankcheckError."""
+    import pandas as pd
+
+    from reports.logs.names import time_of
+
+    if isinstance(log, pd.DataFrame):
+        named = log.index.name
+        if named is not None and time_of(str(named)) and named not in log.columns:
+            return log.reset_index(), "the frame"
+        return log, "the frame"
+    if isinstance(log, Mapping):
+        try:
+            return pd.DataFrame(
+                {str(name): list(column) for name, column in log.items()}
+            ), "the log"
+        except (TypeError, ValueError) as error:
+            raise CrankcheckError(
+                f"the log: found columns that make no table ({error}); give each as many numbers"
+            ) from None
+    raise CrankcheckError(
+        f"log: found {kind_of(log)}; give the path of a file, a pandas frame, a dict of columns, a "
+        "motion or a run"
+    )

@@ -1,0 +1,167 @@
+"""The arguments of a call, each checked before anything is done with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from numbers import Integral, Real
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from models.errors import CrankcheckError, shown, suggestion
+from models.files import load_scene, shipped
+from models.scene import KEPT, Scene
+from reports.judge.tolerance import DEFAULTS
+from reports.output.numbers import listed
+from reports.plan.steps import positive
+from sim.engine import SettingValue
+from sim.registry import FIRST, engine
+from sim.settings import profile_of, resolved
+
+SceneLike = Scene | str | PathLike[str]
+"""A shipped name, the path of a scene file, or a scene."""
+
+
+def scene_of(scene: SceneLike) -> Scene:
+    """The scene that was meant. Raises CrankcheckError as `load_scene`, and for what is none."""
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, str) and scene in shipped():
+        return _shipped(scene)
+    if not isinstance(scene, str | PathLike):
+        raise CrankcheckError(
+            f"scene: found {kind_of(scene)}; give a shipped name, the path of a scene file, or a "
+            "Scene"
+        )
+    return load_scene(scene)
+
+
+@lru_cache(maxsize=KEPT)
+def _shipped(name: str) -> Scene:
+    """A shipped scene, the same one every time: what was worked out for it is kept."""
+    return load_scene(name)
+
+
+def kind_of(value: object) -> str:
+    """What was found in place of something else: itself where it is short, else its kind."""
+    if isinstance(value, str | int | float | bytes | None):
+        return shown(value)
+    name = type(value).__qualname__
+    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+
+
+def text_of(value: object, name: str, such_as: str) -> str:
+    """A text. Raises CrankcheckError for anything else."""
+    if isinstance(value, str):
+        return value
+    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a name, such as {such_as!r}")
+
+
+def one_of(value: object, name: str, choices: Iterable[str]) -> str:
+    """One of some words. Raises CrankcheckError that lists them."""
+    every = list(choices)
+    if isinstance(value, str) and value in every:
+        return value
+    raise CrankcheckError(f"{name} {shown(value)}: unknown; use {listed(every, 'or')}")
+
+
+def whole_of(value: object, name: str, least: int = 1) -> int:
+    """A whole number. Raises CrankcheckError for another, or one below ``least``."""
+    if isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= least:
+        return int(value)
+    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a whole number, at least {least}")
+
+
+def is_true(value: object, name: str) -> bool:
+    """True or False. Raises CrankcheckError for anything else."""
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise CrankcheckError(f"{name}: found {kind_of(value)}; give True or False")
+
+
+def path_of(value: object, name: str) -> Path:
+    """A path. Raises CrankcheckError for what is none."""
+    try:
+        text = fspath(value)  # type: ignore[call-overload]  # that is what is asked
+    except TypeError:
+        text = None
+    if isinstance(text, str) and text and "\0" not in text:
+        return Path(text)
+    raise CrankcheckError(f"{name}: found {kind_of(value)}; give a path")
+
+
+def engine_of(name: object, profile: object, settings: object) -> tuple[str, str]:
+    """Engine and profile, with what overrides its settings, once all of it is known to be there.
+
+    Raises
+    ------
+    EngineError
+        An engine that is unknown or not installed, a profile or setting that it has not, a value
+        that it does not take.
+    """
+    chosen = engine(text_of(name, "engine", FIRST))
+    chosen.version()
+    of = profile_of(chosen, text_of(profile, "profile", next(iter(chosen.profiles))))
+    chosen.check(resolved(of, settings_of(settings)))
+    return chosen.name, of.name
+
+
+def settings_of(settings: object) -> dict[str, SettingValue]:
+    """Settings by name, numbers of numpy as plain ones. Raises CrankcheckError."""
+    if settings is None:
+        return {}
+    if not isinstance(settings, Mapping):
+        raise CrankcheckError(
+            f"settings: found {kind_of(settings)}; give a dict of names and values, such as "
+            "{'iterations': 100}"
+        )
+    return {
+        text_of(name, "settings", "iterations"): setting_of(name, value)
+        for name, value in settings.items()
+    }
+
+
+def setting_of(name: object, value: object) -> SettingValue:
+    """The value of a setting, a plain one. Raises CrankcheckError for what is no number or text."""
+    if isinstance(value, str) and not isinstance(value, bool):
+        return str(value)
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return int(value) if isinstance(value, Integral) else float(value)
+    raise CrankcheckError(f"setting {name}: found {kind_of(value)}; it takes a number or a text")
+
+
+def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
+    """Tolerances by quantity, as pure numbers.
+
+    Raises
+    ------
+    CrankcheckError
+        No mapping, a name that is no quantity (the message suggests near ones), a number that is
+        not above 0.
+    """
+    if tolerance is None:
+        return {}
+    if not isinstance(tolerance, Mapping):
+        raise CrankcheckError(
+            f"{option}: found {kind_of(tolerance)}; give a dict of quantities and numbers, such as "
+            "{'angle': 1e-4}"
+        )
+    found: dict[str, float] = {}
+    for name, number in tolerance.items():
+        if name not in DEFAULTS:
+            hint = suggestion(str(name), DEFAULTS, "use one of", 2, 0.6)
+            raise CrankcheckError(f"{option} {shown(name)}: it is no quantity; {hint}")
+        unit = "pure numbers: rad, lengths over that of the longest link"
+        found[name] = positive(f"{option} {name}", number, unit)
+    return found
+
+
+def each_of(values: object) -> list[Any]:
+    """One value, or those of a list or an array."""
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    several = isinstance(values, Iterable) and not isinstance(values, str | bytes | Mapping)
+    return list(cast(Iterable[Any], values)) if several else [values]

@@ -1,0 +1,143 @@
+"""`check`: a scene in an engine, run, compared and judged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from models.scene import Scene
+from reports.face.arguments import (
+    SceneLike,
+    engine_of,
+    is_true,
+    one_of,
+    scene_of,
+    settings_of,
+    tolerances_of,
+)
+from reports.face.shown import Shown
+from reports.face.solution import drawn
+from reports.face.told import told_at_the_call
+from reports.judge.cell import Cell, Checked, check_run
+from reports.judge.tolerance import check_names
+from reports.output.provenance import provenance
+from reports.plan.chosen import refuse_unfollowed
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import counted
+from reports.verify.advised import advised
+from sim.engine import Drive, Run, SettingValue
+from sim.registry import FIRST
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+DRIVES = ("prescribed", "servo")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class CellVerdict(Shown, Checked):
+    """A scene in an engine with what came of it.
+
+    ``verdict`` is "within", "out" or "unsupported"; ``findings`` is what every rule says, those of
+    ``failures`` make the verdict, and those of ``advice`` are worth knowing; ``errors`` are the
+    numbers, and ``limits`` what they are held to; ``facts`` says where they come from.
+    """
+
+    facts: Mapping[str, str]
+
+    @property
+    def scene(self) -> Scene:
+        return self.cell.scene
+
+    def frame(self) -> pd.DataFrame:
+        """One row per quantity, body, source and kind of error, with the limit in force; ``unit``
+        is that of ``maximum``, ``rms`` and ``final``."""
+        from reports.judge.frames import error_frame
+
+        return error_frame([self])
+
+    def show(self, console: Console) -> None:
+        from reports.verify.table import show
+
+        show(console, [self], self.facts)
+
+    def _drawn(self) -> str:
+        return drawn(self.scene)
+
+
+@told_at_the_call
+def check(
+    scene: SceneLike,
+    engine: str = FIRST,
+    profile: str = "tuned",
+    *,
+    steps_per_turn: float | None = None,
+    dt_s: float | None = None,
+    turns: float = 2.0,
+    drive: str = "prescribed",
+    settings: Mapping[str, SettingValue] | None = None,
+    tolerance: Mapping[str, float] | None = None,
+    converge: bool = True,
+) -> CellVerdict:
+    """Run a scene in an engine and hold it to the closed form, as `crankcheck verify` does.
+
+    Parameters
+    ----------
+    scene, engine, profile, steps_per_turn, dt_s, turns, drive, settings
+        As of `run`.
+    tolerance : Mapping or None
+        Largest errors by quantity, as pure numbers, such as ``{"angle": 1e-4}``, in place of those
+        of the scene or of the budget that follows from the step.
+    converge : bool
+        Run it at half and quarter step too, and say what the error does.
+
+    Raises
+    ------
+    CrankcheckError
+        An argument that is none; a scene that can not follow its driver, or through a position in
+        which its motion is not determined.
+    """
+    scene = scene_of(scene)
+    name, profile = engine_of(engine, profile, settings)
+    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    limits = tolerances_of(tolerance, "tolerance")
+    dt_s, steps = counted(scene, dt_s, steps_per_turn, turns)
+    refuse_unfollowed(scene)
+    refuse_singular(scene, dt_s * steps)
+    cell = Cell(
+        scene=scene,
+        engine=name,
+        profile=profile,
+        dt_s=dt_s,
+        steps=steps,
+        drive=driven,
+        tolerance=limits,
+        converge=is_true(converge, "converge"),
+        settings=settings_of(settings),
+    )
+    return _with_facts(advised(cell))
+
+
+def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> CellVerdict:
+    """The verdict on a run that was made before; it is run at no other step."""
+    check_names(scene)
+    cell = Cell(
+        scene=scene,
+        engine=run.engine,
+        profile=run.profile,
+        dt_s=run.dt_s,
+        steps=run.steps,
+        drive=run.drive,
+        tolerance=tolerance,
+        converge=False,
+        settings=dict(run.asked),
+    )
+    return _with_facts(check_run(cell, run))
+
+
+def _with_facts(checked: Checked) -> CellVerdict:
+    """What was checked, now, with these versions."""
+    engines = {checked.cell.engine: checked.version} if checked.version else {}
+    return CellVerdict(**vars(checked), facts=provenance(engines))

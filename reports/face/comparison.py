@@ -1,0 +1,138 @@
+"""`compare`: how far a run or a log is from the closed form, without a verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from models.errors import CrankcheckError
+from models.scene import Same, Scene
+from reports.compare import compare as comparing
+from reports.compare.beside import Beside, truth_of
+from reports.compare.errors import Error, Errors
+from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
+from reports.face.arguments import SceneLike, one_of, scene_of
+from reports.face.shown import Shown
+from reports.face.solution import drawn
+from reports.face.told import told_at_the_call
+from reports.judge.tolerance import check_names
+from reports.plan.steps import positive
+from reports.quantities import QUANTITIES
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+LOG_DRIVES = ("scene", "fitted", "logged")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Shown):
+    """How far something is from the closed form: an error for each quantity, body and source.
+
+    ``source`` says what was compared.
+    """
+
+    scene: Scene
+    source: str
+    errors: Errors
+
+    def worst(self, quantity: str) -> Error | None:
+        """The largest error of a quantity as a pure number; None where there is none.
+
+        Raises CrankcheckError for a name that is no quantity.
+        """
+        return self.errors.worst(one_of(quantity, "quantity", QUANTITIES))
+
+    def frame(self) -> pd.DataFrame:
+        """One row per quantity, body, source and kind; ``unit`` is that of ``maximum``, ``rms`` and
+        ``final``, and ``maximum_pure`` a multiple of the scene's own size and speed."""
+        import pandas as pd
+
+        from reports.judge.rows import error_row
+
+        return pd.DataFrame([error_row(error) for error in self.errors.rows])
+
+    def show(self, console: Console) -> None:
+        from reports.face.error_table import show_errors
+
+        show_errors(console, self.scene, self.source, self.errors)
+
+    def _drawn(self) -> str:
+        return drawn(self.scene)
+
+
+@told_at_the_call
+def compare(
+    scene: SceneLike,
+    what: Run | LogLike,
+    *,
+    step_s: float | None = None,
+    drive: str = "scene",
+    map: MapLike = None,
+) -> Comparison:
+    """How far a run, a motion or a log is from the closed form.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    what : Run, Motion, path, DataFrame or Mapping
+        What `run` gives, a motion, or a log: a file, a frame, or columns by name.
+    step_s : float or None
+        Of a log: the step of its solver [s]; with one, its places are differenced as well.
+    drive : str
+        Of a log: what moves the closed form, as of `judge`.
+    map : path, Mapping or None
+        Of a log: what its columns mean, as of `judge`.
+
+    Raises
+    ------
+    CrankcheckError
+        What can not be read or is of another scene; a run that logged nothing.
+    """
+    scene = scene_of(scene)
+    check_names(scene)
+    if isinstance(what, Run):
+        refuse_options(what, step_s=step_s, drive=drive, map=map)
+        refuse_other_scene(scene, what)
+        errors = comparing.compare(Beside.of(truth_of(Same(scene)), what))
+        if errors is None:
+            raise CrankcheckError(
+                f"the run of {scene.name} in {what.engine} logged nothing: {what.status}: "
+                f"{what.reason}"
+            )
+        return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
+    from reports.logs.beside_truth import beside_truth
+    from reports.own_log.drives import chosen_drive, truth_of_log
+
+    log = log_of(scene, what, map)
+    step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
+    truth, _ = truth_of_log(log, chosen_drive(one_of(drive, "--drive", LOG_DRIVES)))
+    errors = comparing.compare(beside_truth(log, truth, step_s=step))
+    assert errors is not None
+    return Comparison(scene, log.source, errors)
+
+
+def refuse_options(
+    run: Run,
+    *,
+    step_s: float | None,
+    drive: str,
+    map: MapLike,
+    require: tuple[str, ...] = (),
+) -> None:
+    """Refuse what is asked of logs alone. Raises CrankcheckError."""
+    given = {
+        "--step": step_s is not None,
+        "--drive": one_of(drive, "--drive", LOG_DRIVES) != "scene",
+        "--map": map is not None,
+        "--require": bool(require),
+    }
+    for option, is_given in given.items():
+        if is_given:
+            raise CrankcheckError(
+                f"{option}: it is of logs, and this is a run in {run.engine}, which says itself "
+                "what it is; leave it out, or give frame() of the run"
+            )

@@ -1,0 +1,59 @@
+"""The errors of a comparison on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rich.console import Console
+
+from models.scene import Scene
+from reports.compare.errors import Error, ErrorKind, Errors, largest
+from reports.output.columns import plain_table
+from reports.output.numbers import short
+from reports.quantities import QUANTITIES
+
+PARTS: Mapping[ErrorKind, str] = {
+    "geometric": "geometry",
+    "start": "at the start",
+    "passage": "change points",
+}
+"""What sets a row apart: at the logged angle of the crank, first samples, near change points."""
+
+
+def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> None:
+    """Print the worst body of each quantity, source and kind."""
+    table = plain_table(f"{scene.name}: {source}")
+    for head in ("quantity", "", "worst body"):
+        table.add_column(head, no_wrap=True)
+    for head in ("largest\nerror", "of its\nscale", "at t\ns", "driver\ndeg"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for worst in worst_rows(errors):
+        table.add_row(
+            worst.tolerance,
+            PARTS.get(worst.kind, ""),
+            f"{worst.body_kind} {worst.body}",
+            f"{short(worst.maximum)} {worst.unit}",
+            f"{short(worst.pure)} {QUANTITIES[worst.quantity].of(worst.body_kind).share}",
+            f"{worst.time_of_maximum_s:.4g}",
+            f"{math.degrees(worst.driver_at_maximum_rad):.1f}",
+        )
+    console.print(table, "")
+    console.print(
+        "Errors against the closed form; L longest link, w driver's peak speed.",
+        style="dim",
+        highlight=False,
+    )
+    for note in errors.notes:
+        console.print(note, style="yellow", highlight=False, markup=False)
+
+
+def worst_rows(errors: Errors) -> list[Error]:
+    """The largest error of each quantity, source and kind, in the order of the quantities."""
+    keys = dict.fromkeys((row.quantity, row.source, row.kind) for row in errors.rows)
+    found = (
+        largest(row for row in errors.rows if (row.quantity, row.source, row.kind) == key)
+        for key in keys
+    )
+    order = list(QUANTITIES)
+    return sorted((row for row in found if row), key=lambda row: order.index(row.quantity))

@@ -1,0 +1,162 @@
+"""`judge`: a log of your own, or a run, held to the closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
+
+from models.one_or_more import names_in
+from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
+from reports.face.arguments import SceneLike, one_of, scene_of, tolerances_of
+from reports.face.cell_verdict import CellVerdict, verdict_of_run
+from reports.face.comparison import LOG_DRIVES, refuse_options
+from reports.face.shown import Shown
+from reports.face.solution import drawn
+from reports.face.told import told_at_the_call
+from reports.judge.tolerance import DEFAULTS, check_names
+from reports.output.provenance import provenance
+from reports.own_log.drives import chosen_drive
+from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.plan.steps import positive
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+Target = float | Mapping[str, float] | None
+"""The largest error as a pure number: one for all quantities, or one each."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LogVerdict(Shown, JudgedLog):
+    """A log of your own with what came of it.
+
+    ``verdict`` is "within" or "out"; ``findings`` is what every rule says, and those of
+    ``failures`` make the verdict; ``causes`` explain what is out of tolerance; ``not_judged`` is
+    what the scene has and the log has not; ``facts`` says where the numbers come from.
+    """
+
+    facts: Mapping[str, str]
+
+    def frame(self) -> pd.DataFrame:
+        """One row per error that is held to a limit, with the columns that it was read from."""
+        import pandas as pd
+
+        from reports.own_log.rows import row_table
+
+        return pd.DataFrame(row_table(self))
+
+    def show(self, console: Console) -> None:
+        from reports.own_log.table import show
+
+        show(console, self, self.facts)
+
+    def _drawn(self) -> str:
+        return drawn(self.scene, self.beside.motion)
+
+
+@overload
+def judge(
+    scene: SceneLike,
+    log: Run,
+    *,
+    target: Target = None,
+    step_s: None = None,
+    drive: str = "scene",
+    map: None = None,
+    require: str | Iterable[str] = (),
+) -> CellVerdict: ...
+
+
+@overload
+def judge(
+    scene: SceneLike,
+    log: LogLike,
+    *,
+    target: Target = None,
+    step_s: float | None = None,
+    drive: str = "scene",
+    map: MapLike = None,
+    require: str | Iterable[str] = (),
+) -> LogVerdict: ...
+
+
+@told_at_the_call
+def judge(
+    scene: SceneLike,
+    log: Run | LogLike,
+    *,
+    target: Target = None,
+    step_s: float | None = None,
+    drive: str = "scene",
+    map: MapLike = None,
+    require: str | Iterable[str] = (),
+) -> CellVerdict | LogVerdict:
+    """Hold a log of your own to the closed form, as `crankcheck judge` does.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    log : path, DataFrame, Mapping, Motion or Run
+        A file (.csv, .tsv, .txt, .parquet, .xlsx), a frame, columns by name, or a motion; of a run
+        the verdict is that of `check` without other steps.
+    target : float, Mapping or None
+        The largest error as a pure number (rad; lengths over that of the longest link): one for
+        all quantities, or one each.
+    step_s : float or None
+        The step of the solver [s], from which a budget follows. One of the two is needed.
+    drive : str
+        ``scene``: the scene's driver moves the truth; ``fitted``: speed and start are fitted to the
+        log; ``logged``: the geometry alone is judged, at the logged angle of the driver.
+    map : path, Mapping or None
+        What columns mean, where their names do not say it: a TOML file, or what would stand in it.
+    require : str or Iterable[str]
+        Quantities or bodies that have to be in the log.
+
+    Raises
+    ------
+    CrankcheckError
+        A log that can not be read, or of which nothing is of the scene; no target and no step.
+    """
+    return judged(scene, log, target=target, step_s=step_s, drive=drive, map=map, require=require)
+
+
+def judged(
+    scene: SceneLike,
+    log: Run | LogLike,
+    *,
+    target: Target,
+    step_s: float | None,
+    drive: str,
+    map: MapLike,
+    require: str | Iterable[str],
+) -> CellVerdict | LogVerdict:
+    """As `judge`, of either kind."""
+    scene = scene_of(scene)
+    check_names(scene)
+    limits = _target(target)
+    required = names_in(require, "--require")
+    if isinstance(log, Run):
+        refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
+        refuse_other_scene(scene, log)
+        every = limits.pop(EVERY, None)
+        named = limits if every is None else {name: limits.get(name, every) for name in DEFAULTS}
+        return verdict_of_run(scene, log, named)
+    request = LogRequest(
+        target=limits,
+        step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
+        drive=chosen_drive(one_of(drive, "--drive", LOG_DRIVES)),
+        require=required,
+    )
+    found = judge_log(log_of(scene, log, map), request)
+    return LogVerdict(**vars(found), facts=provenance({}))
+
+
+def _target(target: Target) -> dict[str, float]:
+    """The target by quantity, that for all of them under `EVERY`. Raises CrankcheckError."""
+    if target is None or isinstance(target, Mapping):
+        return tolerances_of(target, "--target")
+    return {EVERY: positive("--target", target, "pure numbers, such as 1e-3")}

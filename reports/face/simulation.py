@@ -1,0 +1,173 @@
+"""`run`: a scene in an engine, logged, and not judged."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from models.scene import Same, Scene
+from reports.compare.beside import truth_of
+from reports.face.arguments import SceneLike, engine_of, one_of, scene_of, settings_of, whole_of
+from reports.face.shown import Shown
+from reports.face.solution import ROWS, drawn, thinned
+from reports.face.told import told_at_the_call
+from reports.plan.steps import counted
+from sim import run as stepping
+from sim.engine import Drive, Run, SettingValue
+from sim.registry import FIRST
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+DRIVES = ("prescribed", "servo", "free")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Simulation(Shown, Run):
+    """A run of a scene in an engine: how it moved and ended, with which settings (`Run`).
+
+    ``mechanism`` is the scene, and ``scene`` its name.
+    """
+
+    mechanism: Scene
+
+    def frame(self) -> pd.DataFrame:
+        """The log: one row per sample, columns as those of `Solution.frame`, with the gaps of pins
+        (``C_gap_m``); what the engine does not report is left out.
+
+        Where velocities or accelerations belong to other instants than the places,
+        ``velocity_time_s`` and ``acceleration_time_s`` have these.
+        """
+        from reports.describe.frame import run_frame
+
+        return run_frame(self)
+
+    def show(self, console: Console) -> None:
+        from reports.describe.tables import motion_tables
+
+        console.print(self._heading(), highlight=False, markup=False)
+        if self.motion is not None:
+            few = thinned(self.motion, ROWS)
+            for table in motion_tables(self.mechanism, few, console.width):
+                console.print(table, "")
+            left = f"{few.time_s.size} of {self.motion.time_s.size} logged samples"
+            console.print(left, style="dim", highlight=False)
+        style = "" if self.status == "ok" else "red"
+        console.print(self.ending(), style=style, highlight=False, markup=False)
+        for warning in self.warnings:
+            console.print(f"warning: {warning}", style="yellow", highlight=False, markup=False)
+
+    def _heading(self) -> str:
+        """What was run."""
+        per_turn = self.mechanism.driver.law.period_s / self.dt_s
+        turns = self.steps / per_turn
+        logged = "" if self.every == 1 else f", logged every {self.every} steps"
+        return (
+            f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
+            f"{self.drive}\ndt {self.dt_s:.4g} s, {per_turn:.6g} steps a turn, {turns:.6g} "
+            f"turn{'s' * (turns != 1.0)}{logged}\n"
+        )
+
+    def ending(self) -> str:
+        """What came of it, in a line."""
+        reason = f": {self.reason}" if self.reason else ""
+        widest = max((float(gap.max()) for gap in self.gaps.values() if gap.size), default=0.0)
+        gaps = f"; pins open by at most {widest:.2g} m" if self.gaps else ""
+        at = f" at t = {self.stopped_at_s:.6g} s" if self.motion is not None else ""
+        return f"ended {self.status}{at}{reason}{gaps}"
+
+    def _drawn(self) -> str:
+        return drawn(self.mechanism, self.motion)
+
+
+@told_at_the_call
+def run(
+    scene: SceneLike,
+    engine: str = FIRST,
+    profile: str = "tuned",
+    *,
+    steps_per_turn: float | None = None,
+    dt_s: float | None = None,
+    turns: float = 2.0,
+    every: int = 1,
+    drive: str = "prescribed",
+    settings: Mapping[str, SettingValue] | None = None,
+) -> Simulation:
+    """Run a scene in an engine and log it.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    engine, profile : str
+        As `crankcheck engines` lists them.
+    steps_per_turn, dt_s : float or None
+        The step, by one of the two: steps in a turn of the driver (720), or seconds.
+    turns : float
+        Turns (periods) of the driver.
+    every : int
+        Log every so many steps.
+    drive : str
+        ``prescribed``: the driver follows its law exactly; ``servo``: a motor of limited gain
+        drives it; ``free``: nothing does, after its start.
+    settings : Mapping or None
+        Settings of the engine in place of the profile's.
+
+    Returns
+    -------
+    Simulation
+        Also for a scene that the engine can not hold, and for a run that came apart: ``status``
+        and ``reason`` say so.
+
+    Raises
+    ------
+    CrankcheckError
+        An argument that is none; an EngineError for an engine, profile or setting; a ReachError
+        for a scene that can not be assembled at its start.
+    """
+    return simulated(
+        scene,
+        engine,
+        profile,
+        steps_per_turn=steps_per_turn,
+        dt_s=dt_s,
+        turns=turns,
+        every=every,
+        drive=drive,
+        settings=settings,
+    )
+
+
+def simulated(
+    scene: SceneLike,
+    engine: str,
+    profile: str,
+    *,
+    steps_per_turn: float | None,
+    dt_s: float | None,
+    turns: float,
+    every: int,
+    drive: str,
+    settings: Mapping[str, SettingValue] | None = None,
+) -> Simulation:
+    """As `run`, in the words of the command."""
+    scene = scene_of(scene)
+    name, profile = engine_of(engine, profile, settings)
+    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    every = whole_of(every, "--every")
+    dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
+    state = truth_of(Same(scene)).start
+    done = stepping.run(
+        scene,
+        state,
+        name,
+        profile,
+        dt_s=dt_s,
+        steps=steps,
+        every=every,
+        drive=driven,
+        settings=settings_of(settings),
+    )
+    return Simulation(**vars(done), mechanism=scene)

@@ -1,0 +1,184 @@
+"""`solve`: the closed form alone, as a motion that can be shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic import kinematics
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.scene import Scene
+from reports.face.arguments import SceneLike, is_true, scene_of
+from reports.face.shown import Shown
+from reports.face.told import told_at_the_call
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+SAMPLES = 361
+"""Instants of a period, both ends included, where none are given: as in a file of the command."""
+ROWS = 13
+"""Samples that are printed."""
+Names = str | Iterable[str] | None
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Solution(Shown, Motion):
+    """The motion of a scene in closed form, with a bound of its own error at every sample.
+
+    ``links``, ``points`` and ``sliders`` are what moves, by name (`Motion`).
+    """
+
+    scene: Scene
+
+    def frame(self) -> pd.DataFrame:
+        """One row per sample, columns with their units: ``rocker_theta_rad``, ``C_x_m``."""
+        from reports.describe.frame import motion_frame
+
+        return motion_frame(self)
+
+    def show(self, console: Console) -> None:
+        from analytic.structure.mobility import analyse
+        from reports.describe.facts import speed_facts
+        from reports.face.solution_text import (
+            show_heading,
+            show_motion,
+            show_notes,
+            show_position,
+        )
+
+        speeds = speed_facts(self.scene)
+        show_heading(console, self.scene, analyse(self.scene), speeds=speeds)
+        if self.time_s.size == 1:
+            show_position(console, self.scene, self)
+        else:
+            few = thinned(self, ROWS)
+            show_motion(console, self.scene, few)
+            if few.time_s.size < self.time_s.size:
+                left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
+                console.print(left, style="dim", highlight=False)
+        show_notes(console, self.scene, self)
+
+    def _drawn(self) -> str:
+        return drawn(self.scene)
+
+
+@told_at_the_call
+def solve(
+    scene: SceneLike,
+    time_s: ArrayLike | None = None,
+    *,
+    links: Names = None,
+    points: Names = None,
+    sliders: Names = None,
+    bound: bool = True,
+) -> Solution:
+    """The motion of a scene at some times, in closed form.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        A shipped name, the path of a scene file, or a scene.
+    time_s : ArrayLike or None
+        Times [s], shape (T,), in any order; 361 over a period of the driver for None.
+    links, points, sliders : str, Iterable[str] or None
+        What to return, by one name or several; None is all, () is none.
+    bound : bool
+        Carry error bounds (about three times the work).
+
+    Raises
+    ------
+    CrankcheckError
+        A scene, times or names that are none; a StructureError for a mechanism without a closed
+        form, a ReachError for a driver angle that it can not be assembled in.
+    """
+    scene = scene_of(scene)
+    if time_s is None:
+        time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
+    # Whatever the times are, they are looked at there.
+    motion = kinematics.solve(
+        scene,
+        cast(Array, time_s),
+        links=links,
+        points=points,
+        sliders=sliders,
+        bound=is_true(bound, "bound"),
+    )
+    return Solution(**vars(motion), scene=scene)
+
+
+@told_at_the_call
+def solve_driven(
+    scene: SceneLike,
+    theta: ArrayLike,
+    omega: ArrayLike,
+    alpha: ArrayLike,
+    time_s: ArrayLike | None = None,
+    *,
+    links: Names = None,
+    points: Names = None,
+    sliders: Names = None,
+    bound: bool = True,
+) -> Solution:
+    """The motion of a scene whose driver has given angles, rates and accelerations.
+
+    Parameters
+    ----------
+    theta, omega, alpha : ArrayLike
+        Angles [rad], rates [rad/s] and accelerations [rad/s^2] of the driver, shape (T,), taken as
+        exact; one rate, or one acceleration, counts for all samples.
+    time_s : ArrayLike or None
+        Times [s] that label the samples, and nothing else.
+    scene, links, points, sliders, bound
+        As of `solve`.
+
+    Raises
+    ------
+    CrankcheckError
+        As `solve`.
+    """
+    scene = scene_of(scene)
+    motion = kinematics.solve_driven(
+        scene,
+        cast(Array, theta),
+        cast(Array, omega),
+        cast(Array, alpha),
+        cast(Array | None, time_s),
+        links=links,
+        points=points,
+        sliders=sliders,
+        bound=is_true(bound, "bound"),
+    )
+    return Solution(**vars(motion), scene=scene)
+
+
+def thinned(motion: Motion, most: int) -> Motion:
+    """At most so many samples of a motion, evenly spread, the first and the last among them."""
+    size = motion.time_s.size
+    if size <= most:
+        return motion
+    kept = np.linspace(0, size - 1, most).round().astype(int)
+    few = motion.each_series(lambda series: series[kept])
+    bound = motion.bound
+    if bound is not None:
+        whole = replace(motion, links=bound.links, points=bound.points, sliders=bound.sliders)
+        parts = whole.each_series(lambda series: series[kept])
+        bound = replace(bound, links=parts.links, points=parts.points, sliders=parts.sliders)
+    return replace(few, time_s=motion.time_s[kept], bound=bound, conditioning={})
+
+
+def drawn(scene: Scene, logged: Motion | None = None) -> str:
+    """The mechanism as SVG, with the paths of a run; "" where it can not go through a turn."""
+    from reports.drawing.svg import svg
+
+    try:
+        return svg(scene, logged)
+    except CrankcheckError:
+        return ""

@@ -1,0 +1,62 @@
+"""A solved mechanism on the terminal: what it is, its position or motion, and what is special."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from analytic.mechanism.cycle import Along
+from analytic.structure.mobility import Structure
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.facts import SpeedFacts, facts
+from reports.describe.frame import cleaned
+from reports.describe.law import describe_law
+from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
+from reports.plan.singular import continued_note, singular_note
+
+
+def show_heading(
+    console: Console,
+    scene: Scene,
+    structure: Structure,
+    along: Sequence[Along] = (),
+    speeds: SpeedFacts | None = None,
+) -> None:
+    """Print what the mechanism is, and its extreme speeds, where there are any."""
+    console.print(heading(scene, structure, along), highlight=False, markup=False)
+    if speeds and speeds.rows:
+        console.print(speed_table(speeds), "")
+
+
+def heading(scene: Scene, structure: Structure, along: Sequence[Along] = ()) -> str:
+    """What the mechanism is, and what the theory says of it as a whole."""
+    groups = ", ".join(f"{g.kind} ({g.first}, {g.second})" for g in structure.groups)
+    lines = [
+        f"{scene.name}: {scene.source}",
+        f"{structure.words}; driver {scene.driver.link}, {describe_law(scene)}; "
+        f"groups in solving order: {groups}",
+        *facts(scene, structure, along),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def show_position(console: Console, scene: Scene, motion: Motion) -> None:
+    """Print a single position in full, and how certain it is."""
+    for table in position_tables(scene, cleaned(motion)):
+        console.print(table, "")
+    console.print(certainty(motion), style="dim", highlight=False)
+
+
+def show_motion(console: Console, scene: Scene, motion: Motion) -> None:
+    """Print every sample of a motion."""
+    for table in motion_tables(scene, cleaned(motion), console.width):
+        console.print(table, "")
+
+
+def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
+    """Print what change points and singular positions are on the way, if any."""
+    singular = singular_note(scene, motion) if scene.driver.link in motion.links else ""
+    for note in filter(None, (continued_note(motion), singular)):
+        console.print(note, style="yellow", highlight=False, markup=False)

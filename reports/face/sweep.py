@@ -1,0 +1,153 @@
+"""`sweep`: a grid of cells, kept in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from models.errors import CrankcheckError
+from models.one_or_more import names_in
+from reports.face.arguments import SceneLike, is_true, path_of, whole_of
+from reports.face.shown import Shown
+from reports.face.told import told_at_the_call
+from reports.plan.steps import positive
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+    from reports.sweep.running import Done
+
+Values = float | int | str | Sequence[float | int | str]
+MOST_JOBS = 1024
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Shown):
+    """Cells in a folder: so many were asked for, and ``done`` is what was run now."""
+
+    folder: Path
+    cells: int
+    done: Done
+
+    def frame(self) -> pd.DataFrame:
+        """One row per cell of the folder, with its errors, verdict and cost."""
+        from reports.store.reader import read_store
+
+        return read_store(self.folder).cells
+
+    @property
+    def verdict(self) -> Literal["within", "out"]:
+        """Whether all gated cells of the folder are within tolerance."""
+        cells = self.frame()
+        gated = cells[cells["gated"].astype(bool)]
+        return "within" if bool((gated["verdict"] == "within").all()) else "out"
+
+    def show(self, console: Console) -> None:
+        from reports.face.sweep_text import show_sweep
+
+        show_sweep(console, self.folder, self.cells, self.done)
+
+
+@told_at_the_call
+def sweep(
+    scenes: SceneLike | Iterable[SceneLike],
+    folder: str | PathLike[str],
+    *,
+    study: str | PathLike[str] | None = None,
+    engines: str | Iterable[str] = (),
+    profiles: str | Iterable[str] = (),
+    steps_per_turn: float | Iterable[float] = (),
+    turns: float | None = None,
+    settings: Mapping[str, Values] | None = None,
+    jobs: int = 0,
+    limit_s: float = 60.0,
+    memory_gb: float = 2.0,
+    timing: bool = True,
+    keep_trajectories: bool = False,
+    again: bool = False,
+    progress: bool = False,
+) -> Sweep:
+    """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
+
+    Cells run in processes apart; what the folder has already is not run again.
+
+    Parameters
+    ----------
+    scenes : Scene, str, path or Iterable of them
+        Shipped names, paths of scene files, or scenes; () for those of the study.
+    folder : str or path
+        Where the cells are kept.
+    study : str, path or None
+        A study file (.toml, .yaml); the shipped one for None.
+    engines, profiles : str or Iterable[str]
+        In place of the study's; () leaves them.
+    steps_per_turn : float or Iterable[float]
+        In place of the study's; () leaves them.
+    turns : float or None
+        Turns of the driver; those of the study for None.
+    settings : Mapping or None
+        One value, or several, by engine and setting: ``{"mujoco.iterations": [2, 10]}``.
+    jobs : int
+        Processes; 0 for one per processor.
+    limit_s, memory_gb : float
+        What a cell may take.
+    timing : bool
+        Time the cells afterwards.
+    keep_trajectories : bool
+        Keep the whole log of every cell.
+    again : bool
+        Run cells again that timed out or crashed.
+    progress : bool
+        Tell on standard error how far it is.
+
+    Raises
+    ------
+    CrankcheckError
+        What can be told of the arguments before running; a folder that is not to be written.
+    """
+    from reports.face.sweep_arguments import command_of, numbers_of, overrides_of, scene_names
+    from reports.output.console import terminal
+    from reports.plan.chosen import chosen_engines
+    from reports.plan.chosen_study import Choice, chosen_study
+    from reports.plan.study import load_study
+    from reports.sweep.whole import Manner, swept
+    from reports.workers.isolated import checked_limits
+
+    where = path_of(folder, "folder")
+    limits = checked_limits(
+        positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
+    )
+    jobs = whole_of(jobs, "--jobs", 0)
+    if jobs > MOST_JOBS:
+        raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
+    named = names_in(engines, "engines")
+    manner = Manner(
+        limits,
+        jobs,
+        timing=is_true(timing, "timing"),
+        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
+        again=is_true(again, "again"),
+    )
+    with ExitStack() as kept:
+        choice = Choice(
+            scene_names(scenes, kept),
+            named,
+            names_in(profiles, "profiles"),
+            numbers_of(steps_per_turn, "--steps-per-turn"),
+            None if turns is None else positive("--turns", turns, "turns of the driver"),
+            overrides_of(settings, chosen_engines(named)),
+        )
+        asked = chosen_study(
+            load_study(None if study is None else path_of(study, "study")),
+            choice,
+            is_shipped=study is None,
+        )
+        console = terminal(stderr=True)
+        console.quiet = not is_true(progress, "progress")
+        laid, done = swept(asked, where, manner, command_of(choice, where, study), console)
+    return Sweep(where, len(laid.tasks), done)

@@ -1,0 +1,85 @@
+"""What a sweep is asked for in Python, as the command takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from models.errors import CrankcheckError
+from models.files import load_scene, shipped
+from models.scene_text import scene_text
+from reports.face.arguments import each_of, kind_of, path_of, scene_of, setting_of
+from reports.plan.chosen_study import Choice, Overrides, refuse_other_engine
+from reports.plan.steps import positive
+from reports.plan.study import StudyValue
+
+
+def scene_names(scenes: object, kept: ExitStack) -> list[str]:
+    """Names and paths of scenes; one that is neither is written into a file, which is ``kept``.
+
+    Raises CrankcheckError for what is no scene.
+    """
+    names: list[str] = []
+    for each in each_of(scenes):
+        if isinstance(each, str | PathLike):
+            names.append(str(path_of(each, "scenes")))
+            continue
+        scene = scene_of(each)
+        if scene.name in shipped() and load_scene(scene.name) == scene:
+            names.append(scene.name)
+            continue
+        path = Path(kept.enter_context(TemporaryDirectory())) / f"{scene.name}.toml"
+        path.write_text(scene_text(scene), encoding="utf-8")
+        names.append(str(path))
+    return names
+
+
+def numbers_of(values: float | Iterable[float], option: str) -> list[float]:
+    """One number or several, above 0. Raises CrankcheckError."""
+    return [positive(option, value, "steps, such as 720") for value in each_of(values)]
+
+
+def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
+    """Settings by engine. Raises CrankcheckError for what is not said as engine.setting."""
+    if settings is None:
+        return {}
+    cure = "give a dict such as {'ENGINE.iterations': [2, 10]}"
+    if not isinstance(settings, Mapping):
+        raise CrankcheckError(f"--set: found {kind_of(settings)}; {cure}")
+    found: dict[str, dict[str, StudyValue | list[StudyValue]]] = {}
+    for name, values in settings.items():
+        owner, dot, setting = str(name).partition(".")
+        if not dot:
+            raise CrankcheckError(f"--set {name!r}: no engine and setting; {cure}")
+        refuse_other_engine(owner, engines, f"--set {name!r}")
+        plain: list[StudyValue] = [setting_of(name, value) for value in each_of(values)]
+        if not plain:
+            raise CrankcheckError(f"--set {name!r}: found no value; give one, or several")
+        found.setdefault(owner, {})[setting] = plain
+    return found
+
+
+def command_of(choice: Choice, folder: Path, study: object) -> list[str]:
+    """The command that does the same, which a store tells to mend it."""
+    several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
+    options = [
+        *(("--study", study) if study is not None else ()),
+        *(word for name in choice.engines for word in ("--engine", name)),
+        *(word for name in choice.profiles for word in ("--profile", name)),
+        *(("--steps-per-turn", several) if several else ()),
+        *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
+        *(
+            word
+            for owner, chosen in choice.overrides.items()
+            for name, values in chosen.items()
+            for word in ("--set", f"{owner}.{name}={','.join(map(str, _listed(values)))}")
+        ),
+    ]
+    return ["crankcheck", "sweep", "-o", str(folder), *choice.scenes, *map(str, options)]
+
+
+def _listed(values: object) -> Sequence[object]:
+    return values if isinstance(values, list) else [values]

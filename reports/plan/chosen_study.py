@@ -1,0 +1,70 @@
+"""A study with what a user says in place of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from models.errors import CrankcheckError, shown
+from reports.plan.chosen import chosen_engines
+from reports.plan.study import Study, StudyValue, Variant
+from sim.registry import engine
+from sim.settings import profile_of
+
+Overrides = Mapping[str, Mapping[str, StudyValue | list[StudyValue]]]
+"""Values of settings by engine, one or several of each."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is said in place of a study's own; what is empty, or None, leaves that."""
+
+    scenes: Sequence[str] = ()
+    engines: Sequence[str] = ()
+    profiles: Sequence[str] = ()
+    steps_per_turn: Sequence[float] = ()
+    turns: float | None = None
+    overrides: Overrides = field(default_factory=dict)
+
+
+def chosen_study(study: Study, choice: Choice, *, is_shipped: bool) -> Study:
+    """The study with a choice in place of what it says itself.
+
+    Settings are varied in every variant of their engine; of the shipped study, in profile tuned
+    alone, or in those profiles that are named. Raises CrankcheckError for an unknown engine or
+    profile, and for an engine of which the study has no variant.
+    """
+    engines = chosen_engines(choice.engines)
+    variants = list(study.variants)
+    if choice.profiles or (choice.overrides and is_shipped):
+        profiles = list(dict.fromkeys(choice.profiles or ("tuned",)))
+        named = [(e, profile_of(engine(e), p).name) for p in profiles for e in engines]
+        variants = [Variant(engine=e, profile=p) for e, p in named]
+    variants = [variant for variant in variants if variant.engine in engines]
+    for name, overrides in choice.overrides.items():
+        variants = [
+            v.model_copy(update={"settings": {**v.settings, **overrides}})
+            if v.engine == name
+            else v
+            for v in variants
+        ]
+    if not variants:
+        raise CrankcheckError(
+            f"--engine {', '.join(choice.engines)}: the study has no variant of it; add --profile"
+        )
+    return study.model_copy(
+        update={
+            "variants": variants,
+            "scenes": list(choice.scenes) or study.scenes,
+            "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
+            "turns": study.turns if choice.turns is None else choice.turns,
+        }
+    )
+
+
+def refuse_other_engine(owner: str, engines: Sequence[str], place: str) -> None:
+    """Refuse settings of an engine that is none of those. Raises CrankcheckError."""
+    if owner not in engines:
+        raise CrankcheckError(
+            f"{place}: {shown(owner)} is no engine of this sweep; it has {', '.join(engines)}"
+        )

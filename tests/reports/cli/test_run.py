@@ -1,0 +1,114 @@
+"""`crankcheck run`: the log of a run in a file, or in short on the terminal."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from analytic.kinematics import solve
+from models.files import load_scene
+from models.scene_text import scene_text
+from reports.cli import app
+from sim.run import run
+
+READERS = {".csv": pd.read_csv, ".parquet": pd.read_parquet, ".xlsx": pd.read_excel}
+COARSE = ["--steps-per-turn", "90", "--turns", "1"]
+
+
+def crank(*args: str) -> Result:
+    return CliRunner().invoke(app, list(args), catch_exceptions=False)
+
+
+@pytest.mark.parametrize("ending", READERS)
+def test_the_log_holds_every_digit_of_the_run(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"log{ending}"
+    result = crank("run", "slotted-lever", "--engine", "pymunk", *COARSE, "-o", str(path))
+    assert result.exit_code == 0, result.output
+    frame = READERS[ending](path)
+    scene = load_scene("slotted-lever")
+    state = solve(scene, np.zeros(1)).state()
+    done = run(scene, state, "pymunk", dt_s=scene.driver.law.period_s / 90, steps=90)
+    assert done.motion is not None
+    for name, series in {
+        "time_s": done.motion.time_s,
+        "velocity_time_s": done.velocity_time_s,
+        "lever_theta_rad": done.motion.links["lever"].theta,
+        "E_vy_m_s": done.motion.points["E"].velocity[:, 1],
+        "B_slider_displacement_m": done.motion.sliders["B"].displacement,
+        "B_gap_m": done.gaps["B"],
+    }.items():
+        np.testing.assert_array_equal(frame[name], series, err_msg=name)
+    assert not [name for name in frame if "alpha" in name]
+
+
+def test_what_it_tells_to_do_next_judges_the_log(tmp_path: Path) -> None:
+    path = tmp_path / "my log.csv"
+    result = crank("run", "fourbar-lecture-1", *COARSE, "--every", "2", "-o", str(path))
+    assert result.output.startswith(f"{path}: 46 samples of fourbar-lecture-1 in mujoco ")
+    assert "ended ok at t = 0.628319 s; pins open by at most " in result.output
+    (command,) = re.findall(r"next: crankcheck (.*)", result.output)
+    judged = crank(*shlex.split(command))
+    assert judged.exit_code == 0
+    assert "WITHIN TOLERANCE" in judged.output
+
+
+def test_without_a_file_it_shows_some_samples_and_what_came_of_the_run() -> None:
+    result = crank("run", "shaper", *COARSE, "--profile", "as-shipped")
+    assert result.exit_code == 0
+    assert "shaper: mujoco" in result.output
+    assert "13 of 91 logged samples" in result.output
+    assert "ended ok at t = 0.628319 s" in result.output
+
+
+def test_a_run_that_came_apart_is_written_as_far_as_it_went(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sim.run.RUNAWAY", 0.5)
+    path = tmp_path / "log.csv"
+    result = crank("run", "fourbar-lecture-1", *COARSE, "-o", str(path))
+    assert result.exit_code == 1
+    assert "ended diverged at t = " in result.output
+    assert 1 <= len(pd.read_csv(path)) < 91
+
+
+def test_what_an_engine_can_not_hold_is_told_and_nothing_written(tmp_path: Path) -> None:
+    fourbar = load_scene("fourbar-lecture-1")
+    links = {
+        name: replace(link, mass_kg=0.0, inertia_kg_m2=0.0) for name, link in fourbar.links.items()
+    }
+    scene, log = tmp_path / "bare.toml", tmp_path / "log.csv"
+    scene.write_text(scene_text(replace(fourbar, links=links)), encoding="utf-8")
+    result = crank("run", str(scene), *COARSE, "-o", str(log))
+    assert result.exit_code == 2
+    assert "fourbar-lecture-1, mujoco: unsupported: " in result.output
+    assert not log.exists()
+
+
+@pytest.mark.parametrize(
+    ("args", "told"),
+    [
+        ("fourbar", "scene 'fourbar': neither a shipped scene nor a file"),
+        ("shaper --engine mujocco", "did you mean mujoco?"),
+        ("shaper --profile tund", "profile 'tund': mujoco has none of that name"),
+        ("shaper --dt 1e-3 --steps-per-turn 90", "--dt and --steps-per-turn: both set the step"),
+        ("shaper --turns nan", "--turns nan: give a number above 0"),
+        ("shaper --every 0", "--every: found 0; give a whole number, at least 1"),
+        ("shaper --drive x", "--drive 'x': unknown; use prescribed, servo or free"),
+        ("shaper --turns 1e9", "steps of shaper; at most 300000 are logged"),
+        ("shaper --turns 1e9 --every 100", "steps of shaper; at most 30000000; take"),
+        ("shaper -o log.txt", "-o log.txt: found '.txt'; use .csv, .parquet, .xlsx"),
+        ("shaper -o nowhere/log.csv", "there is no folder nowhere; create it first"),
+    ],
+)
+def test_bad_input_is_one_message_and_exit_code_2(args: str, told: str) -> None:
+    result = crank("run", *args.split())
+    assert result.exit_code == 2
+    assert told in result.output
+    assert "Traceback" not in result.output

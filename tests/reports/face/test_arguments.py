@@ -1,0 +1,222 @@
+"""Arguments of the wrong kind or shape are told at the call, in the words of the command."""
+
+from __future__ import annotations
+
+import math
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import crankcheck
+from crankcheck.testing import assert_within
+
+SCENE = "fourbar-lecture-1"
+LOG = {"time_s": [0.0, 0.1, 0.2], "rocker_rad": [1.9, 2.0, 2.1]}
+ODD: list[object] = [
+    None, True, 0, -1, 1.5, math.nan, math.inf, 10**400, "", "x", "a\0b", "--dt", "x" * 5000, b"x",
+    [], [1], ["a"], (), {}, {1: 2}, {"angle": "x"}, {"angle": -1}, set(), object(), object, 1j,
+    Fraction(1, 2), np.float64(0.5), np.int64(3), np.array(3.0), np.array([]), np.zeros((2, 2)),
+    np.array(["a"]), np.ma.masked_array([1, 2], [0, 1]), pd.DataFrame(), pd.Series([1.0, 2.0]),
+    Path("/nowhere.csv"), Path(), slice(3), np.datetime64("2020"), {"time_s": [0, 1]},
+    {"time_s": [0, 1], "rocker_rad": [0, None]},
+]  # fmt: skip
+"""Values that hardly any argument takes."""
+
+
+def calls(
+    ran: crankcheck.Simulation, folder: Path
+) -> dict[str, tuple[Callable[..., object], dict]]:
+    """Each function with arguments that are right."""
+    coarse = {"turns": 1, "steps_per_turn": 90}
+    grid = {**coarse, "scenes": SCENE, "folder": folder / "study", "engines": "mujoco",
+            "profiles": "tuned", "timing": False, "jobs": 1}  # fmt: skip
+    told = {"scene": SCENE, "target": 10.0, "step_s": None, "map": None, "require": ()}
+    return {
+        "solve": (crankcheck.solve, {"scene": SCENE, "time_s": 0.1, "links": (), "bound": True}),
+        "solve_driven": (
+            crankcheck.solve_driven,
+            {"scene": SCENE, "theta": 1.0, "omega": 1.0, "alpha": 0.0, "time_s": 0.0},
+        ),
+        "run": (
+            crankcheck.run,
+            {**coarse, "scene": SCENE, "engine": "mujoco", "profile": "tuned", "every": 1,
+             "drive": "servo", "settings": None},
+        ),
+        "check": (
+            crankcheck.check,
+            {**coarse, "scene": SCENE, "engine": "mujoco", "profile": "tuned", "settings": None,
+             "tolerance": None, "converge": False},
+        ),
+        "compare": (
+            crankcheck.compare,
+            {"scene": SCENE, "what": LOG, "step_s": None, "drive": "scene", "map": None},
+        ),
+        "judge": (crankcheck.judge, {**told, "log": LOG, "drive": "scene"}),
+        "judge a run": (crankcheck.judge, {**told, "log": ran, "drive": "scene"}),
+        "assert_within": (assert_within, {**told, "log": LOG, "angle": 10.0}),
+        "sweep": (
+            crankcheck.sweep,
+            {**grid, "settings": None, "study": None, "limit_s": 60.0, "memory_gb": 2.0},
+        ),
+        "report": (crankcheck.report, {"folder": folder / "none", "output": folder / "a.md"}),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["solve", "solve_driven", "run", "check", "compare", "judge", "judge a run", "assert_within",
+     "sweep", "report"],
+)  # fmt: skip
+def test_odd_arguments_are_errors_of_ours_told_at_the_call(
+    name: str, ran: crankcheck.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """None of them is another error, comes from deep inside, or speaks of options.
+
+    The frames of its traceback are that of this test, and the one where it is told.
+    """
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("reports.sweep.whole.swept", lambda *_: pytest.fail("it would run"))
+    call, right = calls(ran, tmp_path)[name]
+    errors = {
+        (argument, at): error
+        for argument in right
+        for at, odd in enumerate(ODD)
+        if (error := error_of(partial(call, **{**right, argument: odd})))
+    }
+    assert len(errors) > len(ODD) * len(right) / 3
+    for (argument, at), error in errors.items():
+        assert len(traceback.extract_tb(error.__traceback__)) == 2, (argument, ODD[at])
+        if not isinstance(ODD[at], str | np.ma.MaskedArray):
+            assert "--" not in str(error).replace("judge --write-map", ""), argument
+
+
+def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
+    """What a call says; None where it takes the arguments."""
+    try:
+        call()
+    except crankcheck.CrankcheckError as error:
+        return error
+    except (AssertionError, pytest.fail.Exception):  # it was judged, or would run
+        pass
+    return None
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda: crankcheck.load_scene(None), "scene: found None; give a shipped name"),  # type: ignore[arg-type]
+        (lambda: crankcheck.solve(7), "scene: found 7; give a shipped name, the path"),  # type: ignore[arg-type]
+        (lambda: crankcheck.solve(SCENE, links="rockr"), "link 'rockr' is not in the scene"),
+        (lambda: crankcheck.solve(SCENE, [[0.0]]), r"time_s of shape \(1, 1\); give one dimension"),
+        (lambda: crankcheck.run(SCENE, "mujocco"), "engine 'mujocco': unknown; did you mean"),
+        (lambda: crankcheck.run(SCENE, profile="tund"), "profile 'tund': mujoco has none of that"),
+        (lambda: crankcheck.run(SCENE, settings={"iteration": 1}), "did you mean iterations?"),
+        (lambda: crankcheck.run(SCENE, settings={"iterations": [1]}), "iterations: found a list"),
+        (lambda: crankcheck.run(SCENE, settings={"solver": "x"}), "setting solver: found 'x'; use"),
+        (
+            lambda: crankcheck.run(SCENE, dt_s=1e-3, steps_per_turn=720),
+            "^dt_s and steps_per_turn: both set the step; give one of them$",
+        ),
+        (lambda: crankcheck.run(SCENE, turns=-1), "^turns -1: give a number above 0, in turns"),
+        (lambda: crankcheck.run(SCENE, turns="2"), "^turns: found '2'; give a number above 0"),  # type: ignore[arg-type]
+        (lambda: crankcheck.run(SCENE, every=0), "every: found 0; give a whole number, at least 1"),
+        (lambda: crankcheck.run(SCENE, dt_s=1.0), "^dt_s 1: 0.628 steps in a turn of fourbar"),
+        (lambda: crankcheck.check(SCENE, drive="free"), "^drive 'free': unknown; use prescribed"),
+        (lambda: crankcheck.check(SCENE, turns=0.01), "^steps_per_turn 720 turns 0.01: 8 steps"),
+        (lambda: crankcheck.check(SCENE, tolerance={"angel": 1}), "did you mean angle?"),
+        (lambda: crankcheck.check(SCENE, tolerance=1e-3), "tolerance: found 0.001; give a dict"),  # type: ignore[arg-type]
+        (lambda: crankcheck.judge(SCENE, LOG), "no limit for angle: .* give target 1e-3"),
+        (lambda: crankcheck.judge(SCENE, LOG, target=0), "^target 0: give a number above 0"),
+        (lambda: crankcheck.judge(SCENE, LOG, target=1, require="x"), "^require 'x': neither"),
+        (lambda: crankcheck.judge(SCENE, LOG, target=1, drive="x"), "^drive 'x': unknown; use sc"),
+        (lambda: crankcheck.judge(SCENE, LOG, target=1, map={"time": 1}), "^map: time: found 1"),
+        (lambda: crankcheck.judge(SCENE, "log.xml", target=1), "log log.xml: found '.xml'; use"),
+        (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: it is no quantity; did you mean"),
+        (lambda: crankcheck.sweep(SCENE, "x", jobs=-1), "^jobs: found -1; give a whole number"),
+        (lambda: crankcheck.sweep(SCENE, "x", settings={"iterations": 1}), "no engine and setting"),
+        (lambda: crankcheck.sweep(SCENE, "x", profiles="tund"), "profile 'tund': mujoco has none"),
+        (lambda: crankcheck.report("nowhere"), "nowhere: no store of a sweep there"),
+        (lambda: crankcheck.report("x", "a.pdf"), "^output a.pdf: found '.pdf'; use .html"),
+    ],
+)
+def test_messages_say_what_was_found_and_what_would_work(
+    call: Callable[[], object], told: str
+) -> None:
+    with pytest.raises(crankcheck.CrankcheckError, match=told):
+        call()
+
+
+def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    home = Path(crankcheck.__file__).parents[1] / "models" / "scenes" / f"{SCENE}.toml"
+    path.write_bytes(home.read_bytes())
+    options = {"turns": np.float32(0.5), "steps_per_turn": np.int64(90), "every": np.uint8(2)}
+    settings: Mapping[str, object] = {"iterations": np.int32(50), "tolerance": np.float64(1e-10)}
+    done = crankcheck.run(path, settings=settings, **options)  # type: ignore[arg-type]
+    assert (done.status, done.steps, done.every) == ("ok", 45, 2)
+    assert done.asked["iterations"] == 50
+    assert crankcheck.compare(crankcheck.load_scene(path), done).worst("angle") is not None
+
+
+def test_what_is_of_another_scene_is_refused(
+    ran: crankcheck.Simulation, lagging: crankcheck.Simulation
+) -> None:
+    for call in (
+        partial(crankcheck.compare, SCENE, lagging),
+        partial(crankcheck.judge, SCENE, lagging),
+        partial(assert_within, SCENE, lagging),
+    ):
+        with pytest.raises(crankcheck.CrankcheckError, match="is of slotted-lever, not of four"):
+            call()
+    scene = ran.mechanism
+    law = scene.driver.law.turned(0.1)
+    other = replace(scene, driver=replace(scene.driver, law=law))
+    with pytest.raises(crankcheck.CrankcheckError, match=f"is of another {SCENE}, not"):
+        crankcheck.judge(other, ran)
+    with pytest.raises(crankcheck.CrankcheckError, match=f"motion is of {SCENE}, not of"):
+        crankcheck.judge("shaper", crankcheck.solve(SCENE), target=1)
+
+
+def test_a_run_says_itself_what_a_log_has_to_be_told(ran: crankcheck.Simulation) -> None:
+    for option, value in {"step_s": 1e-3, "drive": "fitted", "map": {}, "require": "angle"}.items():
+        with pytest.raises(crankcheck.CrankcheckError, match=f"^{option}: it is of logs, and this"):
+            crankcheck.judge(SCENE, ran, **{option: value})  # type: ignore[call-overload]
+    free = crankcheck.run(SCENE, steps_per_turn=90, turns=0.5, drive="free")
+    with pytest.raises(crankcheck.CrankcheckError, match="drive free: nothing says where"):
+        crankcheck.compare(SCENE, free)
+
+
+def spoilt(motion: crankcheck.Motion, **change: object) -> crankcheck.Motion:
+    """A motion, as a caller may have made it, with something of its rocker or its times changed."""
+    links = dict(motion.links)
+    if "theta" in change:
+        links["rocker"] = replace(links["rocker"], theta=change["theta"])  # type: ignore[arg-type]
+    if "name" in change:
+        links[str(change["name"])] = links["rocker"]
+    time_s = change.get("time_s", motion.time_s)
+    return crankcheck.Motion(time_s, links, motion.points, motion.sliders)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"theta": np.zeros(3)}, r"rocker, theta of shape \(3,\), time_s of \(361,\)"),
+        ({"theta": np.zeros((361, 2))}, r"of shape \(361, 2\), time_s of \(361,\); give \(361,\)"),
+        ({"theta": ["a"] * 361}, "rocker, theta: found what is no number"),
+        ({"theta": np.r_[np.nan, np.ones(360)]}, "row 0, column 'rocker_theta_rad': found nan"),
+        ({"name": "rockr"}, f"link 'rockr' is not in {SCENE}; did you mean rocker?"),
+        ({"time_s": np.zeros(361)}, "row 1, column 'time_s': time stands still"),
+        ({"time_s": np.full(361, np.inf)}, "time_s: sample 0 is inf; give finite numbers"),
+    ],
+)
+def test_a_motion_of_other_shapes_is_refused(change: dict[str, object], told: str) -> None:
+    motion = spoilt(crankcheck.solve(SCENE), **change)
+    with pytest.raises(crankcheck.CrankcheckError, match=told):
+        crankcheck.judge(SCENE, motion, target=1e-3)

@@ -1,0 +1,40 @@
+"""docs/python.md is true: its examples run from top to bottom, and show every name of the face."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import crankcheck
+from crankcheck import testing
+from tests.worlds.command import PYTHON
+from tests.worlds.documents import blocks, follows, ran, scripts
+
+PAGE = (Path(__file__).parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
+END = "--- end of example {} ---"
+
+
+def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
+    """One after the other in one process, as a reader would in a notebook."""
+    examples = scripts(PAGE)
+    parts = [f"{code}\nprint({END.format(at)!r})" for at, (code, _) in enumerate(examples)]
+    done = ran([PYTHON, "-P", "-c", "\n".join(parts)], tmp_path)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    assert done.stderr == ""
+    faults, rest = [], done.stdout
+    for at, (code, shown) in enumerate(examples):
+        printed, _, rest = rest.partition(f"{END.format(at)}\n")
+        if shown is None:
+            assert not printed, code
+        elif fault := follows(shown, [line.rstrip() for line in printed.splitlines()]):
+            faults.append(f"{code}\n{fault}")
+    assert len(examples) >= 10
+    assert not faults, "\n\n".join(faults)
+
+
+def test_every_name_of_the_face_stands_on_the_page() -> None:
+    code = " ".join(blocks(PAGE, "python"))
+    prose = re.sub(r"```.*?```", "", PAGE, flags=re.DOTALL)
+    shown = set(re.findall(r"\w+", " ".join([code, *re.findall(r"`[^`]+`", prose)])))
+    missing = {*crankcheck.__all__, *testing.__all__} - shown
+    assert not missing

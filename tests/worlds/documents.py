@@ -1,0 +1,86 @@
+"""A page of documentation is true: what it shows runs, and prints what stands below it.
+
+A line of ``...`` stands for any lines, and ``...`` in a line for any words. Words and numbers must
+be the same, but for the rows of a verdict: their numbers, which processors may move a little, must
+agree to 10 %.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.worlds.command import COMMAND, PYTHON
+
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+ANY = "..."
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """What stands in the blocks of a language."""
+    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
+
+
+def commands(page: str) -> list[tuple[str, list[str], int]]:
+    """Each command with the lines that should follow, and the exit code stated by ``$ echo $?``."""
+    found: list[tuple[str, list[str], int]] = []
+    for block in blocks(page, "console"):
+        for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:
+            command, *lines = part.rstrip("\n").split("\n")
+            if command == "echo $?":
+                last = found.pop()
+                found.append((last[0], last[1], int(lines[0])))
+            else:
+                found.append((command, lines, 0))
+    return found
+
+
+def scripts(page: str) -> list[tuple[str, list[str] | None]]:
+    """Each block of Python, and the lines of the block of ``text`` right below it, if there is
+    one."""
+    found = re.findall(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", page, flags=re.DOTALL)
+    return [(code, text.rstrip("\n").split("\n") if text else None) for code, text in found]
+
+
+def words(command: str) -> list[str]:
+    """The command, with the programs of this environment."""
+    name, *rest = shlex.split(command)
+    programs = {"crankcheck": COMMAND, "python": PYTHON}
+    return [programs.get(name, name), *rest]
+
+
+def ran(command: Sequence[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+
+
+def same(shown: str, printed: str) -> bool:
+    """The same words, and numbers that agree."""
+    if ANY in shown:
+        parts = [re.escape(" ".join(part.split())) for part in shown.split(ANY)]
+        return re.fullmatch(r"\s*" + ".*".join(parts), " ".join(printed.split())) is not None
+    ours, theirs = NUMBER.split(shown), NUMBER.split(printed)
+    if [" ".join(w.split()) for w in ours] != [" ".join(w.split()) for w in theirs]:
+        return False
+    tolerance = 0.1 if shown.lstrip().startswith(("ok ", "OUT ")) else 0.0
+    pairs = zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True)
+    return all(a == b or math.isclose(float(a), float(b), rel_tol=tolerance) for a, b in pairs)
+
+
+def follows(shown: Sequence[str], printed: Sequence[str]) -> str:
+    """Empty where ``printed`` reads as ``shown``; else the first line that does not."""
+    at, free = 0, False
+    for line in shown:
+        if line.strip() == ANY:
+            free = True
+            continue
+        ahead = range(at, len(printed)) if free else range(at, min(at + 1, len(printed)))
+        hit = next((i for i in ahead if same(line, printed[i])), None)
+        if hit is None:
+            near = printed[at] if at < len(printed) else "(end)"
+            return f"the page says\n  {line}\nwhat is printed\n  {near}"
+        at, free = hit + 1, False
+    return ""
