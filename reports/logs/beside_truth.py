@@ -17,7 +17,7 @@ from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from reports.compare.beside import Beside, Truth
-from reports.compare.tracks import Track
+from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Log, Reading
 from reports.quantities import QUANTITIES, named
 from reports.quantities.moving import Order
@@ -26,8 +26,8 @@ from sim.engine import Run
 EVEN = 1e-6
 """Steps that differ by less of themselves, as printed times do, are the same."""
 MANY = 200_000
-"""Samples beyond which the errors at the logged angle of the driver are left out: a second truth
-of that size takes as much memory as all else."""
+"""Samples beyond which memory counts: tracks are not kept, and the errors at the logged angle of
+the driver left out, as a second truth of that size takes as much as all else."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,10 @@ class LogBeside(Beside):
 
     def tracks(self, quantities: Sequence[str], reference: Motion) -> tuple[Track, ...]:
         judged = [name for name in quantities if not self.geometry_alone or _of_places(name)]
-        every = super().tracks(judged, reference)
+        if self.motion.time_s.size > MANY:
+            every = tuple(tracks(self.scene, self.run, reference, judged))
+        else:
+            every = super().tracks(judged, reference)
         return tuple(track for track in every if not np.all(np.isnan(track.error)))
 
 
@@ -132,7 +135,7 @@ def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
         reason="",
         settings={},
         motion=_motion(log.time_s, bodies),
-        gaps={**_gaps(log), **log.gaps},
+        gaps={**_gaps(log), **{gap.of: gap.opening_m for gap in log.gaps}},
         velocity_time_s=instants[1],
         acceleration_time_s=instants[2],
         stopped_at_s=float(log.time_s[-1]),

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -79,6 +78,17 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class Gap:
+    """A column that says how far the bodies at a pin or slider are apart: in its ``unit``, and as
+    ``opening_m`` (T,)."""
+
+    column: str
+    of: str
+    unit: str
+    opening_m: Array
+
+
+@dataclass(frozen=True)
 class Log:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
@@ -86,7 +96,7 @@ class Log:
     from its times [s].
 
     ``copies`` are readings of a point as further bodies have it, which the gap is taken of;
-    ``gaps`` are those (T,) [m], by pin or slider, that the log itself tells. ``unused`` names
+    ``gaps`` are those that the log itself tells. ``unused`` names
     columns that nothing was made of, with the reason.
     """
 
@@ -97,5 +107,5 @@ class Log:
     stamp: tuple[str, str] = ("", "")
     zero_s: float = 0.0
     copies: tuple[Reading, ...] = ()
-    gaps: Mapping[str, Array] = field(default_factory=dict)
+    gaps: tuple[Gap, ...] = ()
     unused: tuple[tuple[str, str], ...] = ()

@@ -132,15 +132,13 @@ def read_columns(path: Path, layout: Layout | None = None) -> Columns:
         if not raw:
             raise UnreadableError("empty; a log has a header and rows of numbers")
         if ending == ".parquet":
-            return _of_table(str(path), _parquet(raw))
+            return _of_table(str(path), [_parquet(raw)])
         if ending == ".xlsx":
             return _sheet(str(path), raw, layout)
         text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS)
-        del raw
-        columns = _of_table(str(path), text.table, text.first)
-        del text
-        pa.default_memory_pool().release_unused()
-        return columns
+        first, tables = text.first, [text.table]
+        del raw, text
+        return _of_table(str(path), tables, first)
     except UnreadableError as error:
         raise CrankcheckError(f"log {path}: {error}") from None
 
@@ -153,14 +151,19 @@ def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
     return Columns(source, raw, rows=len(frame))
 
 
-def _of_table(source: str, table: pa.Table, first: int = 1) -> Columns:
-    """The columns of an arrow table; text stays text."""
-    names = [str(name) for name in table.column_names]
+def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
+    """The columns of the one arrow table in a list, which is taken out of it: each column is let go
+    as soon as it is an array, as a long log would be in memory twice. Text stays text."""
+    table = tables.pop()
+    rows, names = table.num_rows, [str(name) for name in table.column_names]
     _refuse_twins(names, f"log {source}")
-    if table.num_rows == 0:
+    if rows == 0:
         raise UnreadableError("a header and no rows; a log has rows of numbers")
-    raw = {name: _values(table.column(at)) for at, name in enumerate(names)}
-    return Columns(source, raw, first, table.num_rows)
+    parts = table.columns[::-1]
+    del table
+    raw = {name: _values(parts.pop()) for name in names}
+    pa.default_memory_pool().release_unused()
+    return Columns(source, raw, first, rows)
 
 
 def _values(column: pa.ChunkedArray) -> Any:

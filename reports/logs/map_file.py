@@ -166,6 +166,9 @@ def map_text(log: Log, file: FileTable) -> str:
         lines.append('zero = "first"')
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]
+    for gap in log.gaps:
+        lines += ["", "[[channel]]", f"column = {_text(gap.column)}", f"of = {_text(gap.of)}",
+                  'kind = "gap"', f"unit = {_text(gap.unit)}"]  # fmt: skip
     for column, reason in log.unused:
         if reason == LEFT_OUT:
             lines += ["", "[[channel]]", f"column = {_text(column)}", "ignore = true"]

@@ -11,7 +11,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, cut, few, suggestion
 from models.scene import Scene
-from reports.logs.channel import Channel, Log, Reading
+from reports.logs.channel import Channel, Gap, Log, Reading
 from reports.logs.columns import Columns
 from reports.logs.instants import instants, refuse_far
 from reports.logs.kinds import KINDS
@@ -313,18 +313,19 @@ def _slots(
     return sorted(main, key=lambda one: place[one.column]), copies, spare
 
 
-def _gaps(columns: Columns, gaps: Iterable[_Gap]) -> dict[str, Array]:
-    """The gaps that a log tells itself [m]. Raises CrankcheckError for two of one pin."""
-    found: dict[str, Array] = {}
+def _gaps(columns: Columns, gaps: Iterable[_Gap]) -> tuple[Gap, ...]:
+    """The gaps that a log tells itself. Raises CrankcheckError for two of one pin."""
+    found: list[Gap] = []
     for gap in gaps:
-        if gap.of in found:
+        if gap.of in {each.of for each in found}:
             raise CrankcheckError(
                 f"two columns for one quantity, the gap of {gap.of}; rename one, or ignore = true"
             )
         if DIMENSION[gap.unit] != "length":
             raise CrankcheckError(f"column {gap.column!r}: {gap.unit} is no unit of length")
-        found[gap.of] = np.abs(columns.numbers(gap.column) * UNITS["length"][gap.unit])
-    return found
+        opening = np.abs(columns.numbers(gap.column) * UNITS["length"][gap.unit])
+        found.append(Gap(gap.column, gap.of, gap.unit, opening))
+    return tuple(found)
 
 
 def _refuse_unknown(asked: Iterable[str], columns: Columns, where: str) -> None:

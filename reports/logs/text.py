@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
@@ -65,9 +65,12 @@ def text_columns(raw: bytes, layout: Layout, most_rows: int, most_columns: int) 
         below = next((n for n in range(below + 1, len(lines)) if lines[n].strip()), None)
         if below is None:
             raise UnreadableError("a header and units, and no rows; a log has rows of numbers")
-    _check_row(_fields(lines[below], separator), names, below, separator, layout)
+    fields = _fields(lines[below], separator)
+    _check_row(fields, names, below, separator, layout)
+    pairs = zip(names, fields, strict=True)
+    numeric = [name for name, field in pairs if NUMBER.fullmatch(field) or COMMA.fullmatch(field)]
     body = memoryview(raw)[offsets[below] :]
-    table = _table(body, names, separator, layout.decimal, most_rows, below)
+    table = _table(body, names, numeric, separator, layout.decimal, most_rows, below)
     return TextTable(table, below + 1)
 
 
@@ -172,12 +175,14 @@ def _check_row(
 def _table(
     body: memoryview,
     names: Sequence[str],
+    numeric: Iterable[str],
     separator: str,
     decimal: str,
     most_rows: int,
     below: int,
 ) -> pa.Table:
-    """The rows as a table. Raises UnreadableError for rows that do not fit, and for too many."""
+    """The rows as a table; columns that are ``numeric`` in the first row are taken for numbers, if
+    they stay so. Raises UnreadableError for rows that do not fit, and for too many."""
     if separator == " ":
         text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(body)))
         body = memoryview(text)
@@ -194,7 +199,7 @@ def _table(
         )
         return "error"
 
-    try:
+    def table(types: Mapping[str, pa.DataType]) -> pa.Table:
         return pc.read_csv(
             pa.BufferReader(pa.py_buffer(body)),
             read_options=pc.ReadOptions(
@@ -202,12 +207,21 @@ def _table(
             ),
             parse_options=pc.ParseOptions(delimiter=separator, invalid_row_handler=misfit),
             convert_options=pc.ConvertOptions(
+                column_types=types,
                 null_values=[""],
                 strings_can_be_null=True,
                 decimal_point=decimal,
                 timestamp_parsers=[],
             ),
         )
+
+    try:
+        try:  # where a type is told, the text is let go block by block
+            return table({name: pa.float64() for name in numeric})
+        except pa.ArrowInvalid:
+            if misfits:
+                raise
+            return table({})
     except (pa.ArrowException, OSError, ValueError) as error:
         why = misfits[0] if misfits else cut(str(error).splitlines()[0], 200)
         raise UnreadableError(f"{why}; every row has as many fields as the header") from None

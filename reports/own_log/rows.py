@@ -90,7 +90,11 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
             and (each.channel.kind.body_kind == error.body_kind or error.quantity == "drive")
         ]
         columns = tuple(each.channel.column for each in read)
-        rows.append(LogRow(columns, _what(error), error, limit, *_unit(read, error.unit)))
+        unit = _unit(read, error.unit)
+        for gap in judged.log.gaps:
+            if (error.quantity, error.body) == ("gap", gap.of):
+                columns, unit = (gap.column,), (gap.unit, UNITS["length"][gap.unit])
+        rows.append(LogRow(columns, _what(error), error, limit, *unit))
     return rows
 
 
