@@ -1,0 +1,49 @@
+"""The hypotheses, by what they are about, in the order in which equal ones are preferred."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from reports.causes.account import Account
+from reports.causes.hypotheses.assembly import assembly
+from reports.causes.hypotheses.clock import drift, time_unit
+from reports.causes.hypotheses.dimension import dimension
+from reports.causes.hypotheses.driver import backwards, start_angle
+from reports.causes.hypotheses.filtered import filtered
+from reports.causes.hypotheses.frame import mirrored, moved, sized, turned
+from reports.causes.hypotheses.grid import rounded
+from reports.causes.hypotheses.late import late
+from reports.causes.hypotheses.misnamed import misnamed
+from reports.causes.hypotheses.samples import samples
+from reports.causes.hypotheses.smoothed import smoothed
+from reports.causes.hypotheses.straight import straight
+from reports.causes.hypotheses.swapped import swapped
+from reports.causes.hypotheses.turns import turns
+from reports.causes.inquiry import Inquiry
+
+Hypothesis = Callable[[Inquiry], Iterator[Account]]
+OF_CHANNELS: Mapping[str, Hypothesis] = {
+    "straight": straight,
+    "swapped": swapped,
+    "misnamed": misnamed,
+    "turns": turns,
+    "samples": samples,
+    "late": late,
+    "filtered": filtered,
+    "rounded": rounded,
+}
+"""What may be wrong with some channels."""
+OF_LOGS: Mapping[str, Hypothesis] = {
+    "backwards": backwards,
+    "assembly": assembly,
+    "mirrored": mirrored,
+    "time unit": time_unit,
+    "moved": moved,
+    "turned": turned,
+    "sized": sized,
+    "start angle": start_angle,
+    "dimension": dimension,
+    "drift": drift,
+    "smoothed": smoothed,
+}
+"""What may be wrong with the log as a whole, or with the scene; and what costs most, last."""

@@ -1,0 +1,206 @@
+"""A clock of the log that is not that of the scene: another unit of time, or another pace.
+
+That the clock is slow and that the driver is fast is one thing where places alone are logged; rates
+tell them apart, if they were not taken over the log's own time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from models.array import Array
+from models.laws import ConstantSpeed
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
+from reports.causes.excerpt import BROUGHT_WITHIN, Rows, picked
+from reports.causes.fit import fitted
+from reports.causes.inquiry import WELL, Inquiry
+from reports.causes.words import change, later, number
+from reports.causes.world import World
+from reports.logs.units import UNITS
+
+MOST_FITS = 4
+"""Channels that a clock is fitted to, one after another."""
+FIRST, GROWTH, LEAST_ROWS = 0.02, 2.5, 12
+"""In periods, the stretch at the beginning of the log that a fit starts with; how much longer each
+next one is; and the rows of the shortest."""
+SCANNED = 0.5
+"""In periods, the stretch that starts elsewhere are looked for in."""
+SCAN = 24
+ROWS = 200
+"""Rows of a stretch that a clock is fitted to."""
+UNLIKE = 3.0
+"""Of two readings of a drift one is ruled out where it leaves so many times as much."""
+FASTEST = 1e3
+
+
+@dataclass(frozen=True)
+class Clock:
+    """What a stamp t [s] of the log stands for: t + start + gain (t - first)."""
+
+    first_s: float
+    start_s: float
+    gain: float
+
+    def __call__(self, stamps: Array) -> Array:
+        return stamps + (self.start_s + self.gain * (stamps - self.first_s))
+
+    def world(self, world: World, *, paced: bool) -> World:
+        """The world as this clock has it; ``paced`` where the rates are taken over its time."""
+        pace = world.pace * (1.0 + self.gain) if paced else world.pace
+        return replace(world.stamped(self), pace=pace)
+
+
+def time_unit(inquiry: Inquiry) -> Iterator[Account]:
+    """Times that are in another unit than the map says."""
+    ratios: dict[float, str] = {}
+    for read, size in UNITS["time"].items():
+        for unit, other in UNITS["time"].items():
+            if unit != read:
+                ratios.setdefault(other / size, f"in {unit}, if the map says {read}")
+    for ratio, words in ratios.items():
+        world = inquiry.world.stamped(lambda stamps, ratio=ratio: ratio * stamps)  # type: ignore[misc]
+        phrase = f"the times are {number(1.0 / ratio)} times what they should be: {words}"
+        told = inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
+        if told is not None:
+            yield told
+
+
+def drift(inquiry: Inquiry) -> Iterator[Account]:
+    """Clocks that run at another pace, fitted to one channel after another until one tells all."""
+    needy = sorted(inquiry.unexplained, key=lambda column: inquiry.channel(column).kind.order)
+    for column in needy[:MOST_FITS]:
+        for paced in (False, True) if inquiry.channel(column).kind.order else (False,):
+            clock = _fitted(inquiry, column, paced=paced)
+            if clock is None:
+                continue
+            told = list(_told(inquiry, column, clock))
+            yield from told
+            if any(_tells_all(inquiry, account) for account in told):
+                return
+
+
+def _tells_all(inquiry: Inquiry, account: Account) -> bool:
+    """Whether nothing is left that needs a drift."""
+    return all(account.rests.get(column, 1.0) < WELL for column in inquiry.unexplained)
+
+
+def _fitted(inquiry: Inquiry, column: str, *, paced: bool) -> Clock | None:
+    """The clock of one channel: fitted to its beginning, then to more and more of it, so that it is
+    never off by much of a turn."""
+    reading = inquiry.excerpts[column].reading
+    first_s = float(reading.instants[0])
+    ages, period = reading.instants - first_s, inquiry.period_s
+    least = float(ages[min(LEAST_ROWS, ages.size) - 1])
+    near = Clock(first_s, 0.0, 0.0)
+    clock = _grown(inquiry, column, near, max(FIRST * period, least), paced=paced)
+    if clock is not None:
+        return clock
+    width = max(SCANNED * period, least)
+    starts = np.arange(1, SCAN) / SCAN * period
+    clocks = [Clock(first_s, float(start), 0.0) for start in starts]
+    there = inquiry.into(column, _rows(ages, width))
+    best = min(clocks, key=lambda each: _rest(there, column, each, paced=paced))
+    return _grown(inquiry, column, best, width, paced=paced)
+
+
+def _rows(ages: Array, width: float) -> Rows:
+    """Rows spread over the beginning of a log."""
+    return picked(int(np.searchsorted(ages, width, side="right")), most=ROWS)
+
+
+def _grown(
+    inquiry: Inquiry, column: str, clock: Clock, width: float, *, paced: bool
+) -> Clock | None:
+    """The clock near another that tells the beginning of a channel, and then all of it."""
+    ages = inquiry.excerpts[column].reading.instants - clock.first_s
+    while True:
+        there = inquiry.into(column, _rows(ages, width))
+        near = _nearest(there, column, clock, paced=paced)
+        if near is None or not abs(near.gain) < FASTEST:
+            return None
+        clock = near
+        if width >= ages[-1]:
+            return clock if _rest(there, column, clock, paced=paced) < BROUGHT_WITHIN else None
+        width *= GROWTH
+
+
+def _nearest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> Clock | None:
+    """The clock near another that leaves least of what a channel is off at some rows."""
+
+    def residual(numbers: Array) -> Array:
+        tried = Clock(clock.first_s, float(numbers[0]), float(numbers[1]))
+        return there.errors(tried.world(there.world, paced=paced))[column]
+
+    delta = (1e-6 * there.period_s, 1e-6)
+    found = fitted(residual, (clock.start_s, clock.gain), delta)
+    return None if found is None else Clock(clock.first_s, float(found[0]), float(found[1]))
+
+
+def _rest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> float:
+    """What a clock leaves of the error of a column."""
+    errors = there.errors(clock.world(there.world, paced=paced))
+    return there.excerpts[column].rest(errors[column])
+
+
+def _told(inquiry: Inquiry, column: str, clock: Clock) -> Iterator[Account]:
+    """The accounts of a clock, and of the one that starts with the scene's where that does."""
+    thin = inquiry.thin
+    excerpt = thin.excerpts[column]
+
+    def residual(numbers: Array) -> Array:
+        tried = Clock(clock.first_s, 0.0, float(numbers[0]))
+        return thin.errors(tried.world(thin.world, paced=False), [column])[column]
+
+    clocks = [(clock, 2)]
+    if excerpt.channel.kind.order == 0:
+        found = fitted(residual, [clock.gain], [1e-7])
+        if found is not None:
+            clocks.append((Clock(clock.first_s, 0.0, float(found[0])), 1))
+    for each, numbers in clocks:
+        told = _either(inquiry, column, each, CAUSE + NUMBER * numbers)
+        if told is not None:
+            yield told
+
+
+def _either(inquiry: Inquiry, column: str, clock: Clock, cost: float) -> Account | None:
+    """The account of a clock or of a driver of another pace, whichever leaves less; it says of both
+    where nothing tells them apart."""
+    time = inquiry.channel(column).time
+    among = [c for c in inquiry.excerpts if inquiry.channel(c).time == time]
+    accounts = {
+        paced: inquiry.account_of_world(
+            "drift", cost, clock.world(inquiry.world, paced=paced), "", among
+        )
+        for paced in (False, True)
+    }
+    plain, fast = accounts[False], accounts[True]
+    of_clock, of_driver = _words(inquiry, clock)
+    if plain is None or (fast is not None and UNLIKE * _left(fast, plain) < _left(plain, fast)):
+        words = f"{of_driver}, or {of_clock} and the rates are taken over its time"
+        return fast and replace(fast, phrase=words)
+    if fast is None or UNLIKE * _left(plain, fast) < _left(fast, plain):
+        return replace(plain, phrase=f"{of_clock}; the rates say that the driver is right")
+    return replace(plain, phrase=f"{of_clock}, or {of_driver}")
+
+
+def _left(account: Account, other: Account) -> float:
+    """What is left in the worst channel that this or another account explains."""
+    return max(account.rests.get(column, 1.0) for column in (*account.rests, *other.rests))
+
+
+def _words(inquiry: Inquiry, clock: Clock) -> tuple[str, str]:
+    """A clock in words, and the driver that would show the same."""
+    law, pace = inquiry.world.scene.driver.law, 1.0 + clock.gain
+    slow = "slow" if clock.gain > 0.0 else "fast"
+    of_clock = f"the clock of the log runs {change(1.0 / pace, 1.0).lstrip('+-')} {slow}"
+    of_driver = f"the driver turns {change(pace, 1.0).lstrip('+-')} "
+    of_driver += "fast" if clock.gain > 0.0 else "slow"
+    if isinstance(law, ConstantSpeed):
+        speed = law.speed_rad_s
+        of_driver += f" ({number(speed * pace, 6)} rad/s, not {number(speed, 6)} rad/s)"
+    if clock.start_s:
+        of_clock += f", its first sample belongs {later(clock.start_s, inquiry.step_s)}"
+    return of_clock, of_driver

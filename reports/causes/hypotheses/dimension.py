@@ -1,0 +1,240 @@
+"""A scene that has another length, pivot or line than the mechanism that was logged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.scene import GROUND, Link, Scene, Slider
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
+from reports.causes.fit import fitted
+from reports.causes.inquiry import Inquiry
+from reports.causes.words import change, number
+
+MOST = 60
+"""Dimensions that are looked at."""
+MOST_FITTED = 4
+"""Dimensions that are fitted: those that a straight line makes the most likely."""
+LEAST_GAIN = 0.25
+"""The part of the squares of the errors that a straight line has to take off."""
+ROUNDS = 6
+BEST = 2e-3
+SLIGHT = 1e-6
+"""The change that slopes are taken of, over the longest link or in radians."""
+FARTHEST = 1.0
+"""The most that a dimension may be changed, over the longest link or in radians."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """One number of a scene, in ``unit`` m or rad: what it is called, what it is, and the scene
+    with another one. A ``point`` that two numbers place is the same for both."""
+
+    name: str
+    value: float
+    change: Callable[[Scene, float], Scene]
+    unit: str = "m"
+    point: str = ""
+
+
+def dimension(inquiry: Inquiry) -> Iterator[Account]:
+    """The dimensions that explain most of what is open, alone or, of a point, both."""
+    columns = list(inquiry.unclaimed)
+    if not columns or (len(columns) == 1 and _told_alone(inquiry, columns[0])):
+        return
+    scene = inquiry.world.scene
+    likely = _likely(inquiry, columns, dimensions(scene)[:MOST])
+    singles = [(one,) for one in likely[:MOST_FITTED]]
+    points = {one.point: () for one in likely[: 2 * MOST_FITTED] if one.point}
+    both = [tuple(one for one in likely if one.point == point) for point in points]
+    pairs = [each for each in both if len(each) == 2][:2]
+    for chosen in (*singles, *pairs):
+        told = _told(inquiry, columns, chosen)
+        if told is not None:
+            yield told
+
+
+def _told_alone(inquiry: Inquiry, column: str) -> bool:
+    """Whether something with few numbers explains a single channel too well for anything else."""
+    rests = (account.rests.get(column, 1.0) for account in inquiry.accounts)
+    return min(rests, default=1.0) < BEST
+
+
+def dimensions(scene: Scene) -> list[Dimension]:
+    """All numbers that the places of a scene follow from."""
+    found: list[Dimension] = []
+    for point, place in scene.ground.items():
+        for axis in (0, 1):
+            name = f"{'xy'[axis]} of the ground pivot {point}"
+            found.append(
+                Dimension(name, place[axis], _ground(point, axis), point=f"ground {point}")
+            )
+    for link in scene.links.values():
+        found += _of_link(link)
+    for slider in scene.sliders.values():
+        found += _of_slider(slider)
+    return found
+
+
+def _ground(point: str, axis: int) -> Callable[[Scene, float], Scene]:
+    def changed(scene: Scene, value: float) -> Scene:
+        place = _with(scene.ground[point], axis, value)
+        return replace(scene, ground={**scene.ground, point: place})
+
+    return changed
+
+
+def _of_link(link: Link) -> list[Dimension]:
+    """The distance between the first two points of a link, and the places of the others."""
+    names = list(link.points)
+    found = []
+    if len(names) > 1:
+        (x0, y0), (x1, y1) = (link.points[name] for name in names[:2])
+        length = math.hypot(x1 - x0, y1 - y0)
+        words = f"length {names[0]}{names[1]} of {link.name}"
+        found.append(Dimension(words, length, _length(link.name, names[0], names[1])))
+    for point in names[2:]:
+        for axis in (0, 1):
+            words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
+            place = f"{link.name} {point}"
+            value = link.points[point][axis]
+            found.append(Dimension(words, value, _place(link.name, point, axis), point=place))
+    return found
+
+
+def _length(name: str, first: str, second: str) -> Callable[[Scene, float], Scene]:
+    def changed(scene: Scene, value: float) -> Scene:
+        (x0, y0), (x1, y1) = (scene.links[name].points[point] for point in (first, second))
+        ratio = value / math.hypot(x1 - x0, y1 - y0)
+        place = (x0 + ratio * (x1 - x0), y0 + ratio * (y1 - y0))
+        return _moved(scene, name, second, place)
+
+    return changed
+
+
+def _place(name: str, point: str, axis: int) -> Callable[[Scene, float], Scene]:
+    def changed(scene: Scene, value: float) -> Scene:
+        place = _with(scene.links[name].points[point], axis, value)
+        return _moved(scene, name, point, place)
+
+    return changed
+
+
+def _moved(scene: Scene, name: str, point: str, place: tuple[float, float]) -> Scene:
+    """The scene with a point of a link elsewhere in its frame."""
+    link = scene.links[name]
+    link = replace(link, points={**link.points, point: place})
+    return replace(scene, links={**scene.links, name: link})
+
+
+def _of_slider(slider: Slider) -> list[Dimension]:
+    """How far the line lies to its left of where it is in the scene, and its directions."""
+    line = f"the line of slider {slider.name}"
+    sine, cosine = math.sin(slider.direction_rad), math.cos(slider.direction_rad)
+
+    def beside(scene: Scene, value: float) -> Scene:
+        x, y = slider.through_m
+        return _slid(scene, replace(slider, through_m=(x - value * sine, y + value * cosine)))
+
+    def turned(scene: Scene, value: float) -> Scene:
+        return _slid(scene, replace(slider, direction_rad=value))
+
+    def tilted(scene: Scene, value: float) -> Scene:
+        return _slid(scene, replace(slider, angle_rad=value))
+
+    where = "" if slider.on == GROUND else f" on {slider.on}"
+    found = [
+        Dimension(f"distance of {line}{where} to its left", 0.0, beside),
+        Dimension(f"direction of {line}{where}", slider.direction_rad, turned, "rad"),
+    ]
+    if slider.link is not None:
+        found.append(
+            Dimension(f"angle of {slider.link} to {line}", slider.angle_rad, tilted, "rad")
+        )
+    return found
+
+
+def _slid(scene: Scene, slider: Slider) -> Scene:
+    return replace(scene, sliders={**scene.sliders, slider.name: slider})
+
+
+def _with(place: tuple[float, float], axis: int, value: float) -> tuple[float, float]:
+    """A place with another coordinate."""
+    return (value, place[1]) if axis == 0 else (place[0], value)
+
+
+def _residual(
+    inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[Dimension]
+) -> Callable[[Array], Array]:
+    """What is left of the errors of columns, each over its size, where dimensions are changed; it
+    raises CrankcheckError where there is no such mechanism."""
+    sizes = {column: inquiry.excerpts[column].size.rms for column in columns}
+    scale = inquiry.world.scene.longest_m
+
+    def residual(changes: Array) -> Array:
+        scene = inquiry.world.scene
+        for one, by in zip(chosen, changes, strict=True):
+            scene = one.change(scene, one.value + float(by) * (scale if one.unit == "m" else 1.0))
+        errors = inquiry.errors(replace(inquiry.world, scene=scene), columns)
+        return np.concatenate([errors[column] / sizes[column] for column in columns])
+
+    return residual
+
+
+def _likely(
+    inquiry: Inquiry, columns: Sequence[str], every: Sequence[Dimension]
+) -> list[Dimension]:
+    """The dimensions that change what is expected, by what a straight line leaves of the errors."""
+    thin, found = inquiry.thin, []
+    errors = np.concatenate([thin.excerpts[c].error / thin.excerpts[c].size.rms for c in columns])
+    for number_of, one in enumerate(every):
+        try:
+            slope = (_residual(thin, columns, (one,))(np.array([SLIGHT])) - errors) / SLIGHT
+        except CrankcheckError:
+            continue
+        size = float(slope @ slope)
+        gained = float(slope @ errors) ** 2 / size if size > 1e-12 else 0.0
+        if gained > LEAST_GAIN * float(errors @ errors):
+            found.append((-gained, number_of))
+    return [every[number_of] for _, number_of in sorted(found)]
+
+
+def _told(inquiry: Inquiry, columns: Sequence[str], chosen: Sequence[Dimension]) -> Account | None:
+    """The account of other values of dimensions; fitted again without the channels that these do
+    not explain, which something else may be wrong with."""
+    start = [0.0] * len(chosen)
+    for _ in range(2):
+        delta = [SLIGHT] * len(chosen)
+        found = fitted(_residual(inquiry.thin, columns, chosen), start, delta, ROUNDS)
+        if found is None or np.any(np.abs(found) > FARTHEST):
+            return None
+        told = _account(inquiry, chosen, found)
+        explained = [] if told is None else [c for c in columns if c in told.rests]
+        if not explained or len(explained) == len(columns):
+            return told
+        columns, start = explained, list(found)
+    return told
+
+
+def _account(inquiry: Inquiry, chosen: Sequence[Dimension], found: Array) -> Account | None:
+    """The account of fitted changes."""
+    scene, longest = inquiry.world.scene, inquiry.world.scene.longest_m
+    words = []
+    for one, by in zip(chosen, found, strict=True):
+        value = one.value + float(by) * (longest if one.unit == "m" else 1.0)
+        scene = one.change(scene, value)
+        shown = [value, one.value] if one.unit == "m" else [*map(math.degrees, (value, one.value))]
+        unit = "m" if one.unit == "m" else "deg"
+        share = f" ({change(*shown)})" if one.value and one.unit == "m" else ""
+        words.append(
+            f"{one.name} is {number(shown[0], 5)} {unit} in the log, {number(shown[1], 5)} {unit} "
+            f"in the scene{share}"
+        )
+    cost = CAUSE + CHOICE + NUMBER * len(chosen)
+    world = replace(inquiry.world, scene=scene)
+    return inquiry.account_of_world("length", cost, world, " and ".join(words))

@@ -1,0 +1,130 @@
+"""Readings that a low-pass or a mean over samples went over.
+
+Both make a signal late as well as smooth, where they look back. Where they take off little beside
+that, a delay explains the readings too, and what is left tells which it is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.fit import fitted
+from reports.causes.inquiry import Inquiry
+from reports.output.numbers import duration
+
+WIDEST = 0.25
+"""The part of a stretch that a mean may be taken over."""
+NEAR = 48
+"""Means of up to so many samples are tried each, wider ones in steps of a twentieth."""
+TIME_CONSTANTS = np.logspace(-0.5, 3.0, 12)
+"""In samples, what the fit of a low-pass starts from."""
+FEEDS = (0.0, 0.5, 1.0)
+"""How much of the sample before goes in beside the new one: backward, bilinear, forward."""
+FARTHEST = 20.0
+"""The logarithm of a time constant in samples, and that of one over it, at most."""
+LEAST_ROWS = 16
+
+
+def filtered(inquiry: Inquiry) -> Iterator[Account]:
+    """Each filter that explains a channel."""
+    for column in inquiry.open:
+        try:
+            stretch = inquiry.stretch(column)
+        except CrankcheckError:
+            continue
+        if stretch.rows < LEAST_ROWS:
+            continue
+        for told in (_low_pass(stretch, column), _mean(stretch, column)):
+            if told is not None:
+                yield told
+
+
+def _low_pass(stretch: Inquiry, column: str) -> Account | None:
+    """The account of a low-pass of first order that began with the first reading."""
+    excerpt = stretch.excerpts[column]
+    intervals = np.diff(excerpt.instants)
+    step = float(np.median(intervals))
+    if not step > 0.0 or np.any(intervals < 0.0):
+        return None
+    readings = excerpt.expected + excerpt.error
+
+    def residual(log_constant: Array, feed: float) -> Array:
+        constant = step * math.exp(min(max(float(log_constant[0]), -FARTHEST), FARTHEST))
+        decay = np.exp(-intervals / constant)
+        return readings - low_pass(excerpt.expected, readings[0], decay, feed)
+
+    def left(log_constant: float, feed: float) -> float:
+        rest = residual(np.array([log_constant]), feed)
+        return float(rest @ rest)
+
+    start = min(np.log(TIME_CONSTANTS), key=lambda each: left(each, 0.0))
+    best: tuple[float, float, float] | None = None
+    for feed in FEEDS:
+        found = fitted(lambda p, feed=feed: residual(p, feed), [start], [1e-5])  # type: ignore[misc]
+        if found is not None and abs(found[0]) < FARTHEST:
+            each = (left(float(found[0]), feed), float(found[0]), feed)
+            best = each if best is None else min(best, each)
+    if best is None:
+        return None
+    _, log_constant, feed = best
+    constant = step * math.exp(log_constant)
+    if constant > (excerpt.instants[-1] - excerpt.instants[0]):
+        return None  # what stays is of no signal
+    errors = {column: residual(np.array([log_constant]), feed)}
+    phrase = (
+        f"{{who}} went through a low-pass of first order, time constant {duration(constant)} "
+        f"({constant / step:.3g} samples)"
+    )
+    return stretch.account("low-pass", CAUSE + NUMBER, errors, phrase)
+
+
+def low_pass(signal: Array, start: float, decay: Array, feed: float) -> Array:
+    """A signal (n,) after y[k] = a[k] y[k-1] + (1 - a[k]) x[k], where ``decay`` is a (n - 1,), y
+    begins with ``start``, and x has the part ``feed`` of the sample before. In log2(n) rounds."""
+    fed = (1.0 - feed) * signal[1:] + feed * signal[:-1]
+    factor = np.concatenate([[0.0], decay])
+    result = np.concatenate([[start], (1.0 - decay) * fed])
+    reach = 1
+    while reach < signal.size:  # each sample takes in as many before it as it has so far
+        result[reach:] = result[reach:] + factor[reach:] * result[:-reach]
+        factor[reach:] = factor[reach:] * factor[:-reach]
+        reach *= 2
+    return result
+
+
+def _mean(stretch: Inquiry, column: str) -> Account | None:
+    """The account of a mean over the last samples, or over as many on both sides."""
+    excerpt = stretch.excerpts[column]
+    readings = excerpt.expected + excerpt.error
+    sums = np.concatenate([[0.0], np.cumsum(excerpt.expected)])
+    best: tuple[float, int, int] | None = None
+    for width in _widths(excerpt.rows.size):
+        means = (sums[width:] - sums[:-width]) / width
+        for ahead in {0, width // 2} if width % 2 else {0}:
+            first = width - 1 - ahead
+            left = readings[first : first + means.size] - means
+            rest = float(left @ left) / left.size
+            if best is None or rest < best[0]:
+                best = (rest, width, ahead)
+    if best is None:
+        return None
+    _, width, ahead = best
+    means = (sums[width:] - sums[:-width]) / width
+    rows = np.arange(width - 1 - ahead, width - 1 - ahead + means.size)
+    errors = {column: readings[rows] - means}
+    where = f"{width // 2} on both sides" if ahead else "the last ones"
+    phrase = f"{{who}} {{is}} a mean over {width} samples, {where}"
+    return stretch.part(rows).account("mean", CAUSE + NUMBER, errors, phrase)
+
+
+def _widths(rows: int) -> list[int]:
+    """The widths in samples that are tried."""
+    widest = int(WIDEST * rows)
+    wide = np.unique(np.geomspace(NEAR, max(widest, NEAR), 60).astype(int))
+    return [*range(2, min(NEAR, widest)), *(int(each) for each in wide if each <= widest)]

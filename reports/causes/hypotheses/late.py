@@ -1,0 +1,208 @@
+"""Readings that belong to other instants than they are stamped with, all by the same delay."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed
+from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.excerpt import EXPLAINED, Excerpt, Size
+from reports.causes.fit import fitted
+from reports.causes.hypotheses.grid import resolution
+from reports.causes.inquiry import MOVED, Inquiry
+from reports.causes.words import later
+
+SCAN = 48
+"""Delays within half a period to either side that large ones are looked for among."""
+SCANNED = 120
+"""Rows that they are tried on."""
+SAME = 0.02
+"""Delays of which one differs by less than this part of itself, or of a sample, may be one."""
+MOST_PERIODS = 0.75
+GROUPS = 8
+LEAST_SAMPLES = 0.05
+"""A delay of less is none that a log within its limits is told of."""
+CLEAR = 5.0
+"""How much less of an error within its limit a delay has to leave, to be told."""
+SEEN = 20.0
+"""How far above the last digit of the readings such an error has to be."""
+
+
+@dataclass(frozen=True)
+class Delay:
+    """How much later [s] the readings of a column belong, and how sure that is."""
+
+    column: str
+    by_s: float
+    doubt_s: float
+
+
+def late(inquiry: Inquiry) -> Iterator[Account]:
+    """Delays that explain a channel, or several at once; also, of channels that are within their
+    limits, those that clearly explain what there is of an error."""
+    candidates = (*inquiry.open, *_doubtful(inquiry))
+    delays = [delay for delay in map(Search(inquiry).delay, candidates) if delay is not None]
+    for group in _groups(delays, inquiry.step_s):
+        told = _told(inquiry, group)
+        if told is not None:
+            yield told
+
+
+def _doubtful(inquiry: Inquiry) -> list[str]:
+    """The channels within their limits whose error is more than their last digit makes."""
+    return [
+        column
+        for column in inquiry.healthy
+        if column in inquiry.excerpts
+        and inquiry.excerpts[column].worst > SEEN * resolution(inquiry.excerpts[column])
+    ]
+
+
+class Search:
+    """The delays of columns, fitted to few rows; what was scanned is kept for all of them."""
+
+    def __init__(self, inquiry: Inquiry) -> None:
+        self.inquiry, self.thin = inquiry, inquiry.thin
+        step = max(1, self.thin.rows // SCANNED)
+        self.few = self.thin.part(np.arange(0, self.thin.rows, step))
+        self._scans: dict[float, dict[str, Array]] = {}
+
+    def delay(self, column: str) -> Delay | None:
+        """By how much the readings of a column belong later; None where that can not be told."""
+        excerpt = self.thin.excerpts[column]
+        delta = 1e-6 * self.inquiry.period_s
+
+        def residual(by: Array) -> Array:
+            return self._error(excerpt, column, float(by[0]))
+
+        def rest(by: Array) -> float:
+            return excerpt.rest(residual(by))
+
+        near = fitted(residual, [0.0], [delta])
+        if near is None:
+            return None
+        if rest(near) > EXPLAINED and column in self.inquiry.open:  # if it is a delay, a large one
+            tried = [fitted(residual, [start], [delta]) for start in self._scan(column)]
+            near = min((near, *(each for each in tried if each is not None)), key=rest)
+        found = float(near[0])
+        if not found or abs(found) > MOST_PERIODS * self.inquiry.period_s:
+            return None
+        rate = (residual(np.array([found + delta])) - residual(near)) / delta
+        left = Size.of(residual(near)).rms
+        moving = Size.of(rate).rms
+        if not moving:
+            return None
+        return Delay(column, found, left / moving / math.sqrt(excerpt.rows.size))
+
+    def _error(self, excerpt: Excerpt, column: str, by_s: float) -> Array:
+        """The error of readings that belong ``by_s`` later. Raises CrankcheckError."""
+        world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
+        channel = excerpt.channel
+        return excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
+
+    def _scan(self, column: str) -> Sequence[float]:
+        """The two delays within half a period of which the least is left of an error."""
+        lefts = []
+        for by_s in np.linspace(-0.5, 0.5, SCAN + 1)[:-1] * self.inquiry.period_s:
+            expected = self._scanned(float(by_s)).get(column)
+            if expected is None:
+                return []
+            error = self.few.excerpts[column].beside(expected)
+            lefts.append((float(error @ error), float(by_s)))
+        rests = np.array([left for left, _ in lefts])
+        least = (rests <= np.roll(rests, 1)) & (rests <= np.roll(rests, -1))
+        near = sorted(each for each, good in zip(lefts, least, strict=True) if good)
+        return [by_s for _, by_s in near[:2]]
+
+    def _scanned(self, by_s: float) -> dict[str, Array]:
+        """What is expected of all columns that much later; nothing where there is no mechanism."""
+        if by_s not in self._scans:
+            world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
+            try:
+                self._scans[by_s] = self.few.expected(world)
+            except CrankcheckError:
+                self._scans[by_s] = {}
+        return self._scans[by_s]
+
+
+def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
+    """Delays that may be one, each group around its surest."""
+    groups: list[list[Delay]] = []
+    for delay in sorted(delays, key=lambda each: each.doubt_s):
+        for group in groups:
+            near = max(SAME * abs(group[0].by_s), SAME * step_s, 3.0 * delay.doubt_s)
+            if abs(delay.by_s - group[0].by_s) <= near:
+                group.append(delay)
+                break
+        else:
+            groups.append([delay])
+    return sorted(groups, key=len, reverse=True)[:GROUPS]
+
+
+def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
+    """The account of one delay of several columns."""
+    weights = np.array([1.0 / max(each.doubt_s, 1e-9 * inquiry.step_s) ** 2 for each in group])
+    by_s = float(weights @ np.array([each.by_s for each in group]) / weights.sum())
+    world = inquiry.world.stamped(lambda stamps: stamps + by_s)
+    try:
+        expected = inquiry.expected(world)
+    except CrankcheckError:
+        return None
+    errors = {column: inquiry.excerpts[column].beside(each) for column, each in expected.items()}
+    advised: list[str] = []
+    if abs(by_s) >= LEAST_SAMPLES * inquiry.step_s:
+        advised = [c for c in _doubtful(inquiry) if _clearly(inquiry.excerpts[c], errors[c])]
+    instants = later(by_s, inquiry.step_s)
+    told = inquiry.account(
+        "delay",
+        CAUSE + NUMBER,
+        errors,
+        f"{{who}} {{belongs}} {instants}",
+        corrections={c: {"delay_s": inquiry.channel(c).delay_s + by_s} for c in errors},
+        expected=expected,
+        besides=advised,
+    )
+    if told is None or not _everything(inquiry, told.columns, expected, errors):
+        return told
+    phrase = f"all that is logged belongs {instants}: {_start(inquiry, by_s)}"
+    return replace(told, name="start", phrase=phrase, world=world)
+
+
+def _clearly(excerpt: Excerpt, error: Array) -> bool:
+    """Whether a delay explains an error that is within its limit."""
+    return CLEAR * excerpt.rest(error) <= 1.0
+
+
+def _everything(
+    inquiry: Inquiry,
+    explained: Sequence[str],
+    expected: Mapping[str, Array],
+    errors: Mapping[str, Array],
+) -> bool:
+    """Whether all that would show a delay has it, a place among them."""
+    shown = [
+        column
+        for column, excerpt in inquiry.excerpts.items()
+        if Size.of(excerpt.beside(expected[column]) - excerpt.error).largest
+        > max(excerpt.limit, MOVED * excerpt.size.largest)
+    ]
+    late = [column for column in shown if column in explained]
+    places = [column for column in late if inquiry.channel(column).kind.order == 0]
+    most = len(late) > 1 and 2 * len(late) >= len(shown)
+    return bool(most and places and not inquiry.spoilt(errors))
+
+
+def _start(inquiry: Inquiry, by_s: float) -> str:
+    """What it is that starts elsewhere."""
+    law = inquiry.world.scene.driver.law
+    clock = "the clock of the log starts elsewhere"
+    if not isinstance(law, ConstantSpeed):
+        return clock
+    now, before = (math.degrees(law.start_rad + law.speed_rad_s * each) for each in (by_s, 0.0))
+    return f"{clock}, or the driver starts at {now:.5g} deg, not at {before:.5g} deg"

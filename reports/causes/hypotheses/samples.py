@@ -1,0 +1,126 @@
+"""Single samples that are off while the others are not: stuck ones, held ones and spikes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.array import Array, Mask
+from models.errors import CrankcheckError
+from reports.causes.account import BOUNDED, CAUSE, CHOICE, Account
+from reports.causes.excerpt import BROUGHT_WITHIN, Rows
+from reports.causes.inquiry import Inquiry
+from reports.output.numbers import listed
+
+SHOWN = 3
+"""Places that are named each; the others are counted."""
+HELD = 0.3
+"""A channel of which more readings than this part repeat the one before is updated that seldom."""
+DEAD = 0.01
+"""A channel that moves by so little of what it should does not move."""
+FEW_RUNS = 3
+"""Stretches that stick by themselves, whatever their lengths."""
+FEW, FEWEST = 0.03, 5
+"""The part of the readings that may be spikes, and how many may be in any log."""
+LONGEST_SPIKE = 3
+"""Samples in a row that are one spike."""
+BESIDE = 0.2
+"""The most that the samples beside a spike are off, over it: an error that grows is none."""
+
+
+def samples(inquiry: Inquiry) -> Iterator[Account]:
+    """Channels that are off at samples which repeat the one before, or at a few single ones."""
+    for column in inquiry.open:
+        try:
+            values, error = inquiry.whole(column)
+        except CrankcheckError:
+            continue
+        off = np.abs(error) > inquiry.excerpts[column].limit
+        for found in (_dead, _stuck, _spikes):
+            told = found(inquiry, column, values, error, off)
+            if told is not None:
+                yield told
+
+
+def runs(where: Mask) -> Rows:
+    """The first and the last place (n, 2) of each stretch that is true."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(np.int8)))
+    return np.asarray(edges.reshape(-1, 2) - np.array([0, 1]))
+
+
+def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask) -> Account | None:
+    """The account of readings that stay where they are, while the channel should move."""
+    excerpt = inquiry.excerpts[column]
+    expected = excerpt.expected[np.isfinite(excerpt.expected)]
+    moves = np.ptp(expected)
+    if moves <= excerpt.limit or np.ptp(values) > min(excerpt.limit, DEAD * moves):
+        return None
+    phrase = f"{{who}} stay{{s}} at {np.median(values):.4g} (in SI) from first to last"
+    return Account("stuck", CAUSE, {column: BOUNDED}, {column: BOUNDED}, phrase)
+
+
+def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask) -> Account | None:
+    """The account of readings that repeat the one before."""
+    repeated = np.zeros_like(off)
+    repeated[1:] = values[1:] == values[:-1]
+    if not off.any() or np.any(off & ~repeated):
+        return None
+    stuck = runs(repeated)
+    offs = np.concatenate([[0], np.cumsum(off)])
+    stuck = stuck[offs[stuck[:, 1] + 1] > offs[stuck[:, 0]]]
+    lengths = stuck[:, 1] - stuck[:, 0] + 1
+    every = 1 + int(np.median(lengths))
+    if len(stuck) > FEW_RUNS and np.mean(repeated) > HELD and np.mean(lengths == every - 1) > HELD:
+        phrase = f"{{who}} {{is}} updated at every {every}th sample only, and held between"
+        return _without(inquiry, column, error, off, ("held", CAUSE + CHOICE, phrase))
+    phrase = f"{{who}} stick{{s}}: {_places(inquiry, stuck, 'repeat')} the one before"
+    cost = CAUSE + CHOICE * min(len(stuck), 4)
+    return _without(inquiry, column, error, off, ("stuck", cost, phrase))
+
+
+def _spikes(
+    inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
+) -> Account | None:
+    """The account of single samples that are off by far more than those beside them."""
+    if not 0 < np.sum(off) <= max(FEWEST, FEW * off.size):
+        return None
+    spikes = runs(off)
+    if np.any(spikes[:, 1] - spikes[:, 0] >= LONGEST_SPIKE):
+        return None
+    size = np.abs(error)
+    padded = np.concatenate([[0.0], size, [0.0]])
+    for first, last in spikes:
+        if max(padded[first], padded[last + 2]) > BESIDE * size[first : last + 1].max():
+            return None
+    phrase = f"{{who}} {{is}} off at single samples: {_places(inquiry, spikes)}"
+    cost = CAUSE + CHOICE * min(1 + len(spikes), 4)
+    return _without(inquiry, column, error, off, ("spike", cost, phrase))
+
+
+def _without(
+    inquiry: Inquiry, column: str, error: Array, off: Mask, said: tuple[str, float, str]
+) -> Account | None:
+    """The account, by its name, cost and phrase, of what leaves the other samples as they are."""
+    rest = float(np.max(np.abs(error[~off]), initial=0.0)) / float(np.max(np.abs(error)))
+    if rest > BROUGHT_WITHIN:
+        return None
+    name, cost, phrase = said
+    return Account(name, cost, {column: rest}, {column: rest}, phrase)
+
+
+def _places(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
+    """Samples, counted from 0, with their times: the first of them, and how many more."""
+    times = inquiry.case.log.time_s
+    each = []
+    for first, last in stretches[:SHOWN]:
+        at = f"(t = {times[first]:.6g} s)"
+        one = first == last
+        where = f"sample {first} {at}" if one else f"samples {first} to {last} {at}"
+        each.append(where)
+    more = len(stretches) - len(each)
+    if more:
+        each.append(f"{more} more")
+    many = len(each) > 1 or stretches[0][0] != stretches[0][1]
+    verbs = f" {verb}" + ("" if many else "s") if verb else ""
+    return listed(each) + verbs

@@ -1,0 +1,240 @@
+"""What hypotheses look at: the errors that are to be explained, and those that must not arise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion
+from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.cause import Case
+from reports.causes.excerpt import MOST, Excerpt, Rows, Size, picked
+from reports.causes.world import World
+from reports.logs.channel import Channel
+
+SPOILT = 1.2
+"""Over its limit by so much, a channel that was within it is spoilt by a hypothesis."""
+MENDED = 0.8
+"""What may be left in a channel that comes within its limit, of a fault that explains others."""
+MOVED = 0.3
+"""A channel whose expectation a hypothesis changes by so much of its error is its affair."""
+WELL = 0.02
+"""What is left of an error that is explained well enough to look for nothing that costs much."""
+FEW = 400
+"""Rows that numbers are fitted to before they are tried on the others."""
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """The excerpts of a case, by column, beside what is expected in ``world``; of those in ``open``
+    the error is to be explained. ``accounts`` are what was found so far; the world is ``changed``
+    where it is no longer the scene as it is driven."""
+
+    case: Case
+    world: World
+    excerpts: Mapping[str, Excerpt]
+    open: tuple[str, ...]
+    accounts: tuple[Account, ...] = ()
+    changed: bool = False
+
+    @staticmethod
+    def of(case: Case) -> Inquiry:
+        """Raises CrankcheckError where the scene has no reference."""
+        out = tuple(reading.channel.column for reading in case.out)
+        return Inquiry(case, World(case.truth.scene), case.excerpts, out)
+
+    @property
+    def period_s(self) -> float:
+        return self.world.scene.driver.law.period_s
+
+    @cached_property
+    def step_s(self) -> float:
+        """The median interval between the samples [s]."""
+        times = self.case.log.time_s
+        return float(np.median(np.diff(times))) if times.size > 1 else self.period_s
+
+    @cached_property
+    def thin(self) -> Inquiry:
+        """The same with few rows, to fit numbers to."""
+        return self.part(picked(self.rows, most=FEW))
+
+    @property
+    def rows(self) -> int:
+        """Rows of the excerpts."""
+        return max((each.rows.size for each in self.excerpts.values()), default=0)
+
+    def part(self, rows: Rows) -> Inquiry:
+        """The same with some of the rows, by their places in the excerpts."""
+        parts = {column: each.part(rows) for column, each in self.excerpts.items()}
+        return replace(self, excerpts=parts)
+
+    @property
+    def unclaimed(self) -> tuple[str, ...]:
+        """What is open that nothing without a number explains well."""
+        plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
+        return self._without(plain)
+
+    @property
+    def unexplained(self) -> tuple[str, ...]:
+        """What is open that nothing with at most one number explains well so far."""
+        return self._without([each for each in self.accounts if each.cost < CAUSE + 2 * NUMBER])
+
+    def _without(self, accounts: Iterable[Account]) -> tuple[str, ...]:
+        """What is open less what some accounts explain well."""
+        well = {c for account in accounts for c, rest in account.rests.items() if rest < WELL}
+        return tuple(column for column in self.open if column not in well)
+
+    @property
+    def healthy(self) -> tuple[str, ...]:
+        """The columns that were within their limits from the beginning."""
+        return tuple(column for column, each in self.case.excerpts.items() if not each.out)
+
+    def expected(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
+        """What is expected in a world, by column (all of them). Raises CrankcheckError."""
+        motions: dict[bytes, Motion] = {}
+        groups: dict[bytes, list[str]] = {}
+        for column in self.excerpts if columns is None else columns:
+            groups.setdefault(self.excerpts[column].instants.tobytes(), []).append(column)
+        found = {}
+        for instants, group in groups.items():
+            channels = [self.channel(column) for column in group]
+            motions[instants] = world.at(self.excerpts[group[0]].instants, channels)
+            for column, channel in zip(group, channels, strict=True):
+                found[column] = channel.expected(motions[instants])
+        return found
+
+    def errors(self, world: World, columns: Iterable[str] | None = None) -> dict[str, Array]:
+        """The errors against a world, by column. Raises CrankcheckError."""
+        expected = self.expected(world, columns)
+        return {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+
+    def channel(self, column: str) -> Channel:
+        return self.excerpts[column].channel
+
+    def account(
+        self,
+        name: str,
+        cost: float,
+        errors: Mapping[str, Array],
+        phrase: str,
+        *,
+        corrections: Mapping[str, Mapping[str, object]] | None = None,
+        expected: Mapping[str, Array] | None = None,
+        besides: Iterable[str] = (),
+    ) -> Account | None:
+        """The account of what leaves these ``errors``, by column, where something else is
+        ``expected``; None where it explains none of the open ones, nor of some ``besides``."""
+        instead, told = expected or {}, dict[str, float]()
+        for column in (*self.open, *besides):
+            if column in errors:
+                excerpt, error = self.excerpts[column], errors[column]
+                if column not in self.open or excerpt.explained(error, instead.get(column)):
+                    told[column] = excerpt.rest(error, instead.get(column))
+        if not told:
+            return None
+        if expected is not None:  # one fault of several channels may be small in some of them
+            told |= self._mended(errors, expected)
+        lefts = {column: self.excerpts[column].left(errors[column]) for column in told}
+        return Account(name, cost, told, lefts, phrase, corrections or {})
+
+    def _mended(
+        self, errors: Mapping[str, Array], expected: Mapping[str, Array]
+    ) -> dict[str, float]:
+        """What is left, by column, of errors that come within their limits, noise as it may be."""
+        found = {}
+        for column in self.open:
+            if column in errors and Size.of(errors[column]).largest <= self.excerpts[column].limit:
+                rest = self.excerpts[column].rest(errors[column], expected[column])
+                if rest < MENDED:
+                    found[column] = rest
+        return found
+
+    def account_of_world(
+        self,
+        name: str,
+        cost: float,
+        world: World,
+        phrase: str,
+        among: Iterable[str] | None = None,
+    ) -> Account | None:
+        """The account of a log that is of another ``world`` (or its columns ``among``); None where
+        there is no such mechanism, where a healthy channel would be off, or where most of what it
+        moves stays unexplained."""
+        try:
+            expected = self.expected(world, among)
+        except CrankcheckError:
+            return None
+        errors = {column: self.excerpts[column].beside(each) for column, each in expected.items()}
+        told = self.account(name, cost, errors, phrase, expected=expected)
+        if told is None or self.spoilt(errors):
+            return None
+        told = replace(told, world=world)
+        moved = [column for column in self.unclaimed if self._moved(column, expected[column])]
+        missed = [column for column in moved if column not in told.rests]
+        return told if 2 * len(missed) <= len(moved) else None
+
+    def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
+        """The columns that were healthy, and are not with these errors."""
+        return tuple(
+            column
+            for column in self.healthy
+            if column in errors
+            and Size.of(errors[column]).largest
+            > max(SPOILT * self.excerpts[column].limit, 3.0 * self.excerpts[column].worst)
+        )
+
+    def _moved(self, column: str, expected: Array) -> bool:
+        """Whether a channel is expected elsewhere, by what counts beside its error."""
+        if column not in self.excerpts:
+            return False
+        excerpt = self.excerpts[column]
+        change = Size.of(excerpt.beside(expected) - excerpt.error)
+        return change.largest > MOVED * excerpt.size.largest
+
+    def within(self, world: World, left: Iterable[str]) -> Inquiry | None:
+        """The inquiry after what is ``left`` to be explained in another world; None where there is
+        no such mechanism."""
+        try:
+            expected = self.expected(world)
+        except CrankcheckError:
+            return None
+        changed = {
+            column: self.excerpts[column].in_world(each) for column, each in expected.items()
+        }
+        return replace(self, world=world, excerpts=changed, open=tuple(left), changed=True)
+
+    def stretch(self, column: str) -> Inquiry:
+        """The inquiry into one column at rows that follow one another, around that where its error
+        is largest. Raises CrankcheckError."""
+        excerpt = self.excerpts[column]
+        rows = excerpt.reading.values.size
+        worst = int(excerpt.rows[np.argmax(np.abs(excerpt.error))])
+        first = max(0, min(worst - MOST // 2, rows - MOST))
+        return self.into(column, np.arange(first, min(first + MOST, rows)))
+
+    def into(self, column: str, rows: Rows) -> Inquiry:
+        """The inquiry into one column at these rows of the log. Raises CrankcheckError."""
+        excerpt = self.excerpts[column]
+        reading, channel = excerpt.reading, excerpt.channel
+        values, instants = reading.values[rows], reading.instants[rows]
+        expected = channel.expected(self.world.at(instants, [channel]))
+        there = replace(excerpt, rows=rows, values=values, instants=instants).in_world(expected)
+        return replace(self, excerpts={column: there}, open=(column,))
+
+    def whole(self, column: str) -> tuple[Array, Array]:
+        """All readings of a column, and their errors. Raises CrankcheckError."""
+        reading = self.case.excerpts[column].reading
+        truth = self.case.truth
+        channel = reading.channel
+        if self.changed:
+            expected = channel.expected(self.world.at(reading.instants, [channel]))
+        else:
+            expected = reading.expected(truth)
+        error = channel.error(reading.values, expected)
+        return reading.values, np.where(np.isfinite(error), error, math.inf)

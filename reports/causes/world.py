@@ -1,0 +1,109 @@
+"""What a log may be of, where it is not of the scene as it is driven."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.array import Array
+from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.scene import Scene
+from reports.logs.channel import Channel
+
+Stamps = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """How a log has the plane: all lengths times ``size``; seen from behind where ``mirrored`` (the
+    y-axis turned round), then turned by ``turn_rad``, then moved by ``shift_m``."""
+
+    mirrored: bool = False
+    turn_rad: float = 0.0
+    shift_m: tuple[float, float] = (0.0, 0.0)
+    size: float = 1.0
+
+    def seen(self, motion: Motion) -> Motion:
+        """A motion as it looks in this frame."""
+        sign, size = (-1.0 if self.mirrored else 1.0), self.size
+        links = {
+            name: LinkMotion(sign * m.theta + self.turn_rad, sign * m.omega, sign * m.alpha)
+            for name, m in motion.links.items()
+        }
+        cos, sin = math.cos(self.turn_rad), math.sin(self.turn_rad)
+        turned = size * np.array([[cos, sin], [-sign * sin, sign * cos]])
+        points = {
+            name: PointMotion(
+                m.position @ turned + np.array(self.shift_m),
+                m.velocity @ turned,
+                m.acceleration @ turned,
+            )
+            for name, m in motion.points.items()
+        }
+        sliders = {
+            name: SliderMotion(size * m.displacement, size * m.speed, size * m.acceleration)
+            for name, m in motion.sliders.items()
+        }
+        return replace(motion, links=links, points=points, sliders=sliders)
+
+
+@dataclass(frozen=True)
+class World:
+    """A scene, the instants that the ``stamps`` of the log stand for, and the frame that it is seen
+    in; rates are ``pace`` times as fast as in the scene."""
+
+    scene: Scene
+    stamps: tuple[Stamps, ...] = ()
+    pace: float = 1.0
+    frames: tuple[Frame, ...] = ()
+
+    def at(self, stamped: Array, channels: Iterable[Channel]) -> Motion:
+        """Of what is measured, the motion (T,) at stamped instants [s]. Raises CrankcheckError."""
+        instants = stamped
+        for change in reversed(self.stamps):
+            instants = change(instants)
+        motion = solve(self.scene, instants, bound=False, **_bodies(channels))
+        if self.pace != 1.0:
+            motion = _paced(motion, self.pace)
+        for frame in self.frames:
+            motion = frame.seen(motion)
+        return motion
+
+    def stamped(self, change: Stamps) -> World:
+        """The world where the stamps of the log stand for other instants."""
+        return replace(self, stamps=(*self.stamps, change))
+
+    def framed(self, frame: Frame) -> World:
+        """The world where the log has the plane in another way."""
+        return replace(self, frames=(*self.frames, frame))
+
+
+def _bodies(channels: Iterable[Channel]) -> dict[str, Sequence[str]]:
+    """The bodies that channels measure, as `solve` takes them."""
+    names: dict[str, dict[str, None]] = {"links": {}, "points": {}, "sliders": {}}
+    for channel in channels:
+        names[f"{channel.kind.body_kind}s"][channel.of] = None
+        if channel.relative_to:
+            names["links"][channel.relative_to] = None
+    return {kind: tuple(each) for kind, each in names.items()}
+
+
+def _paced(motion: Motion, pace: float) -> Motion:
+    """A motion whose rates are taken over a time that runs at another pace."""
+    links = {
+        name: LinkMotion(m.theta, pace * m.omega, pace**2 * m.alpha)
+        for name, m in motion.links.items()
+    }
+    points = {
+        name: PointMotion(m.position, pace * m.velocity, pace**2 * m.acceleration)
+        for name, m in motion.points.items()
+    }
+    sliders = {
+        name: SliderMotion(m.displacement, pace * m.speed, pace**2 * m.acceleration)
+        for name, m in motion.sliders.items()
+    }
+    return replace(motion, links=links, points=points, sliders=sliders)
