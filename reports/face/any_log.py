@@ -42,10 +42,12 @@ def log_of(scene: Scene, log: object, map_: MapLike = None) -> Log:
 
         return log_of_motion(scene, log)
     from reports.logs.columns import columns_of, read_columns
-    from reports.logs.meanings import understood
+    from reports.logs.meanings import understood, wanted
 
     if isinstance(log, str | PathLike):
-        return understood(read_columns(path_of(log, "log"), told.layout), scene, told)
+        return understood(
+            read_columns(path_of(log, "log"), told.layout, wanted(scene, told)), scene, told
+        )
     frame, source = _frame_of(log)
     return understood(columns_of(frame, source), scene, told)
 

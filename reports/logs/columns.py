@@ -6,8 +6,8 @@ import io
 import re
 import warnings
 import zipfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +106,9 @@ def _cure(cell: object) -> str:
     return "write numbers alone, or leave the column out ([[channel]] ignore = true)"
 
 
-def read_columns(path: Path, layout: Layout | None = None) -> Columns:
+def read_columns(
+    path: Path, layout: Layout | None = None, wanted: Callable[[str], bool] = lambda name: True
+) -> Columns:
     """Read the columns of a log.
 
     Parameters
@@ -115,6 +117,8 @@ def read_columns(path: Path, layout: Layout | None = None) -> Columns:
         Text with a header (.csv, .tsv, .txt; the separator is found), .parquet or .xlsx.
     layout : Layout or None
         What the user's map says of the file.
+    wanted : Callable
+        Which columns of a text are read, by name; of the others there are the names alone.
 
     Raises
     ------
@@ -135,10 +139,12 @@ def read_columns(path: Path, layout: Layout | None = None) -> Columns:
             return _of_table(str(path), [_parquet(raw)])
         if ending == ".xlsx":
             return _sheet(str(path), raw, layout)
-        text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS)
-        first, tables = text.first, [text.table]
+        text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS, wanted)
+        first, names, tables = text.first, text.names, [text.table]
         del raw, text
-        return _of_table(str(path), tables, first)
+        _refuse_twins(names, f"log {path}")
+        columns = _of_table(str(path), tables, first)
+        return replace(columns, raw={name: columns.raw.get(name, ()) for name in names})
     except UnreadableError as error:
         raise CrankcheckError(f"log {path}: {error}") from None
 
@@ -162,7 +168,6 @@ def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
     parts = table.columns[::-1]
     del table
     raw = {name: _values(parts.pop()) for name in names}
-    pa.default_memory_pool().release_unused()
     return Columns(source, raw, first, rows)
 
 
@@ -171,7 +176,8 @@ def _values(column: pa.ChunkedArray) -> Any:
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         if column.null_count:
             return np.array(column.to_pylist(), dtype=object)
-        return column.to_numpy()
+        # In numpy's memory, which goes back to the system; arrow keeps what it has had.
+        return np.concatenate([chunk.to_numpy() for chunk in column.chunks])
     return np.array([_plain(cell) for cell in column.to_pylist()], dtype=object)
 
 
@@ -180,7 +186,7 @@ def _plain(cell: object) -> object:
     return cell if cell is None or isinstance(cell, str | int | float | bool) else str(cell)
 
 
-def _refuse_twins(names: list[str], source: str) -> None:
+def _refuse_twins(names: Sequence[str], source: str) -> None:
     seen = set[str]()
     for name in names:
         if name in seen:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -92,6 +92,25 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
         gaps=_gaps(columns, gaps),
         unused=tuple(unused),
     )
+
+
+def wanted(scene: Scene, map_: Map) -> Callable[[str], bool]:
+    """Whether a column of that name is worth reading: others are only named."""
+    named = Named(scene)
+    told = {one.column: one for one in map_.channel}
+
+    def is_wanted(column: str) -> bool:
+        if column in told:
+            return not told[column].ignore
+        try:
+            if column == map_.time.column or time_of(column):
+                return True
+            found = meaning(column, named)
+        except CrankcheckError:
+            return True  # a name that contradicts itself, which is told later
+        return not isinstance(found, str) and (found.gap or found.of not in scene.ground)
+
+    return is_wanted
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
@@ -32,14 +32,22 @@ class Layout:
 
 @dataclass(frozen=True)
 class TextTable:
-    """The table of a text, and the line that its first row stands in."""
+    """The table of a text, all names of its header, and the line that its first row stands in."""
 
     table: pa.Table
+    names: Sequence[str]
     first: int
 
 
-def text_columns(raw: bytes, layout: Layout, most_rows: int, most_columns: int) -> TextTable:
-    """Read text with a header. Raises UnreadableError for what is no such text."""
+def text_columns(
+    raw: bytes,
+    layout: Layout,
+    most_rows: int,
+    most_columns: int,
+    wanted: Callable[[str], bool] = lambda name: True,
+) -> TextTable:
+    """Read the ``wanted`` columns of a text with a header. Raises UnreadableError for what is no
+    such text."""
     lines, offsets = _first_lines(raw)
     at = next(
         (n for n, line in enumerate(lines) if line.strip() and not line.startswith(REMARKS)), None
@@ -68,10 +76,14 @@ def text_columns(raw: bytes, layout: Layout, most_rows: int, most_columns: int) 
     fields = _fields(lines[below], separator)
     _check_row(fields, names, below, separator, layout)
     pairs = zip(names, fields, strict=True)
-    numeric = [name for name, field in pairs if NUMBER.fullmatch(field) or COMMA.fullmatch(field)]
+    types = {
+        name: pa.float64() if NUMBER.fullmatch(field) or COMMA.fullmatch(field) else None
+        for name, field in pairs
+        if wanted(name)
+    }
     body = memoryview(raw)[offsets[below] :]
-    table = _table(body, names, numeric, separator, layout.decimal, most_rows, below)
-    return TextTable(table, below + 1)
+    table = _table(body, names, types, separator, layout.decimal, most_rows, below)
+    return TextTable(table, names, below + 1)
 
 
 def _first_lines(raw: bytes) -> tuple[list[str], list[int]]:
@@ -175,14 +187,15 @@ def _check_row(
 def _table(
     body: memoryview,
     names: Sequence[str],
-    numeric: Iterable[str],
+    types: Mapping[str, pa.DataType | None],
     separator: str,
     decimal: str,
     most_rows: int,
     below: int,
 ) -> pa.Table:
-    """The rows as a table; columns that are ``numeric`` in the first row are taken for numbers, if
-    they stay so. Raises UnreadableError for rows that do not fit, and for too many."""
+    """The rows of the columns that have ``types``, as a table; what is a number in the first row is
+    taken for one, if it stays so. Raises UnreadableError for rows that do not fit, and for too
+    many."""
     if separator == " ":
         text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(body)))
         body = memoryview(text)
@@ -199,7 +212,7 @@ def _table(
         )
         return "error"
 
-    def table(types: Mapping[str, pa.DataType]) -> pa.Table:
+    def table(told: Mapping[str, pa.DataType]) -> pa.Table:
         return pc.read_csv(
             pa.BufferReader(pa.py_buffer(body)),
             read_options=pc.ReadOptions(
@@ -207,17 +220,19 @@ def _table(
             ),
             parse_options=pc.ParseOptions(delimiter=separator, invalid_row_handler=misfit),
             convert_options=pc.ConvertOptions(
-                column_types=types,
+                column_types=told,
+                include_columns=list(types),
                 null_values=[""],
                 strings_can_be_null=True,
                 decimal_point=decimal,
                 timestamp_parsers=[],
             ),
+            memory_pool=pa.system_memory_pool(),
         )
 
     try:
         try:  # where a type is told, the text is let go block by block
-            return table({name: pa.float64() for name in numeric})
+            return table({name: each for name, each in types.items() if each is not None})
         except pa.ArrowInvalid:
             if misfits:
                 raise

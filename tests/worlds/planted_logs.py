@@ -17,7 +17,6 @@ from reports.causes import Case
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, Log, Reading
 from reports.logs.kinds import KINDS
-from reports.logs.units import UNITS
 
 TURNING = {0: ("rad", "deg"), 1: ("rad/s", "deg/s", "rpm"), 2: ("rad/s^2", "deg/s^2")}
 MOVING = {0: ("m", "mm", "in"), 1: ("m/s", "mm/s", "in/s"), 2: ("m/s^2", "mm/s^2")}

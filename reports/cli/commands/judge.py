@@ -13,7 +13,7 @@ from reports.cli.own_log import JudgeRequest
 from reports.judge.tolerance import check_names, parse
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, map_text, read_map
-from reports.logs.meanings import understood
+from reports.logs.meanings import understood, wanted
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
@@ -35,7 +35,8 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     scene = load_scene(request.scene)
     check_names(scene)
     map_ = read_map(request.map) if request.map else Map()
-    log = understood(read_columns(request.log, map_.layout), scene, map_)
+    # No name for the columns, which take as much memory as all readings: let go when understood.
+    log = understood(read_columns(request.log, map_.layout, wanted(scene, map_)), scene, map_)
     if request.write_map is not None:
         write(request.write_map, map_text(log, map_.file))
         told = harmless(f"{request.write_map}: what {request.log} says, as it was understood")
