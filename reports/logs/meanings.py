@@ -216,7 +216,7 @@ def _channel(
     times: dict[str, str],
 ) -> Channel | _Gap:
     """A channel of what the name says and the map corrects. Raises CrankcheckError."""
-    told = told or ChannelTable(column=column)
+    told = told or ChannelTable.model_construct(column=column)
     where = f"[[channel]] {column!r}"
     of = told.of or found.of
     kinds = named.kinds_of(of)

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from models.errors import few, harmless
+from models.errors import cut, few, harmless
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count, error_text, short
@@ -19,6 +19,8 @@ from reports.own_log.rows import LogRow, column_text, log_rows, share_of
 
 WIDE = 90
 """Columns of a terminal that show when an error is largest."""
+ROOM = 1000
+"""Characters of a cause."""
 FEW = 12
 """Names that are listed of what is not judged."""
 
@@ -66,7 +68,9 @@ def _late(console: Console, judged: JudgedLog) -> None:
 
 
 def cause_text(text: str, correction: Mapping[str, object]) -> str:
-    """A cause, and what to write in the map where the log is right in itself."""
+    """A cause, and what to write in the map where the log is right in itself; it may name columns,
+    which may be called anything."""
+    text = cut(harmless(text), ROOM)
     if not correction:
         return text
     told = ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())

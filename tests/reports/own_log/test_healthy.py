@@ -336,3 +336,16 @@ def test_a_strange_name_does_no_harm(name: str, judge: Judge) -> None:
         assert result.exit_code == 0, result.output + result.stderr
         assert not ACTING.search(result.output)
         assert len(result.output) < 6000
+
+
+@pytest.mark.parametrize("name", ["rocker" + "_" * 90_000 + "deg", "rocker \x1b[31m [deg] \u202e"])
+def test_nor_does_that_of_a_column_that_is_out(name: str, judge: Judge) -> None:
+    log = logged(FOURBAR, even(FOURBAR, 1.0, PER_TURN), [replace(SHORT[1], per=-DEG)])
+    text = Dress(quoted=True).text({"time_s": log["time_s"], name: log["rocker_deg"]})
+    told = f"column = {json.dumps(name)}\nof = 'rocker'\nkind = 'angle'\nunit = 'deg'"
+    mapped = f"[[channel]]\n{told}" if len(name) < 400 else ""
+    for format_ in ("text", "md"):
+        result = judge(PLAIN, text, "--format", format_, mapped=mapped)
+        assert result.exit_code == 1, result.output + result.stderr
+        assert not ACTING.search(result.output)
+        assert len(result.output) < 6000
