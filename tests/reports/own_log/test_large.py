@@ -15,8 +15,8 @@ import pytest
 
 from reports.workers.isolated import Isolated, Limits
 from tests.worlds.fuzzing import Ended, attempt
-from tests.worlds.planted_log import COLUMNS
 from tests.worlds.stranger import FOURBAR
+from tests.worlds.stranger_faults import COLUMNS
 from tests.worlds.stranger_log import even, logged
 
 TURNS, PER_TURN = 1000, 1000

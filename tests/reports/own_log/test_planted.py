@@ -1,7 +1,7 @@
 """Ten faults in the log of a stranger, on three linkages: each is out, and the fault is named with
 its channel; nothing else is blamed.
 
-What is planted, and where, says `tests.worlds.planted_log`.
+What is planted, and where, says `tests.worlds.stranger_faults`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import pytest
 
 from tests.reports.own_log.conftest import Judge
 from tests.reports.own_log.test_healthy import disguised
-from tests.worlds.planted_log import COLUMNS, CULPRITS, Planted, averaged, planted, stuck
 from tests.worlds.stranger import LINKAGES
+from tests.worlds.stranger_faults import COLUMNS, CULPRITS, Planted, averaged, planted, stuck
 from tests.worlds.stranger_log import Dress, Log, even, logged, uneven
 from tests.worlds.stranger_map import map_text
 
