@@ -16,9 +16,9 @@ from pathlib import Path
 import pytest
 
 from tests.reports.own_log.conftest import Judge
-from tests.reports.own_log.test_healthy import disguised
 from tests.worlds.stranger import LINKAGES
 from tests.worlds.stranger_faults import COLUMNS, CULPRITS, Planted, averaged, planted, stuck
+from tests.worlds.stranger_guises import disguised
 from tests.worlds.stranger_log import Dress, Log, even, logged, uneven
 from tests.worlds.stranger_map import map_text
 
