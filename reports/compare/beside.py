@@ -35,10 +35,11 @@ def truth_of(same: Same) -> Truth:
 @dataclass(frozen=True)
 class Truth:
     """The reference of a scene at sets of instants, each solved for once; with ``bound``, what it
-    may be wrong by as well; of some ``points`` alone, or of all for None."""
+    may be wrong by as well; of some ``links`` and ``points`` alone, or of all for None."""
 
     scene: Scene
     bound: bool = True
+    links: tuple[str, ...] | None = None
     points: tuple[str, ...] | None = None
     _motions: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
@@ -52,7 +53,9 @@ class Truth:
         instants = time_s.tobytes()
         motion = self._motions.get(instants)
         if motion is None:
-            motion = solve(self.scene, time_s, points=self.points, bound=self.bound)
+            motion = solve(
+                self.scene, time_s, links=self.links, points=self.points, bound=self.bound
+            )
             for oldest in list(self._motions)[: 1 - SETS]:
                 self._motions.pop(oldest, None)  # another thread may have done so
             self._motions[instants] = motion
@@ -108,6 +111,11 @@ class Beside:
     def drive(self) -> Array:
         """How far the driver is from where it was told to be [rad], (T,)."""
         return angle_error(self.crank, self.driver_rad)
+
+    @property
+    def whole(self) -> Motion:
+        """The truth of all that is compared of the scene, which says how hard it is."""
+        return self.reference
 
     @property
     def of_engine(self) -> bool:

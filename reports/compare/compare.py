@@ -86,7 +86,7 @@ def compare(beside: Beside | None) -> Errors | None:
     at = _instants(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
-    jolt = jolts(scene, reference)
+    jolt = jolts(scene, beside.whole)
     far = uneven(scene, reference, at.driver_rad) if beside.of_engine else {}
     return Errors(
         rows=(
@@ -99,7 +99,7 @@ def compare(beside: Beside | None) -> Errors | None:
         ),
         not_reported=not_reported,
         notes=notes,
-        curvature=curvature(scene, reference),
+        curvature=curvature(scene, beside.whole),
         conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=beside.missing,

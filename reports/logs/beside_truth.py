@@ -9,7 +9,7 @@ is right.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,7 +49,14 @@ class AtCrank(Truth):
                 crank = np.interp(time_s, self.time_s, crank)
             _, omega, alpha = self.scene.driver.law.at(time_s)
             self._motions[instants] = solve_driven(
-                self.scene, crank, omega, alpha, time_s, points=self.points, bound=self.bound
+                self.scene,
+                crank,
+                omega,
+                alpha,
+                time_s,
+                links=self.links,
+                points=self.points,
+                bound=self.bound,
             )
         return self._motions[instants]
 
@@ -64,6 +71,14 @@ class LogBeside(Beside):
 
     step_s: float = 0.0
     geometry_alone: bool = False
+
+    @property
+    def whole(self) -> Motion:
+        if self.truth.links is None:
+            return self.reference
+        every = -(-self.motion.time_s.size // MANY)
+        whole = replace(self.truth, links=None, points=None, bound=False, _motions={})
+        return whole.at(self.motion.time_s[::every])
 
     @property
     def of_engine(self) -> bool:
@@ -199,11 +214,11 @@ def _gaps(log: Log) -> dict[str, Array]:
 
 def lacking(log: Log, beside: LogBeside) -> tuple[str, ...]:
     """What of the scene's places and rates the log does not hold, quantity by quantity."""
-    scene, reference = beside.scene, beside.reference
+    scene, reference = beside.scene, beside.whole
     held = {
         (track.quantity, track.body)
         for name in QUANTITIES
-        for track in beside.tracks((name,), reference)
+        for track in beside.tracks((name,), beside.reference)
     }
     return tuple(
         f"{name} of {body}"

@@ -14,7 +14,7 @@ from models.errors import CrankcheckError, shown
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.logs.beside_truth import AtCrank
+from reports.logs.beside_truth import MANY, AtCrank
 from reports.logs.channel import Log, Reading
 
 LogDrive = Literal["scene", "fitted", "logged"]
@@ -58,9 +58,9 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     CrankcheckError
         A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
     """
-    moving = moving_points(log.scene)
+    links, points = _compared(log)
     if drive == "scene":
-        return Truth(log.scene, points=moving), None
+        return Truth(log.scene, links=links, points=points), None
     crank = crank_reading(log)
     if drive == "logged":
         if crank is None or not np.array_equal(crank.instants, log.time_s):
@@ -69,20 +69,30 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
                 f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
             )
         angle = _continuous(crank)
-        return AtCrank(log.scene, points=moving, time_s=log.time_s, crank_rad=angle), None
+        truth = AtCrank(log.scene, links=links, points=points, time_s=log.time_s, crank_rad=angle)
+        return truth, None
     if not isinstance(log.scene.driver.law, ConstantSpeed):
         raise CrankcheckError(
             f"--drive fitted: the driver of {log.scene.name} has no constant speed that could be "
             "fitted; use --drive scene, or --drive logged for the geometry alone"
         )
     fit = _of_crank(log, crank) if crank else _of_places(log)
-    return Truth(moved(log.scene, fit.speed_rad_s, fit.start_rad), points=moving), fit
+    scene = moved(log.scene, fit.speed_rad_s, fit.start_rad)
+    return Truth(scene, links=links, points=points), fit
 
 
-def moving_points(scene: Scene) -> tuple[str, ...]:
-    """The points that are compared: those that move."""
-    every = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
-    return tuple(name for name in dict.fromkeys(every) if name not in scene.ground)
+def _compared(log: Log) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
+    """The links, None for all, and the points that a log is compared with: those that move, and of
+    a long log what is in it, as the truth takes most of the memory."""
+    scene = log.scene
+    every = dict.fromkeys([*scene.pins, *(slider.point for slider in scene.sliders.values())])
+    moving = tuple(name for name in every if name not in scene.ground)
+    if log.time_s.size <= MANY:
+        return None, moving
+    channels = [reading.channel for reading in (*log.readings, *log.copies)]
+    named = {scene.driver.link, *(c.of for c in channels), *(c.relative_to for c in channels)}
+    links = tuple(name for name in scene.links if name in named)
+    return links, tuple(name for name in moving if name in named)
 
 
 def crank_reading(log: Log) -> Reading | None:

@@ -60,8 +60,8 @@ class LoggedBodies:
 
 
 def truth_of_all(judged: JudgedLog) -> Truth:
-    """The truth that the log is judged by, of every point: what is judged may need fewer."""
-    return replace(judged.beside.truth, bound=False, points=None, _motions={})
+    """The truth that the log is judged by, of every body: what is judged may need fewer."""
+    return replace(judged.beside.truth, bound=False, links=None, points=None, _motions={})
 
 
 def logged_bodies(judged: JudgedLog, truth_of: Truth, time_s: Array) -> LoggedBodies:
