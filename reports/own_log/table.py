@@ -80,7 +80,7 @@ def cause_text(text: str, correction: Mapping[str, object]) -> str:
 def _toml(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
-    return f'"{value}"' if isinstance(value, str) else f"{value}"
+    return f'"{value}"' if isinstance(value, str) else f"{value:.9g}"
 
 
 def unexplained(judged: JudgedLog) -> list[str]:
