@@ -19,13 +19,11 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 from models.array import Array
 from models.errors import CrankcheckError, cut, suggestion
 from models.regular import UnreadableError, regular_bytes
+from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.text import Layout, text_columns
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
-MOST_ROWS = 2_000_000
-"""Ten hours of samples at 60 Hz, half an hour at 1 kHz; judging them takes seconds."""
-MOST_COLUMNS = 2_000
 MOST_SHEET_BYTES = 400_000_000
 """Of a workbook when it is unpacked."""
 MOST_CELLS = 20_000_000
@@ -136,17 +134,22 @@ def read_columns(
         if not raw:
             raise UnreadableError("empty; a log has a header and rows of numbers")
         if ending == ".parquet":
-            return _of_table(str(path), [_parquet(raw)])
+            table, every = _parquet(raw, wanted)
+            return _named(_of_table(str(path), [table]), every, path)
         if ending == ".xlsx":
             return _sheet(str(path), raw, layout)
-        text = text_columns(raw, layout, MOST_ROWS, MOST_COLUMNS, wanted)
+        text = text_columns(raw, layout, wanted)
         first, names, tables = text.first, text.names, [text.table]
         del raw, text
-        _refuse_twins(names, f"log {path}")
-        columns = _of_table(str(path), tables, first)
-        return replace(columns, raw={name: columns.raw.get(name, ()) for name in names})
+        return _named(_of_table(str(path), tables, first), names, path)
     except UnreadableError as error:
         raise CrankcheckError(f"log {path}: {error}") from None
+
+
+def _named(columns: Columns, names: Sequence[str], path: Path) -> Columns:
+    """The columns with all names of a file, also those of what was not read."""
+    _refuse_twins(names, f"log {path}")
+    return replace(columns, raw={name: columns.raw.get(name, ()) for name in names})
 
 
 def columns_of(frame: pd.DataFrame, source: str = "the frame") -> Columns:
@@ -196,29 +199,20 @@ def _refuse_twins(names: Sequence[str], source: str) -> None:
         seen.add(name)
 
 
-def _parquet(raw: bytes) -> pa.Table:
-    """A Parquet file whose rows and columns have been counted before they are read."""
+def _parquet(raw: bytes, wanted: Callable[[str], bool]) -> tuple[pa.Table, list[str]]:
+    """The wanted columns of a Parquet file, which have been counted before they are read, and the
+    names of all."""
     try:
         file = pq.ParquetFile(pa.BufferReader(raw))
-        refuse_many(file.metadata.num_rows, file.metadata.num_columns, MOST_ROWS, MOST_COLUMNS)
-        return file.read()
+        rows, names = file.metadata.num_rows, list(file.schema_arrow.names)
+        refuse_columns(len(names))
+        chosen = [name for name in names if wanted(name)]
+        refuse_rows(rows, len(chosen))
+        return file.read(columns=chosen or names[:1]), names
     except (pa.ArrowException, OSError, ValueError) as error:
         raise UnreadableError(
             f"no Parquet that can be read: {cut(str(error).splitlines()[0], 200)}"
         ) from None
-
-
-def refuse_many(rows: int, columns: int, most_rows: int, most_columns: int) -> None:
-    """Raise UnreadableError for more than are read."""
-    if rows > most_rows:
-        raise UnreadableError(
-            f"{rows} rows; at most {most_rows} are read: cut the log, or keep every n-th row"
-        )
-    if columns > most_columns:
-        raise UnreadableError(
-            f"{columns} columns; at most {most_columns} are read: leave out what is not of the "
-            "mechanism"
-        )
 
 
 def _sheet(source: str, raw: bytes, layout: Layout) -> Columns:
@@ -259,7 +253,8 @@ def _cells(sheet: Any) -> pd.DataFrame:
     while rows and not rows[-1]:
         rows.pop()
     wide = max(map(len, rows), default=0)
-    refuse_many(len(rows), wide, MOST_ROWS, MOST_COLUMNS)
+    refuse_columns(wide)
+    refuse_rows(len(rows), 1)
     if len(rows) * wide > MOST_CELLS:
         raise UnreadableError(
             f"cells up to row {len(rows)} and column {wide}; at most {MOST_CELLS} are read: clear "
@@ -283,7 +278,8 @@ def _of_cells(source: str, frame: pd.DataFrame, sheet: str, sheets: int) -> Colu
     body = frame.iloc[1:]
     if body.empty:
         raise UnreadableError(f"sheet {sheet!r}: a header and no rows; a log has rows of numbers")
-    refuse_many(len(body), len(head), MOST_ROWS, MOST_COLUMNS)
+    refuse_columns(len(head))
+    refuse_rows(len(body), len(head))
     raw = {}
     for at, name in enumerate(head):
         cells = [None if pd.isna(cell) else _plain(cell) for cell in body.iloc[:, at]]

@@ -152,8 +152,9 @@ def _times(columns: Columns, map_: Map) -> dict[str, str]:
     Raises CrankcheckError for none, and for two.
     """
     found: dict[str, list[str]] = {}
+    left_out = {one.column for one in map_.channel if one.ignore}
     for column in columns.raw:
-        if time := time_of(column):
+        if column not in left_out and (time := time_of(column)):
             found.setdefault(time[0], []).append(column)
     if map_.time.column is not None:
         _refuse_unknown([map_.time.column], columns, "[time] column")

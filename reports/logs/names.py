@@ -31,7 +31,11 @@ SLIDING: Sequence[set[str]] = (
 AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
         enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
 FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
-           "block", "log", "sensor", "at", "on", "signal", "value"}  # fmt: skip
+           "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
+AFTER = {"on", "of", "at"}
+"""Words after which a body has stood."""
+MODEL = re.compile(r"^\.?model_?\d*(?=\.)", re.IGNORECASE)
+"""What Adams begins all names with."""
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 DRIVERS = {"driver", "input", "motor"}
 LENGTH = "it is the length of a vector, whose components are judged"
@@ -78,7 +82,25 @@ class Named:
         return tuple(kind for kind, holds in there if holds)
 
     def found(self, text: str) -> tuple[list[str], list[str]]:
-        """The bodies that a text names, in its order, and the words left, in lower case."""
+        """The bodies that a text names, in its order, and the words left, in lower case: `xC` and
+        `rockerAngle` too."""
+        bodies, words = self._apart(text)
+        if not bodies:
+            bodies, words = self._apart(self._parted(text))
+        if not bodies and not DRIVERS.isdisjoint(words):
+            bodies = [self.scene.driver.link]
+            words = [word for word in words if word not in DRIVERS]
+        return bodies, words
+
+    def _parted(self, text: str) -> str:
+        """A text with a space before each capital in a word, and between a point and its axis."""
+        text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
+        points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
+        text = re.sub(rf"(?<![A-Za-z0-9])({points})([va]?[xy])(?![A-Za-z0-9])", r"\1 \2", text)
+        return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
+
+    def _apart(self, text: str) -> tuple[list[str], list[str]]:
+        """The bodies of a text, and its other words."""
         places: list[tuple[int, str]] = []
         for name in self.bodies:
             flags = 0 if len(name) <= SHORT else re.IGNORECASE
@@ -86,12 +108,8 @@ class Named:
             while hit := re.search(pattern, text, flags):
                 places.append((hit.start(), name))
                 text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
-        words = [word.lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text) if word]
-        bodies = [name for _, name in sorted(places)]
-        if not bodies and not DRIVERS.isdisjoint(words):
-            bodies = [self.scene.driver.link]
-            words = [word for word in words if word not in DRIVERS]
-        return bodies, words
+        words = [word.strip("/").lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text)]
+        return [name for _, name in sorted(places)], [word for word in words if word]
 
 
 def time_of(column: str) -> tuple[str, str] | None:
@@ -116,7 +134,9 @@ def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
 
     Raises CrankcheckError for units that contradict each other, or what they are units of.
     """
-    bodies, words = named.found(_without_unit(column)[0])
+    bodies, words = named.found(re.sub(MODEL, " ", _without_unit(column)[0]))
+    while words and words[-1] in AFTER:
+        words.pop()
     unit, words = _trailing_unit(words)
     unit = told or _one_unit(column, unit)
     if not bodies:

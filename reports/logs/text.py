@@ -11,6 +11,7 @@ import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
 
 from models.errors import cut
 from models.regular import UnreadableError
+from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.spelling import spelled_unit
 
 LOOK = 200_000
@@ -18,6 +19,8 @@ LOOK = 200_000
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", " ": "spaces"}
 REMARKS = ("#", "%", "//")
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.I)
+SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
+"""The line that tells Excel."""
 COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
 
 
@@ -42,8 +45,6 @@ class TextTable:
 def text_columns(
     raw: bytes,
     layout: Layout,
-    most_rows: int,
-    most_columns: int,
     wanted: Callable[[str], bool] = lambda name: True,
 ) -> TextTable:
     """Read the ``wanted`` columns of a text with a header. Raises UnreadableError for what is no
@@ -54,13 +55,12 @@ def text_columns(
     )
     if at is None:
         raise UnreadableError("empty but for remarks; a log has a header and rows of numbers")
-    separator = layout.separator or _separator(lines[at], lines[at + 1 :])
+    told = SEPARATOR.fullmatch(lines[at])
+    if told and at + 1 < len(lines):
+        at += 1
+    separator = layout.separator or (told[1] if told else _separator(lines[at], lines[at + 1 :]))
     names = _fields(lines[at], separator)
-    if len(names) > most_columns:
-        raise UnreadableError(
-            f"{len(names)} columns; at most {most_columns} are read: leave out what is not of the "
-            "mechanism"
-        )
+    refuse_columns(len(names))
     _check_header(names, at, separator)
     below = next((n for n in range(at + 1, len(lines)) if lines[n].strip()), None)
     if below is None:
@@ -82,7 +82,7 @@ def text_columns(
         if wanted(name)
     }
     body = memoryview(raw)[offsets[below] :]
-    table = _table(body, names, types, separator, layout.decimal, most_rows, below)
+    table = _table(body, names, types, separator, layout.decimal, below)
     return TextTable(table, names, below + 1)
 
 
@@ -190,7 +190,6 @@ def _table(
     types: Mapping[str, pa.DataType | None],
     separator: str,
     decimal: str,
-    most_rows: int,
     below: int,
 ) -> pa.Table:
     """The rows of the columns that have ``types``, as a table; what is a number in the first row is
@@ -199,10 +198,7 @@ def _table(
     if separator == " ":
         text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(body)))
         body = memoryview(text)
-    if (rows := _count(body)) > most_rows:
-        raise UnreadableError(
-            f"{rows} rows; at most {most_rows} are read: cut the log, or keep every n-th row"
-        )
+    refuse_rows(_count(body), len(types))
     misfits: list[str] = []
 
     def misfit(row: pc.InvalidRow) -> str:

@@ -114,7 +114,7 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         drive=request.drive,
         step_s=request.step_s,
         fit=fit,
-        findings=(*_findings(evidence, request), *_absent(required, not_judged)),
+        findings=(*_findings(evidence, request), *_absent(required, not_judged, errors)),
         causes=causes(Case(log, truth, _by_column(log, errors, chosen))),
         not_judged=not_judged,
         notes=_notes(errors),
@@ -191,6 +191,8 @@ def _required(scene: Scene, name: str) -> tuple[str, str, str]:
     if name in bodies:
         return name, "", name
     body, dot, quantity = name.rpartition(".")
+    if (body, quantity) == (scene.driver.link, "angle"):
+        quantity = "drive"
     if dot and body in bodies and quantity in QUANTITIES:
         return name, quantity, body
     names = [*QUANTITIES, *sorted(bodies)]
@@ -200,8 +202,12 @@ def _required(scene: Scene, name: str) -> tuple[str, str, str]:
     )
 
 
-def _absent(required: Iterable[tuple[str, str, str]], not_judged: Sequence[str]) -> list[Finding]:
-    """A failure for each name that is required and not, or not wholly, in the log."""
+def _absent(
+    required: Iterable[tuple[str, str, str]], not_judged: Sequence[str], errors: Errors
+) -> list[Finding]:
+    """A failure for each name that is required and not in the log: of a quantity every body, of a
+    body anything."""
+    held = {row.body for row in errors.rows}
     found = []
     for name, quantity, body in required:
         lacks = [
@@ -210,7 +216,7 @@ def _absent(required: Iterable[tuple[str, str, str]], not_judged: Sequence[str])
             if (not quantity or each.startswith(f"{quantity} of "))
             and (not body or each.endswith(f" of {body}"))
         ]
-        if lacks:
+        if lacks and (quantity or body not in held):
             text = f"--require {name}: not in the log: {few(lacks, 6)}"
             found.append(Finding("CC109", "fail", text, float(len(lacks)), 0.0))
     return found

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from models.errors import CrankcheckError
-from reports.logs import columns as module
+from reports.logs import extent
 from reports.logs.columns import columns_of, read_columns
 from reports.logs.text import Layout
 
@@ -30,6 +30,7 @@ def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
         "t\ta b\n0\t1.5\n0.1\t-2.25\n0.2\t3e-7",
         "# made by a solver, today\n# 2 columns\nt,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         '\ufeff"t","a b"\n0,1.5\n0.1,-2.25\n\n0.2,3e-7\n',
+        "sep=;\nt;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
     ],
 )
 def test_the_separator_is_found(tmp_path: Path, text: str) -> None:
@@ -115,7 +116,7 @@ def test_a_cell_that_is_no_number_is_told_by_row_and_column(
 def test_more_rows_than_are_read_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "MOST_ROWS", 2)
+    monkeypatch.setattr(extent, "MOST_ROWS", 2)
     with pytest.raises(CrankcheckError, match="3 rows; at most 2 are read"):
         read_columns(written(tmp_path, "t,a\n0,1\n1,1\n2,1\n"))
 

@@ -35,6 +35,15 @@ SLIDER_CRANK = Named(load_scene("slider-crank-central"))
         ("C x velocity [mm/s]", "C", "vx", "mm/s"),
         ("C_ay_m_s2", "C", "ay", "m/s^2"),
         ("driver_deg", "crank", "angle", "deg"),
+        ("rockerAngle_deg", "rocker", "angle", "deg"),
+        ("RockerAngle(deg)", "rocker", "angle", "deg"),
+        ("rocker angle in degrees", "rocker", "angle", "deg"),
+        (".MODEL_1.rocker.ANGLE", "rocker", "angle", "rad"),
+        ("rocker/deg", "rocker", "angle", "deg"),
+        ("Cx", "C", "x", "m"),
+        ("xC [mm]", "C", "x", "mm"),
+        ("vyC", "C", "vy", "m/s"),
+        ("C_x_mm on coupler", "C", "x", "mm"),
     ],
 )
 def test_a_name_tells_body_kind_and_unit(column: str, body: str, kind: str, unit: str) -> None:
