@@ -1,4 +1,5 @@
-"""docs/python.md is true: its examples run from top to bottom, and show every name of the face."""
+"""The pages of docs are true: their examples run from top to bottom, and every name of the face is
+shown."""
 
 from __future__ import annotations
 
@@ -8,9 +9,10 @@ from pathlib import Path
 import crankcheck
 from crankcheck import testing
 from tests.worlds.command import PYTHON
-from tests.worlds.documents import blocks, follows, ran, scripts
+from tests.worlds.documents import blocks, commands, follows, ran, scripts, words
 
 PAGE = (Path(__file__).parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
+OWN_LOG = (Path(__file__).parents[1] / "docs" / "own-log.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
@@ -29,6 +31,17 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
         elif fault := follows(shown, [line.rstrip() for line in printed.splitlines()]):
             faults.append(f"{code}\n{fault}")
     assert len(examples) >= 10
+    assert not faults, "\n\n".join(faults)
+
+
+def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
+    faults = []
+    for command, shown, code in commands(OWN_LOG):
+        done = ran(words(command), tmp_path)
+        printed = [line.rstrip() for line in done.stdout.splitlines()]
+        fault = follows([line.rstrip() for line in shown], printed)
+        if done.returncode != code or fault:
+            faults.append(f"$ {command}\nexit {done.returncode}\n{fault}\n{done.stderr}")
     assert not faults, "\n\n".join(faults)
 
 

@@ -28,6 +28,6 @@ def refuse_rows(rows: int, columns: int) -> None:
         )
     if rows * columns > MOST_NUMBERS:
         raise UnreadableError(
-            f"{rows} rows of {columns} columns; at most {MOST_NUMBERS} numbers are read: keep every "
-            "n-th row, or fewer columns"
+            f"{rows} rows of {columns} columns; at most {MOST_NUMBERS} numbers are read: keep "
+            "every n-th row, or fewer columns"
         )
