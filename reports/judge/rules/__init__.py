@@ -31,9 +31,10 @@ TUNABLE = ("CC101", "CC110", *PLACES)
 """Failures that come from what an engine is set to; those of rates follow from them."""
 
 
-def judge(evidence: Evidence, rules: Iterable[Rule] = tuple(RULES.values())) -> tuple[Finding, ...]:
-    """What every rule with something to look at says of a cell, and what would help this cell."""
-    findings = (rule.check(evidence) for rule in rules)
+def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Finding, ...]:
+    """What every rule, or some, with something to look at says of a cell, and what would help."""
+    chosen = RULES.values() if rules is None else rules
+    findings = (rule.check(evidence) for rule in chosen)
     return tuple(
         finding if finding.level == "pass" else replace(finding, cure=_cure(finding, evidence))
         for finding in findings
