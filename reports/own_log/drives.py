@@ -16,6 +16,7 @@ from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import MANY, AtCrank
 from reports.logs.channel import Log, Reading
+from reports.own_log.speeds import speeds
 
 LogDrive = Literal["scene", "fitted", "logged"]
 """The scene's law; constant speed, fitted to the log; or the crank's angle at each row, for the
@@ -23,7 +24,13 @@ geometry alone."""
 STARTS = 24
 """Angles of the start that are tried, where the log does not hold the driver's."""
 FIRST = 400
-"""Samples that they are tried on."""
+"""Samples, all over the log, that they are tried on."""
+FINALISTS = 6
+"""Guesses that are followed to their least squares."""
+STILL = 1e-6
+"""A crank that turns by less in all [rad] stands still."""
+EXPLAINED = 0.05
+"""The root mean square of what a fit may leave [rad, longest links]."""
 ROUNDS = 30
 CLOSE = 1e-13
 """A change of both parameters, as a share, that is none."""
@@ -33,13 +40,15 @@ NUDGE = 1e-6
 @dataclass(frozen=True)
 class DriveFit:
     """Speed [rad/s] and start angle [rad] of the driver as a log has them, and one standard error
-    of each; ``by`` says what they were fitted to."""
+    of each; ``by`` says what they were fitted to. Where it does not explain the log, no other speed
+    that was tried did."""
 
     speed_rad_s: float
     start_rad: float
     speed_doubt: float
     start_doubt: float
     by: str
+    explains: bool = True
 
 
 def chosen_drive(text: str) -> LogDrive:
@@ -68,7 +77,7 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
                 f"--drive logged: {log.source} has no angle of {log.scene.driver.link} at the "
                 f"times of its rows; log {log.scene.driver.link}_rad, or use --drive fitted"
             )
-        angle = _continuous(crank)
+        angle = _continuous(log, crank)
         truth = AtCrank(log.scene, links=links, points=points, time_s=log.time_s, crank_rad=angle)
         return truth, None
     if not isinstance(log.scene.driver.law, ConstantSpeed):
@@ -115,19 +124,23 @@ def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
-def _continuous(crank: Reading) -> Array:
-    """The angle of the crank, without the jumps of one that is wrapped."""
-    return np.unwrap(crank.values) if crank.channel.wrapped else crank.values
+def _continuous(log: Log, crank: Reading) -> Array:
+    """The angle of the crank, without the jumps of one that is wrapped: it goes on as the scene's
+    driver does, so that samples may be far apart."""
+    if not crank.channel.wrapped:
+        return crank.values
+    led = log.scene.driver.law.at(crank.instants)[0]
+    return np.asarray(led + np.unwrap(crank.values - led))
 
 
 def _of_crank(log: Log, crank: Reading) -> DriveFit:
     """Speed and start by a straight line through the angles. Raises CrankcheckError."""
-    time_s, angle = crank.instants, _continuous(crank)
+    time_s, angle = crank.instants, _continuous(log, crank)
     mean = float(np.mean(time_s))
     centred = time_s - mean
     square = float(centred @ centred)
     speed = float(centred @ (angle - np.mean(angle))) / square
-    if speed == 0.0:
+    if abs(speed) * float(np.ptp(time_s)) < STILL:
         raise CrankcheckError(
             f"--drive fitted: {log.scene.driver.link} stands still in {log.source}; use --drive "
             "scene or logged"
@@ -137,7 +150,14 @@ def _of_crank(log: Log, crank: Reading) -> DriveFit:
     sigma = math.sqrt(float(rest @ rest) / max(angle.size - 2, 1))
     doubt = sigma / math.sqrt(square)
     at_start = sigma * math.sqrt(1.0 / angle.size + mean**2 / square)
-    return DriveFit(speed, start, doubt, at_start, f"{angle.size} angles of the crank")
+    by = f"{angle.size} angles of the crank"
+    return DriveFit(speed, _near(start, log.scene), doubt, at_start, by)
+
+
+def _near(start_rad: float, scene: Scene) -> float:
+    """A start angle within half a turn of the scene's."""
+    told = float(scene.driver.law.at(np.zeros(1))[0][0])
+    return told + math.remainder(start_rad - told, math.tau)
 
 
 def _of_places(log: Log) -> DriveFit:
@@ -149,21 +169,31 @@ def _of_places(log: Log) -> DriveFit:
         )
     law = log.scene.driver.law
     assert isinstance(law, ConstantSpeed)
-    first = [replace(each, values=each.values[:FIRST], instants=each.instants[:FIRST])
-             for each in places]  # fmt: skip
+    every = -(-log.time_s.size // FIRST)
+    some = [replace(each, values=each.values[::every], instants=each.instants[::every])
+            for each in places]  # fmt: skip
     turn = math.tau / STARTS
-    tried = [(law.speed_rad_s, law.start_rad + n * turn) for n in range(STARTS)]
-    sizes = [_size(_rest(log.scene, first, one)) for one in tried]
-    if min(sizes) == math.inf:
+    tried = [(speed, law.start_rad + n * turn) for speed in speeds(some, law.speed_rad_s)
+             for n in range(STARTS)]  # fmt: skip
+    sizes = np.array([_size(_rest(log.scene, some, one)) for one in tried])
+    if not np.isfinite(sizes).any():
         raise CrankcheckError(
             f"--drive fitted: {log.scene.name} can not be assembled over a turn of its driver; log "
             "the driver's angle, or use --drive scene"
         )
-    guess = tried[int(np.argmin(sizes))]
-    guess, _ = _least(log.scene, first, guess)
+    fits = [_least(log.scene, some, tried[at]) for at in np.argsort(sizes)[:FINALISTS]]
+    guess, _ = min(fits, key=lambda fit: _size(_rest(log.scene, some, fit[0])))
     best, doubts = _least(log.scene, places, guess)
+    rest = _rest(log.scene, places, best)
     count = sum(each.values.size for each in places)
-    return DriveFit(*best, *doubts, f"{count} places of {len(places)} channels")
+    channels = "a channel" if len(places) == 1 else f"{len(places)} channels"
+    return DriveFit(
+        best[0],
+        _near(best[1], log.scene),
+        *doubts,
+        f"{count} places of {channels}",
+        explains=_size(rest) <= EXPLAINED**2 * count,
+    )
 
 
 def _least(

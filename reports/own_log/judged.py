@@ -26,6 +26,10 @@ from reports.quantities import QUANTITIES
 
 EVERY = "all"
 """What a target for all quantities is kept under."""
+NO_FIT = (
+    "no speed and start of the driver were found that explain the places: errors are those beside "
+    "the nearest that was tried; log the driver's angle, or use --drive scene"
+)
 STEPPED = ("CC116", "CC118")
 """Rules that need a step; the others of `_RULES` need none."""
 NOT_OF_LOGS = ("CC110", "CC111", "CC115", "CC117")
@@ -107,6 +111,7 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         limits=chosen,
     )
     not_judged = lacking(log, beside)
+    sound = fit is None or fit.explains
     return JudgedLog(
         **vars(evidence),
         log=log,
@@ -115,9 +120,9 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         step_s=request.step_s,
         fit=fit,
         findings=(*_findings(evidence, request), *_absent(required, not_judged, errors)),
-        causes=causes(Case(log, truth, _by_column(log, errors, chosen))),
+        causes=causes(Case(log, truth, _by_column(log, errors, chosen))) if sound else (),
         not_judged=not_judged,
-        notes=_notes(errors),
+        notes=_notes(errors) if sound else (NO_FIT,),
     )
 
 

@@ -114,6 +114,40 @@ def test_a_drive_is_fitted_with_its_doubt(crank: bool) -> None:
     assert 2 * np.pi * abs(turns - round(turns)) < 4 * one.fit.start_doubt < 1e-4
 
 
+@pytest.mark.parametrize(("speed", "column"), [(20.0, "rocker"), (-10.0, "C.x"), (1.0, "rocker")])
+def test_any_speed_is_found_without_the_crank(speed: float, column: str) -> None:
+    other = solve(moved(SCENE, speed, 0.7), TIME_S)
+    places = {"rocker": other.links["rocker"].theta, "C.x": other.points["C"].position[:, 0]}
+    one = judged({column: places[column]}, drive="fitted")
+    assert one.verdict == "within"
+    assert one.fit is not None
+    assert one.fit.explains
+    assert one.fit.speed_rad_s == pytest.approx(speed, rel=1e-9)
+
+
+def test_a_log_that_no_speed_explains_is_out_and_says_so() -> None:
+    noise = np.random.default_rng(1).normal(size=601)
+    one = judged({"rocker": noise}, drive="fitted")
+    assert one.verdict == "out"
+    assert "no speed and start" in one.notes[0]
+    assert one.causes == ()
+
+
+def test_a_wrapped_crank_may_be_logged_seldom() -> None:
+    time_s = np.linspace(0.0, 3.0, 10)
+    motion = solve(SCENE, time_s)
+    columns = {"t": time_s, "crank": motion.links["crank"].theta % (2 * np.pi)}
+    one = judged({**columns, "rocker": motion.links["rocker"].theta}, drive="fitted")
+    assert one.verdict == "within"
+    assert one.fit is not None
+    assert one.fit.speed_rad_s == pytest.approx(10.0)
+
+
+def test_a_crank_that_stands_still_has_no_speed() -> None:
+    with pytest.raises(CrankcheckError, match="stands still"):
+        judged({"crank_deg": np.full(601, 37.3)}, drive="fitted")
+
+
 def test_the_geometry_alone_is_judged_at_the_logged_crank() -> None:
     wobbly = 10 * TIME_S + 0.2 * np.sin(9 * TIME_S)
     other = solve(SCENE, wobbly / 10)  # at 10 rad/s that is the angle of the crank
