@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from models.errors import CrankcheckError
 from reports.causes.account import Account
 from reports.causes.cause import Case, Cause
 from reports.causes.choice import chosen
@@ -43,9 +44,17 @@ def causes(case: Case) -> tuple[Cause, ...]:
 def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[Account, ...]:
     """What each hypothesis says, with its place in the list; each knows what those before said."""
     for order, hypothesis in enumerate(hypotheses.values()):
-        told = (replace(account, order=order) for account in hypothesis(inquiry))
+        told = (replace(account, order=order) for account in _said(hypothesis, inquiry))
         inquiry = replace(inquiry, accounts=(*inquiry.accounts, *told))
     return inquiry.accounts
+
+
+def _said(hypothesis: Hypothesis, inquiry: Inquiry) -> Iterator[Account]:
+    """What a hypothesis says, up to where it leads to no mechanism."""
+    try:
+        yield from hypothesis(inquiry)
+    except CrankcheckError:
+        return
 
 
 def _merged(told: Sequence[Account]) -> list[list[Account]]:

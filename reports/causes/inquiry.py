@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,6 +19,8 @@ from reports.logs.channel import Channel
 
 SPOILT = 1.2
 """Over its limit by so much, a channel that was within it is spoilt by a hypothesis."""
+MISSING = 0.4
+"""The part of the channels that a hypothesis moves which may be off by something else as well."""
 MENDED = 0.8
 """What may be left in a channel that comes within its limit, of a fault that explains others."""
 MOVED = 0.3
@@ -47,7 +48,7 @@ class Inquiry:
     def of(case: Case) -> Inquiry:
         """Raises CrankcheckError where the scene has no reference."""
         out = tuple(reading.channel.column for reading in case.out)
-        return Inquiry(case, World(case.truth.scene), case.excerpts, out)
+        return Inquiry(case, World.of(case.truth), case.excerpts, out)
 
     @property
     def period_s(self) -> float:
@@ -149,8 +150,11 @@ class Inquiry:
         """What is left, by column, of errors that come within their limits, noise as it may be."""
         found = {}
         for column in self.open:
-            if column in errors and Size.of(errors[column]).largest <= self.excerpts[column].limit:
-                rest = self.excerpts[column].rest(errors[column], expected[column])
+            if column not in errors:
+                continue
+            excerpt, error = self.excerpts[column], errors[column]
+            if Size.of(error).largest <= SPOILT * excerpt.limit:
+                rest = excerpt.rest(error, expected[column])
                 if rest < MENDED:
                     found[column] = rest
         return found
@@ -162,10 +166,11 @@ class Inquiry:
         world: World,
         phrase: str,
         among: Iterable[str] | None = None,
+        missing: float = MISSING,
     ) -> Account | None:
         """The account of a log that is of another ``world`` (or its columns ``among``); None where
-        there is no such mechanism, where a healthy channel would be off, or where most of what it
-        moves stays unexplained."""
+        there is no such mechanism, where a healthy channel would be off, or where more than the
+        part ``missing`` of what it moves stays unexplained."""
         try:
             expected = self.expected(world, among)
         except CrankcheckError:
@@ -177,7 +182,7 @@ class Inquiry:
         told = replace(told, world=world)
         moved = [column for column in self.unclaimed if self._moved(column, expected[column])]
         missed = [column for column in moved if column not in told.rests]
-        return told if 2 * len(missed) <= len(moved) else None
+        return told if len(missed) <= missing * len(moved) else None
 
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
         """The columns that were healthy, and are not with these errors."""
@@ -228,7 +233,8 @@ class Inquiry:
         return replace(self, excerpts={column: there}, open=(column,))
 
     def whole(self, column: str) -> tuple[Array, Array]:
-        """All readings of a column, and their errors. Raises CrankcheckError."""
+        """All readings of a column, and their errors, 0 where a number is missing. Raises
+        CrankcheckError."""
         reading = self.case.excerpts[column].reading
         truth = self.case.truth
         channel = reading.channel
@@ -237,4 +243,4 @@ class Inquiry:
         else:
             expected = reading.expected(truth)
         error = channel.error(reading.values, expected)
-        return reading.values, np.where(np.isfinite(error), error, math.inf)
+        return reading.values, np.where(np.isfinite(error), error, 0.0)

@@ -16,8 +16,10 @@ from reports.output.numbers import listed
 
 EDGES = (-math.tau, -math.pi, 0.0)
 """Where the turn begins that wrapped readings lie in [rad]."""
+MOSTLY = 0.98
+"""The part of the readings that has to lie there: noise takes some over its edge."""
 EDGE = 1e-2
-"""How far over the edges noise may take them [rad]."""
+"""How far over the edges of half a turn noise may take readings [rad]."""
 MOST_JUMPS = 12
 """Turns that may be lost; of more it is how the angle is measured."""
 SHOWN = 3
@@ -50,8 +52,7 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
     if not jumps.size or np.any(np.abs(np.diff(error)[jumps - 1]) < math.pi):
         return None  # an error that grows is no turn
     left = error - math.tau * turn
-    steps = np.abs(np.diff(values)[jumps - 1])
-    if _windowed(values) and np.all(steps > math.pi):
+    if _wrapped(values, values - left):
         phrase = "{who} {is} wrapped into one turn"
         return _told(inquiry, column, left, ("wrapped", CAUSE, phrase), {"wrapped": True})
     if jumps.size > MOST_JUMPS:
@@ -61,10 +62,14 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
     return _told(inquiry, column, left, ("lost turn", cost, phrase), {})
 
 
-def _windowed(values: Array) -> bool:
-    """Whether readings lie in one turn that begins or ends where people let one."""
-    low, high = float(values.min()), float(values.max())
-    return any(low >= edge - EDGE and high <= edge + math.tau + EDGE for edge in EDGES)
+def _wrapped(values: Array, angle: Array) -> bool:
+    """Whether readings are an angle (but for whole turns) within one turn that begins where people
+    let one begin."""
+    for edge in EDGES:
+        within = edge + np.remainder(angle - edge, math.tau)
+        if np.mean(np.abs(within - values) < math.pi) > MOSTLY:
+            return True
+    return False
 
 
 def _half(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:

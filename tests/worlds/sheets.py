@@ -17,7 +17,6 @@ from reports.causes import Case
 from reports.compare.beside import Truth
 from reports.logs.channel import Channel, Log, Reading
 from reports.logs.kinds import KINDS
-from reports.logs.units import UNITS
 
 TURNING = {0: ("rad", "deg"), 1: ("rad/s", "deg/s", "rpm"), 2: ("rad/s^2", "deg/s^2")}
 MOVING = {0: ("m", "mm", "in"), 1: ("m/s", "mm/s", "in/s"), 2: ("m/s^2", "mm/s^2")}
@@ -34,6 +33,7 @@ class Sheet:
     values: Mapping[str, Array]
     limits: Mapping[str, float]
     signals: Mapping[str, Array] = field(default_factory=dict)
+    stamp: tuple[str, str] = ("t", "s")
 
     @property
     def case(self) -> Case:
@@ -41,7 +41,7 @@ class Sheet:
             Reading(channel, self.values[column], self.time_s)
             for column, channel in self.channels.items()
         )
-        log = Log("planted", self.scene, self.time_s, readings)
+        log = Log("planted", self.scene, self.time_s, readings, self.stamp)
         return Case(log, Truth(self.scene, bound=False), self.limits)
 
     def put(self, values: Mapping[str, Array]) -> Sheet:
