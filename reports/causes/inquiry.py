@@ -13,7 +13,7 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.cause import Case
-from reports.causes.excerpt import MOST, Excerpt, Rows, Size, picked
+from reports.causes.excerpt import EXPLAINED, MOST, Excerpt, Rows, Size, picked
 from reports.causes.world import World
 from reports.logs.channel import Channel
 
@@ -77,18 +77,19 @@ class Inquiry:
 
     @property
     def unclaimed(self) -> tuple[str, ...]:
-        """What is open that nothing without a number explains well."""
+        """What is open that nothing without a number explains."""
         plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
-        return self._without(plain)
+        return self._without(plain, EXPLAINED)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
         """What is open that nothing with at most one number explains well so far."""
-        return self._without([each for each in self.accounts if each.cost < CAUSE + 2 * NUMBER])
+        few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
+        return self._without(few, WELL)
 
-    def _without(self, accounts: Iterable[Account]) -> tuple[str, ...]:
-        """What is open less what some accounts explain well."""
-        well = {c for account in accounts for c, rest in account.rests.items() if rest < WELL}
+    def _without(self, accounts: Iterable[Account], left: float) -> tuple[str, ...]:
+        """What is open less that of which some accounts leave no more."""
+        well = {c for account in accounts for c, rest in account.rests.items() if rest <= left}
         return tuple(column for column in self.open if column not in well)
 
     @property
@@ -180,8 +181,8 @@ class Inquiry:
         if told is None or self.spoilt(errors):
             return None
         told = replace(told, world=world)
-        moved = [column for column in self.unclaimed if self._moved(column, expected[column])]
-        missed = [column for column in moved if column not in told.rests]
+        moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]
+        missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
         return told if len(missed) <= missing * len(moved) else None
 
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
@@ -196,8 +197,6 @@ class Inquiry:
 
     def _moved(self, column: str, expected: Array) -> bool:
         """Whether a channel is expected elsewhere, by what counts beside its error."""
-        if column not in self.excerpts:
-            return False
         excerpt = self.excerpts[column]
         change = Size.of(excerpt.beside(expected) - excerpt.error)
         return change.largest > MOVED * excerpt.size.largest

@@ -16,10 +16,8 @@ from reports.output.numbers import listed
 
 EDGES = (-math.tau, -math.pi, 0.0)
 """Where the turn begins that wrapped readings lie in [rad]."""
-MOSTLY = 0.98
-"""The part of the readings that has to lie there: noise takes some over its edge."""
 EDGE = 1e-2
-"""How far over the edges of half a turn noise may take readings [rad]."""
+"""How near to an edge noise may take readings over it [rad]."""
 MOST_JUMPS = 12
 """Turns that may be lost; of more it is how the angle is measured."""
 SHOWN = 3
@@ -63,11 +61,12 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
 
 
 def _wrapped(values: Array, angle: Array) -> bool:
-    """Whether readings are an angle (but for whole turns) within one turn that begins where people
-    let one begin."""
+    """Whether readings are an angle (known but for whole turns) within one turn that begins where
+    people let one begin; beside its edges noise may take some over them."""
     for edge in EDGES:
-        within = edge + np.remainder(angle - edge, math.tau)
-        if np.mean(np.abs(within - values) < math.pi) > MOSTLY:
+        from_edge = np.remainder(angle - edge, math.tau)
+        inside = np.minimum(from_edge, math.tau - from_edge) > EDGE
+        if np.all(np.abs(edge + from_edge - values)[inside] < math.pi) and inside.any():
             return True
     return False
 
