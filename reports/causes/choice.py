@@ -17,6 +17,9 @@ UNTOLD = 2.0
 ORDER = 0.01
 """What a place farther down the list of hypotheses costs: accounts that leave the same are many."""
 
+EQUAL = 0.3
+"""What is left of an error by more or less than this may be the same."""
+
 
 def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]:
     """The accounts, each of the columns that it tells best, that leave least of ``columns`` for
@@ -30,7 +33,7 @@ def chosen(accounts: Sequence[Account], columns: Sequence[str]) -> list[Account]
     best = min((table.descended(start, plain) for start in starts), key=table.total)
     told = []
     for number in sorted(best):
-        own = [c for n, c in enumerate(columns) if table.owner(best, n) == number]
+        own = [c for n, c in enumerate(columns) if table.owner(best, worlds, n) == number]
         if own:
             told.append(_of(accounts[number], own))
     return told
@@ -70,9 +73,14 @@ class _Table:
         least: Array = self.left[list(some)].min(axis=0, initial=UNTOLD)
         return least
 
-    def owner(self, some: Sequence[int], place: int) -> int | None:
-        """The account of some that leaves least of a column; None where none explains it."""
-        best = min(some, key=lambda number: self.left[number, place], default=None)
+    def owner(self, some: Sequence[int], worlds: Sequence[int], place: int) -> int | None:
+        """The account of some that leaves least of a column, one of a world where that leaves about
+        as little; None where none explains it."""
+
+        def left(number: int) -> float:
+            return float(self.left[number, place]) - (EQUAL if number in worlds else 0.0)
+
+        best = min(some, key=left, default=None)
         return None if best is None or self.left[best, place] >= UNTOLD else best
 
     def descended(self, start: Sequence[int], plain: Sequence[int]) -> list[int]:

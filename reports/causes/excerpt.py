@@ -77,12 +77,17 @@ class Excerpt:
     def size_beside(self, expected: Array) -> Size:
         """The same where something else is expected, as an explanation has to tell the readings,
         and not merely to be nearer than what is far off. A signal of nothing bounds nothing."""
-        return Size.of(self.error).least(Size.of_signal(expected, NOUGHT * self.limit))
+        return Size.of(self.error).least(Size.of_signal(expected, self.nothing))
+
+    @property
+    def nothing(self) -> float:
+        """What is as good as 0 [SI]."""
+        return NOUGHT * self.limit if math.isfinite(self.limit) else 0.0
 
     @property
     def nought(self) -> bool:
         """Whether nothing but 0 is expected, by what counts."""
-        return Size.of(self.expected[np.isfinite(self.expected)]).largest <= NOUGHT * self.limit
+        return Size.of(self.expected[np.isfinite(self.expected)]).largest <= self.nothing
 
     def rest(self, error: Array, expected: Array | None = None) -> float:
         """What is left of the error where it is ``error`` instead, and something else ``expected``:

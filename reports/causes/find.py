@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from models.errors import CrankcheckError
 from reports.causes.account import Account
 from reports.causes.cause import Case, Cause
 from reports.causes.choice import chosen
-from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, Hypothesis
+from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
 from reports.causes.inquiry import Inquiry
 from reports.causes.words import sentence
 
@@ -26,26 +27,55 @@ def causes(case: Case) -> tuple[Cause, ...]:
     inquiry = Inquiry.of(case)
     accounts = _accounts(inquiry, {**OF_CHANNELS, **OF_LOGS})
     told = chosen(accounts, inquiry.open)
-    world = next((account.world for account in told if account.world is not None), None)
-    if world is None:
-        explained = {column for account in told for column in account.columns}
-        within = [c for account in accounts for c in account.rests if c not in inquiry.open]
-        told += chosen(accounts, [c for c in dict.fromkeys(within) if c not in explained])
-    else:
-        explained = {column for account in told for column in account.columns}
-        left = [column for column in inquiry.open if column not in explained]
-        again = inquiry.within(world, left) if left else None
-        if again is not None:
-            told += chosen(_accounts(again, OF_CHANNELS), again.open)
+    world = next((account for account in told if account.world is not None), None)
+    told = _advised(inquiry, accounts, told) if world is None else _beside(inquiry, world, told)
     return tuple(_cause(inquiry, same) for same in _merged(told))
+
+
+def _advised(
+    inquiry: Inquiry, accounts: Sequence[Account], told: Sequence[Account]
+) -> list[Account]:
+    """What is told, and what explains channels that are within their limits."""
+    explained = _columns(told)
+    within = [c for account in accounts for c in account.rests if c not in inquiry.open]
+    left = [column for column in dict.fromkeys(within) if column not in explained]
+    return [*told, *chosen(accounts, left)]
+
+
+def _beside(inquiry: Inquiry, world: Account, told: Sequence[Account]) -> list[Account]:
+    """The account of another world, and what is told of channels that are off in it as well: what
+    explains them there, else what explains them in the scene as it is driven."""
+    assert world.world is not None
+    others = [column for column in inquiry.open if column not in world.columns]
+    there = inquiry.within(world.world, inquiry.open)
+    if there is None:
+        return list(told)
+    found = [world, *chosen(_accounts(replace(there, open=tuple(others)), OF_CHANNELS), others)]
+    still = tuple(c for c in world.columns if there.excerpts[c].out)
+    found += chosen(_accounts(replace(there, open=still), OF_SAMPLES), still)
+    explained = _columns(found)
+    return [*found, *(each for each in told if not explained & set(each.columns))]
+
+
+def _columns(told: Sequence[Account]) -> set[str]:
+    """The columns that are told of."""
+    return {column for account in told for column in account.columns}
 
 
 def _accounts(inquiry: Inquiry, hypotheses: Mapping[str, Hypothesis]) -> tuple[Account, ...]:
     """What each hypothesis says, with its place in the list; each knows what those before said."""
     for order, hypothesis in enumerate(hypotheses.values()):
-        told = (replace(account, order=order) for account in hypothesis(inquiry))
+        told = (replace(account, order=order) for account in _said(hypothesis, inquiry))
         inquiry = replace(inquiry, accounts=(*inquiry.accounts, *told))
     return inquiry.accounts
+
+
+def _said(hypothesis: Hypothesis, inquiry: Inquiry) -> Iterator[Account]:
+    """What a hypothesis says, up to where it leads to no mechanism."""
+    try:
+        yield from hypothesis(inquiry)
+    except CrankcheckError:
+        return
 
 
 def _merged(told: Sequence[Account]) -> list[list[Account]]:

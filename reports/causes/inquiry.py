@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,12 +13,14 @@ from models.errors import CrankcheckError
 from models.motion import Motion
 from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.cause import Case
-from reports.causes.excerpt import MOST, Excerpt, Rows, Size, picked
+from reports.causes.excerpt import EXPLAINED, MOST, Excerpt, Rows, Size, picked
 from reports.causes.world import World
 from reports.logs.channel import Channel
 
 SPOILT = 1.2
 """Over its limit by so much, a channel that was within it is spoilt by a hypothesis."""
+MISSING = 0.4
+"""The part of the channels that a hypothesis moves which may be off by something else as well."""
 MENDED = 0.8
 """What may be left in a channel that comes within its limit, of a fault that explains others."""
 MOVED = 0.3
@@ -47,7 +48,7 @@ class Inquiry:
     def of(case: Case) -> Inquiry:
         """Raises CrankcheckError where the scene has no reference."""
         out = tuple(reading.channel.column for reading in case.out)
-        return Inquiry(case, World(case.truth.scene), case.excerpts, out)
+        return Inquiry(case, World.of(case.truth), case.excerpts, out)
 
     @property
     def period_s(self) -> float:
@@ -76,18 +77,19 @@ class Inquiry:
 
     @property
     def unclaimed(self) -> tuple[str, ...]:
-        """What is open that nothing without a number explains well."""
+        """What is open that nothing without a number explains."""
         plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
-        return self._without(plain)
+        return self._without(plain, EXPLAINED)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
         """What is open that nothing with at most one number explains well so far."""
-        return self._without([each for each in self.accounts if each.cost < CAUSE + 2 * NUMBER])
+        few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
+        return self._without(few, WELL)
 
-    def _without(self, accounts: Iterable[Account]) -> tuple[str, ...]:
-        """What is open less what some accounts explain well."""
-        well = {c for account in accounts for c, rest in account.rests.items() if rest < WELL}
+    def _without(self, accounts: Iterable[Account], left: float) -> tuple[str, ...]:
+        """What is open less that of which some accounts leave no more."""
+        well = {c for account in accounts for c, rest in account.rests.items() if rest <= left}
         return tuple(column for column in self.open if column not in well)
 
     @property
@@ -149,8 +151,11 @@ class Inquiry:
         """What is left, by column, of errors that come within their limits, noise as it may be."""
         found = {}
         for column in self.open:
-            if column in errors and Size.of(errors[column]).largest <= self.excerpts[column].limit:
-                rest = self.excerpts[column].rest(errors[column], expected[column])
+            if column not in errors:
+                continue
+            excerpt, error = self.excerpts[column], errors[column]
+            if Size.of(error).largest <= SPOILT * excerpt.limit:
+                rest = excerpt.rest(error, expected[column])
                 if rest < MENDED:
                     found[column] = rest
         return found
@@ -162,10 +167,11 @@ class Inquiry:
         world: World,
         phrase: str,
         among: Iterable[str] | None = None,
+        missing: float = MISSING,
     ) -> Account | None:
         """The account of a log that is of another ``world`` (or its columns ``among``); None where
-        there is no such mechanism, where a healthy channel would be off, or where most of what it
-        moves stays unexplained."""
+        there is no such mechanism, where a healthy channel would be off, or where more than the
+        part ``missing`` of what it moves stays unexplained."""
         try:
             expected = self.expected(world, among)
         except CrankcheckError:
@@ -175,9 +181,9 @@ class Inquiry:
         if told is None or self.spoilt(errors):
             return None
         told = replace(told, world=world)
-        moved = [column for column in self.unclaimed if self._moved(column, expected[column])]
-        missed = [column for column in moved if column not in told.rests]
-        return told if 2 * len(missed) <= len(moved) else None
+        moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]
+        missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
+        return told if len(missed) <= missing * len(moved) else None
 
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
         """The columns that were healthy, and are not with these errors."""
@@ -191,8 +197,6 @@ class Inquiry:
 
     def _moved(self, column: str, expected: Array) -> bool:
         """Whether a channel is expected elsewhere, by what counts beside its error."""
-        if column not in self.excerpts:
-            return False
         excerpt = self.excerpts[column]
         change = Size.of(excerpt.beside(expected) - excerpt.error)
         return change.largest > MOVED * excerpt.size.largest
@@ -228,7 +232,8 @@ class Inquiry:
         return replace(self, excerpts={column: there}, open=(column,))
 
     def whole(self, column: str) -> tuple[Array, Array]:
-        """All readings of a column, and their errors. Raises CrankcheckError."""
+        """All readings of a column, and their errors, 0 where a number is missing. Raises
+        CrankcheckError."""
         reading = self.case.excerpts[column].reading
         truth = self.case.truth
         channel = reading.channel
@@ -237,4 +242,4 @@ class Inquiry:
         else:
             expected = reading.expected(truth)
         error = channel.error(reading.values, expected)
-        return reading.values, np.where(np.isfinite(error), error, math.inf)
+        return reading.values, np.where(np.isfinite(error), error, 0.0)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 
-from analytic.kinematics import solve
+from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from models.scene import Scene
+from reports.compare.beside import Truth
+from reports.logs.beside_truth import AtCrank
 from reports.logs.channel import Channel
 
 Stamps = Callable[[Array], Array]
+Drive = Callable[[Array], tuple[Array, Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -54,19 +58,41 @@ class Frame:
 @dataclass(frozen=True)
 class World:
     """A scene, the instants that the ``stamps`` of the log stand for, and the frame that it is seen
-    in; rates are ``pace`` times as fast as in the scene."""
+    in; rates are ``pace`` times as fast as in the scene. ``drive`` gives the driver's angle, rate
+    and acceleration at instants, where it does not follow the scene's law."""
 
     scene: Scene
+    drive: Drive | None = None
     stamps: tuple[Stamps, ...] = ()
     pace: float = 1.0
     frames: tuple[Frame, ...] = ()
+
+    @staticmethod
+    def of(truth: Truth) -> World:
+        """That of a truth, as it is driven."""
+        if not isinstance(truth, AtCrank) or truth.time_s is None or truth.crank_rad is None:
+            return World(truth.scene)
+        times, angles, law = truth.time_s, truth.crank_rad, truth.scene.driver.law
+
+        def drive(instants: Array) -> tuple[Array, Array, Array]:
+            _, omega, alpha = law.at(instants)
+            return np.interp(instants, times, angles), omega, alpha
+
+        return World(truth.scene, drive)
 
     def at(self, stamped: Array, channels: Iterable[Channel]) -> Motion:
         """Of what is measured, the motion (T,) at stamped instants [s]. Raises CrankcheckError."""
         instants = stamped
         for change in reversed(self.stamps):
             instants = change(instants)
-        motion = solve(self.scene, instants, bound=False, **_bodies(channels))
+        names = _bodies(channels)
+        if self.drive is None:
+            motion = solve(self.scene, instants, bound=False, **names)
+        else:
+            theta, omega, alpha = self.drive(instants)
+            motion = solve_driven(
+                self.scene, theta, omega, alpha, time_s=instants, bound=False, **names
+            )
         if self.pace != 1.0:
             motion = _paced(motion, self.pace)
         for frame in self.frames:
@@ -82,14 +108,23 @@ class World:
         return replace(self, frames=(*self.frames, frame))
 
 
-def _bodies(channels: Iterable[Channel]) -> dict[str, Sequence[str]]:
-    """The bodies that channels measure, as `solve` takes them."""
-    names: dict[str, dict[str, None]] = {"links": {}, "points": {}, "sliders": {}}
+class Bodies(TypedDict):
+    """Names of bodies, as `solve` takes them."""
+
+    links: tuple[str, ...]
+    points: tuple[str, ...]
+    sliders: tuple[str, ...]
+
+
+def _bodies(channels: Iterable[Channel]) -> Bodies:
+    """The bodies that channels measure."""
+    names: dict[str, dict[str, None]] = {"link": {}, "point": {}, "slider": {}}
     for channel in channels:
-        names[f"{channel.kind.body_kind}s"][channel.of] = None
+        names[channel.kind.body_kind][channel.of] = None
         if channel.relative_to:
-            names["links"][channel.relative_to] = None
-    return {kind: tuple(each) for kind, each in names.items()}
+            names["link"][channel.relative_to] = None
+    links, points, sliders = (tuple(each) for each in names.values())
+    return Bodies(links=links, points=points, sliders=sliders)
 
 
 def _paced(motion: Motion, pace: float) -> Motion:

@@ -16,18 +16,20 @@ from reports.causes.hypotheses.late import late
 from reports.causes.hypotheses.misnamed import misnamed
 from reports.causes.hypotheses.samples import samples
 from reports.causes.hypotheses.smoothed import smoothed
+from reports.causes.hypotheses.stamps import stamps
 from reports.causes.hypotheses.straight import straight
 from reports.causes.hypotheses.swapped import swapped
 from reports.causes.hypotheses.turns import turns
 from reports.causes.inquiry import Inquiry
 
 Hypothesis = Callable[[Inquiry], Iterator[Account]]
+OF_SAMPLES: Mapping[str, Hypothesis] = {"turns": turns, "samples": samples}
+"""What may be wrong with some samples, beside whatever is wrong with all of them."""
 OF_CHANNELS: Mapping[str, Hypothesis] = {
     "straight": straight,
     "swapped": swapped,
     "misnamed": misnamed,
-    "turns": turns,
-    "samples": samples,
+    **OF_SAMPLES,
     "late": late,
     "filtered": filtered,
     "rounded": rounded,
@@ -38,6 +40,7 @@ OF_LOGS: Mapping[str, Hypothesis] = {
     "assembly": assembly,
     "mirrored": mirrored,
     "time unit": time_unit,
+    "stamps": stamps,
     "moved": moved,
     "turned": turned,
     "sized": sized,

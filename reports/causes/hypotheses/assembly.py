@@ -64,7 +64,8 @@ def _later(inquiry: Inquiry, world: World, cost: float, phrase: str) -> Iterator
         if excerpt.channel.kind.turns:
             others[column] = np.remainder(others[column] + math.pi, math.tau) - math.pi
         if column in inquiry.open:
-            gains += (excerpt.error**2 - others[column] ** 2) / excerpt.size.rms**2
+            size = excerpt.size.rms
+            gains += (excerpt.error / size) ** 2 - (others[column] / size) ** 2
     after = np.cumsum(gains[::-1])[::-1]  # what is gained where all from a sample on is of another
     first = int(np.argmax(after))
     if first == 0 or after[first] <= 0.0:

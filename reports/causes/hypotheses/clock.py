@@ -6,12 +6,14 @@ tell them apart, if they were not taken over the log's own time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from models.array import Array
+from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
 from reports.causes.excerpt import BROUGHT_WITHIN, Rows, picked
@@ -34,6 +36,7 @@ ROWS = 200
 UNLIKE = 3.0
 """Of two readings of a drift one is ruled out where it leaves so many times as much."""
 FASTEST = 1e3
+"""Times that a clock may be slow, or fast."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,11 @@ class Clock:
     def __call__(self, stamps: Array) -> Array:
         return stamps + (self.start_s + self.gain * (stamps - self.first_s))
 
+    @property
+    def runs(self) -> bool:
+        """Whether it is a clock at all, and does not stand or go back."""
+        return 1.0 / FASTEST < 1.0 + self.gain < FASTEST
+
     def world(self, world: World, *, paced: bool) -> World:
         """The world as this clock has it; ``paced`` where the rates are taken over its time."""
         pace = world.pace * (1.0 + self.gain) if paced else world.pace
@@ -55,21 +63,26 @@ class Clock:
 
 def time_unit(inquiry: Inquiry) -> Iterator[Account]:
     """Times that are in another unit than the map says."""
-    ratios: dict[float, str] = {}
-    for read, size in UNITS["time"].items():
-        for unit, other in UNITS["time"].items():
-            if unit != read:
-                ratios.setdefault(other / size, f"in {unit}, if the map says {read}")
-    for ratio, words in ratios.items():
+    column, told = inquiry.case.log.stamp
+    size = UNITS["time"].get(told, 1.0)
+    for unit, other in UNITS["time"].items():
+        ratio = other / size
+        if ratio == 1.0 or inquiry.world.drive is not None:
+            continue
         world = inquiry.world.stamped(lambda stamps, ratio=ratio: ratio * stamps)  # type: ignore[misc]
-        phrase = f"the times are {number(1.0 / ratio)} times what they should be: {words}"
-        told = inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
-        if told is not None:
-            yield told
+        times = f"the times (column {column})" if column else "the times"
+        phrase = (
+            f'{times} are in {unit}, not in {told or "s"}: unit = "{unit}" under [time] of the map'
+        )
+        account = inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
+        if account is not None:
+            yield account
 
 
 def drift(inquiry: Inquiry) -> Iterator[Account]:
     """Clocks that run at another pace, fitted to one channel after another until one tells all."""
+    if inquiry.world.drive is not None:
+        return
     needy = sorted(inquiry.unexplained, key=lambda column: inquiry.channel(column).kind.order)
     for column in needy[:MOST_FITS]:
         for paced in (False, True) if inquiry.channel(column).kind.order else (False,):
@@ -119,7 +132,7 @@ def _grown(
     while True:
         there = inquiry.into(column, _rows(ages, width))
         near = _nearest(there, column, clock, paced=paced)
-        if near is None or not abs(near.gain) < FASTEST:
+        if near is None or not near.runs:
             return None
         clock = near
         if width >= ages[-1]:
@@ -140,8 +153,11 @@ def _nearest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> Clock
 
 
 def _rest(there: Inquiry, column: str, clock: Clock, *, paced: bool) -> float:
-    """What a clock leaves of the error of a column."""
-    errors = there.errors(clock.world(there.world, paced=paced))
+    """What a clock leaves of the error of a column; no end where there is no mechanism."""
+    try:
+        errors = there.errors(clock.world(there.world, paced=paced))
+    except CrankcheckError:
+        return math.inf
     return there.excerpts[column].rest(errors[column])
 
 
@@ -157,8 +173,9 @@ def _told(inquiry: Inquiry, column: str, clock: Clock) -> Iterator[Account]:
     clocks = [(clock, 2)]
     if excerpt.channel.kind.order == 0:
         found = fitted(residual, [clock.gain], [1e-7])
-        if found is not None:
-            clocks.append((Clock(clock.first_s, 0.0, float(found[0])), 1))
+        same = None if found is None else Clock(clock.first_s, 0.0, float(found[0]))
+        if same is not None and same.runs:
+            clocks.append((same, 1))
     for each, numbers in clocks:
         told = _either(inquiry, column, each, CAUSE + NUMBER * numbers)
         if told is not None:

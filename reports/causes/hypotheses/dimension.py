@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, ReachError
 from models.scene import GROUND, Link, Scene, Slider
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
 from reports.causes.fit import fitted
@@ -22,8 +22,11 @@ MOST_FITTED = 4
 """Dimensions that are fitted: those that a straight line makes the most likely."""
 LEAST_GAIN = 0.25
 """The part of the squares of the errors that a straight line has to take off."""
+SENSITIVE = 1e-12
+"""A sum of squares of what is expected, by the change of a dimension, that is nothing."""
 ROUNDS = 6
 BEST = 2e-3
+"""What is left of an error that is told too well to look for a dimension."""
 SLIGHT = 1e-6
 """The change that slopes are taken of, over the longest link or in radians."""
 FARTHEST = 1.0
@@ -97,7 +100,8 @@ def _of_link(link: Link) -> list[Dimension]:
         (x0, y0), (x1, y1) = (link.points[name] for name in names[:2])
         length = math.hypot(x1 - x0, y1 - y0)
         words = f"length {names[0]}{names[1]} of {link.name}"
-        found.append(Dimension(words, length, _length(link.name, names[0], names[1])))
+        if length > 0.0:
+            found.append(Dimension(words, length, _length(link.name, names[0], names[1])))
     for point in names[2:]:
         for axis in (0, 1):
             words = f"{'xy'[axis]} of {point} in the frame of {link.name}"
@@ -110,6 +114,8 @@ def _of_link(link: Link) -> list[Dimension]:
 def _length(name: str, first: str, second: str) -> Callable[[Scene, float], Scene]:
     def changed(scene: Scene, value: float) -> Scene:
         (x0, y0), (x1, y1) = (scene.links[name].points[point] for point in (first, second))
+        if value <= 0.0:
+            raise ReachError(f"{name} of a length of {value:.4g} m")
         ratio = value / math.hypot(x1 - x0, y1 - y0)
         place = (x0 + ratio * (x1 - x0), y0 + ratio * (y1 - y0))
         return _moved(scene, name, second, place)
@@ -198,7 +204,8 @@ def _likely(
         except CrankcheckError:
             continue
         size = float(slope @ slope)
-        gained = float(slope @ errors) ** 2 / size if size > 1e-12 else 0.0
+        along = float(slope @ errors)
+        gained = along * along / size if size > SENSITIVE else 0.0
         if gained > LEAST_GAIN * float(errors @ errors):
             found.append((-gained, number_of))
     return [every[number_of] for _, number_of in sorted(found)]

@@ -28,6 +28,8 @@ STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
 def backwards(inquiry: Inquiry) -> Iterator[Account]:
     """The driver turning the other way from the same start."""
+    if inquiry.world.drive is not None:
+        return
     law = inquiry.world.scene.driver.law
     names = {each.name for each in fields(law)}  # type: ignore[arg-type]
     signs = {name: -getattr(law, name) for name in SIGNED if name in names}
@@ -40,7 +42,8 @@ def backwards(inquiry: Inquiry) -> Iterator[Account]:
 def start_angle(inquiry: Inquiry) -> Iterator[Account]:
     """The driver starting at another angle; at constant speed that is a clock that does."""
     law = inquiry.world.scene.driver.law
-    if isinstance(law, ConstantSpeed) or not inquiry.unexplained:
+    another = isinstance(law, ConstantSpeed) or inquiry.world.drive is not None
+    if another or not inquiry.unexplained:
         return
     thin, columns = inquiry.thin, inquiry.unclaimed
 

@@ -147,6 +147,6 @@ def sized(inquiry: Inquiry) -> Iterator[Account]:
         return
     world = inquiry.world.framed(Frame(size=size))
     phrase = f"every length is {number(size, 6)} times the scene's ({change(size, 1.0)})"
-    told = inquiry.account_of_world("size", CAUSE + NUMBER, world, phrase)
+    told = inquiry.account_of_world("size", CAUSE + NUMBER, world, phrase, missing=0.0)
     if told is not None and len(told.columns) > 1:
         yield told

@@ -100,7 +100,9 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, other: Meaning, motion: Motion) ->
     """The account of a meaning."""
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
-    if not np.any(expected) or (other.name != "misnamed" and not _moves(expected)):
+    if Size.of(expected).largest <= excerpt.nothing or (
+        other.name != "misnamed" and not _moves(expected)
+    ):
         return None  # a number that stays is in many places
     values = excerpt.values * (own.sign * channel.sign)
     error = channel.error(values, expected)

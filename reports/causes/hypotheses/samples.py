@@ -17,7 +17,7 @@ SHOWN = 3
 """Places that are named each; the others are counted."""
 HELD = 0.3
 """A channel of which more readings than this part repeat the one before is updated that seldom."""
-DEAD = 0.01
+DEAD = 1e-4
 """A channel that moves by so little of what it should does not move."""
 FEW_RUNS = 3
 """Stretches that stick by themselves, whatever their lengths."""

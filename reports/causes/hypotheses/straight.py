@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
-from reports.causes.excerpt import NOUGHT, Excerpt, levelled
+from reports.causes.excerpt import Excerpt, levelled
 from reports.causes.inquiry import Inquiry
 from reports.causes.words import change, later, number
 from reports.logs.channel import Channel
@@ -21,6 +21,8 @@ LEAST_GAIN = 1e-3
 """A signal that is weaker is none, and its gain is of noise."""
 EVEN = 1e-3
 """A signal that leaves a straight line by less than this part of an error is even."""
+TIGHT = 0.02
+"""What a gain and a zero may leave together: much the same leaves any curve of another height."""
 NO_GAIN = 1e-5
 """A gain that is nearer to 1 would be seen in no reading."""
 
@@ -43,7 +45,7 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
         excerpt = inquiry.excerpts[column]
         if excerpt.nought:
             yield from _each(inquiry, excerpt, [Line("offset", CAUSE + NUMBER, 1.0, shifted=True)])
-        elif np.ptp(excerpt.expected) <= NOUGHT * excerpt.limit:
+        elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
             plain = [line for line in _known(excerpt.channel) if not line.shifted]
             told = list(_each(inquiry, excerpt, plain))
@@ -115,6 +117,8 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, line: Line) -> Account | None:
     if line.shifted:
         zero, error = levelled(error, channel)
     errors = {channel.column: error}
+    if line.name == "scaled" and line.shifted and excerpt.rest(error) > TIGHT:
+        return None
     phrase = _phrase(line, channel, zero, inquiry, excerpt)
     corrections = {channel.column: _correction(line, channel, zero)}
     return inquiry.account(line.name, line.cost, errors, phrase, corrections=corrections)
@@ -153,7 +157,8 @@ def _phrase(line: Line, channel: Channel, zero: float, inquiry: Inquiry, excerpt
         off = zero * line.gain if line.name == "scaled" else zero
         parts.append(f"{{is}} off by {_amount(off, unit, channel)} all along")
     told = "{who} " + " and ".join(parts)
-    rate = _steady_rate(excerpt) if line.name == "offset" else 0.0
+    even = line.name == "offset" and channel.kind.turns
+    rate = _steady_rate(excerpt) if even else 0.0
     return told + (f", as if it belonged {later(zero / rate, inquiry.step_s)}" if rate else "")
 
 

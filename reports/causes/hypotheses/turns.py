@@ -17,7 +17,7 @@ from reports.output.numbers import listed
 EDGES = (-math.tau, -math.pi, 0.0)
 """Where the turn begins that wrapped readings lie in [rad]."""
 EDGE = 1e-2
-"""How far over the edges noise may take them [rad]."""
+"""How near to an edge noise may take readings over it [rad]."""
 MOST_JUMPS = 12
 """Turns that may be lost; of more it is how the angle is measured."""
 SHOWN = 3
@@ -50,8 +50,7 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
     if not jumps.size or np.any(np.abs(np.diff(error)[jumps - 1]) < math.pi):
         return None  # an error that grows is no turn
     left = error - math.tau * turn
-    steps = np.abs(np.diff(values)[jumps - 1])
-    if _windowed(values) and np.all(steps > math.pi):
+    if _wrapped(values, values - left):
         phrase = "{who} {is} wrapped into one turn"
         return _told(inquiry, column, left, ("wrapped", CAUSE, phrase), {"wrapped": True})
     if jumps.size > MOST_JUMPS:
@@ -61,10 +60,15 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
     return _told(inquiry, column, left, ("lost turn", cost, phrase), {})
 
 
-def _windowed(values: Array) -> bool:
-    """Whether readings lie in one turn that begins or ends where people let one."""
-    low, high = float(values.min()), float(values.max())
-    return any(low >= edge - EDGE and high <= edge + math.tau + EDGE for edge in EDGES)
+def _wrapped(values: Array, angle: Array) -> bool:
+    """Whether readings are an angle (known but for whole turns) within one turn that begins where
+    people let one begin; beside its edges noise may take some over them."""
+    for edge in EDGES:
+        from_edge = np.remainder(angle - edge, math.tau)
+        inside = np.minimum(from_edge, math.tau - from_edge) > EDGE
+        if np.all(np.abs(edge + from_edge - values)[inside] < math.pi) and inside.any():
+            return True
+    return False
 
 
 def _half(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:

@@ -33,6 +33,7 @@ class Sheet:
     values: Mapping[str, Array]
     limits: Mapping[str, float]
     signals: Mapping[str, Array] = field(default_factory=dict)
+    stamp: tuple[str, str] = ("t", "s")
 
     @property
     def case(self) -> Case:
@@ -40,7 +41,7 @@ class Sheet:
             Reading(channel, self.values[column], self.time_s)
             for column, channel in self.channels.items()
         )
-        log = Log("planted", self.scene, self.time_s, readings)
+        log = Log("planted", self.scene, self.time_s, readings, self.stamp)
         return Case(log, Truth(self.scene, bound=False), self.limits)
 
     def put(self, values: Mapping[str, Array]) -> Sheet:
