@@ -79,17 +79,25 @@ class Inquiry:
     def unclaimed(self) -> tuple[str, ...]:
         """What is open that nothing without a number explains."""
         plain = [account for account in self.accounts if account.cost < CAUSE + NUMBER]
-        return self._without(plain, EXPLAINED)
+        well = {c for account in plain for c, rest in account.rests.items() if rest <= EXPLAINED}
+        return tuple(column for column in self.open if column not in well)
 
     @property
     def unexplained(self) -> tuple[str, ...]:
-        """What is open that nothing with at most one number explains well so far."""
+        """What is open that nothing with at most one number explains well, and brings within its
+        limit, so far."""
         few = [account for account in self.accounts if account.cost < CAUSE + 2 * NUMBER]
-        return self._without(few, WELL)
-
-    def _without(self, accounts: Iterable[Account], left: float) -> tuple[str, ...]:
-        """What is open less that of which some accounts leave no more."""
-        well = {c for account in accounts for c, rest in account.rests.items() if rest <= left}
+        over = {
+            column: excerpt.limit / excerpt.size.largest
+            for column, excerpt in self.excerpts.items()
+            if excerpt.size.largest > 0.0
+        }
+        well = {
+            column
+            for account in few
+            for column, rest in account.rests.items()
+            if rest <= min(WELL, over.get(column, WELL))
+        }
         return tuple(column for column in self.open if column not in well)
 
     @property

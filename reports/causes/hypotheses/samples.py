@@ -23,6 +23,8 @@ FEW_RUNS = 3
 """Stretches that stick by themselves, whatever their lengths."""
 FEW, FEWEST = 0.03, 5
 """The part of the readings that may be spikes, and how many may be in any log."""
+MINORITY = 0.2
+"""The part of the readings of a short log that may be: the others must tell what is right."""
 LONGEST_SPIKE = 3
 """Samples in a row that are one spike."""
 BESIDE = 0.2
@@ -83,7 +85,7 @@ def _spikes(
     inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
 ) -> Account | None:
     """The account of single samples that are off by far more than those beside them."""
-    if not 0 < np.sum(off) <= max(FEWEST, FEW * off.size):
+    if not 0 < np.sum(off) <= min(max(FEWEST, FEW * off.size), MINORITY * off.size):
         return None
     spikes = runs(off)
     if np.any(spikes[:, 1] - spikes[:, 0] >= LONGEST_SPIKE):
