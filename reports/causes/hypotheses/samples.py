@@ -19,6 +19,8 @@ HELD = 0.3
 """A channel of which more readings than this part repeat the one before is updated that seldom."""
 DEAD = 1e-4
 """A channel that moves by so little of what it should does not move."""
+NOTHING = 1e-15
+"""What is left of an error that needs no number: a clock that stands would explain it no better."""
 FEW_RUNS = 3
 """Stretches that stick by themselves, whatever their lengths."""
 FEW, FEWEST = 0.03, 5
@@ -59,7 +61,7 @@ def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask)
     if moves <= excerpt.limit or np.ptp(values) > min(excerpt.limit, DEAD * moves):
         return None
     phrase = f"{{who}} stay{{s}} at {np.median(values):.4g} (in SI) from first to last"
-    return Account("stuck", CAUSE, {column: BOUNDED}, {column: BOUNDED}, phrase)
+    return Account("stuck", CAUSE, {column: NOTHING}, {column: NOTHING}, phrase)
 
 
 def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask) -> Account | None:
