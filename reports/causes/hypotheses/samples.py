@@ -8,7 +8,7 @@ import numpy as np
 
 from models.array import Array, Mask
 from models.errors import CrankcheckError
-from reports.causes.account import BOUNDED, CAUSE, CHOICE, Account
+from reports.causes.account import CAUSE, CHOICE, Account
 from reports.causes.excerpt import BROUGHT_WITHIN, Rows
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import listed
