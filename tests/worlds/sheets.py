@@ -65,6 +65,24 @@ class Sheet:
         """Those of them that do not stay the same number."""
         return [c for c in self.columns(accepts) if np.ptp(self.signals[c]) > 1e-6]
 
+    def telling(self) -> list[str]:
+        """Those that are not 0 throughout."""
+        return [c for c in self.columns() if np.max(np.abs(self.signals[c])) > 1e-6]
+
+    def bending(self, accepts: Callable[[Channel], bool] = lambda channel: True) -> list[str]:
+        """Those that do not go on evenly, so that a delay can be told from another zero."""
+        found = []
+        for column in self.moving(accepts):
+            line = np.polyval(np.polyfit(self.time_s, self.signals[column], 1), self.time_s)
+            if np.max(np.abs(line - self.signals[column])) > 1e-6:
+                found.append(column)
+        return found
+
+    @property
+    def step_s(self) -> float:
+        """The median interval [s]."""
+        return float(np.median(np.diff(self.time_s)))
+
 
 def wrapped(channel: Channel, values: Array) -> Array:
     """Readings as a wrapped channel gives them."""

@@ -19,7 +19,10 @@ ON_GRID = 1e-4
 """A number is on the grid where it is so near to it, in steps of the grid."""
 DOUBLE = 4e-16
 """What a number loses as it is read and turned into SI, over itself."""
+HALF = 0.51
+"""What is taken off at most, in steps of the grid; what the readings were off before, they are."""
 MOST_PREDICTED = 0.9
+"""The part of the readings that has to be what is expected, rounded."""
 EVEN_RMS = 12.0**-0.5
 """The root mean square of what rounding takes off, in steps of the grid."""
 
@@ -89,10 +92,9 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, grid: Grid) -> Account | None:
         ("cut", excerpt.error + 0.5 * grid.step),
         ("cut", excerpt.error + 0.5 * sign * grid.step),
     ):
-        share = error / grid.step
-        rms = float(np.sqrt(np.mean(share**2)))
+        rms = float(np.sqrt(np.mean((error / grid.step) ** 2)))
         likely = 0.5 * EVEN_RMS < rms < 1.2 * EVEN_RMS or _predicted(excerpt, grid)
-        if np.max(np.abs(share)) <= 0.51 and likely:
+        if likely and np.all(np.abs(error) <= HALF * grid.step + excerpt.limit):
             phrase = f"{{who}} {{is}} {verb} to {grid.words}"
             errors = {excerpt.channel.column: BOUNDED * excerpt.error}
             return inquiry.account(grid.name, CAUSE, errors, phrase)

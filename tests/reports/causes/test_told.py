@@ -1,0 +1,315 @@
+"""What a cause says: the words, the numbers and the correction of each."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.files import load_scene
+from reports.causes import Case, Cause, causes
+from reports.compare.beside import Truth
+from reports.logs.beside_truth import AtCrank
+from reports.logs.channel import Channel, Log, Reading
+from reports.logs.kinds import KINDS
+from reports.logs.units import UNITS
+from tests.reports.causes.conftest import Infected
+from tests.worlds.sheets import Sheet, sheet
+
+SCENE = load_scene("fourbar-lecture-1")
+OMEGA, ANGLE = KINDS["link", "angular velocity"], KINDS["link", "angle"]
+
+
+def of(*channels: Channel, rows: int = 241, turns: float = 2.0) -> Sheet:
+    """A healthy sheet of some channels of the four-bar, with limits of 1e-3 times its speed."""
+    time_s = np.linspace(0.0, turns * SCENE.driver.law.period_s, rows)
+    motion = solve(SCENE, time_s, bound=False)
+    limits = {each.column: 1e-3 * 10.0**each.kind.order for each in channels}
+    by_column = {each.column: each for each in channels}
+    signals = {each.column: each.expected(motion) for each in channels}
+    return Sheet(SCENE, time_s, by_column, {}, limits, signals).of(motion)
+
+
+def angle(link: str, unit: str = "rad", **options: object) -> Channel:
+    return Channel(f"{link}_a", ANGLE, link, unit, **options)
+
+
+def omega(link: str, unit: str = "rad/s", **options: object) -> Channel:
+    return Channel(f"{link}_w", OMEGA, link, unit, **options)
+
+
+def only(planted: Sheet) -> Cause:
+    (cause,) = causes(planted.case)
+    return cause
+
+
+def mended(case: Case, column: str, correction: Mapping[str, object]) -> float:
+    """The largest error of a column over its limit, where its map says what a correction says."""
+    reading = next(each for each in case.readings if each.channel.column == column)
+    old = reading.channel
+    number = old.sign * reading.values / UNITS[old.kind.dimension][old.unit] - old.offset
+    told = dict(correction)
+    if kind := told.pop("kind", None):
+        bodies = case.log.scene.links, case.log.scene.pins, case.log.scene.sliders
+        body = str(told.get("of", old.of))
+        kinds = [
+            KINDS[name, str(kind)]  # type: ignore[index]
+            for name, bodies in zip(("link", "point", "slider"), bodies, strict=True)
+            if body in bodies and (name, kind) in KINDS
+        ]
+        told["kind"] = next((k for k in kinds if k.body_kind == old.kind.body_kind), kinds[0])
+    new = replace(old, **told)
+    values = new.sign * (number + new.offset) * UNITS[new.kind.dimension][new.unit]
+    expected = new.expected(case.truth.at(reading.instants + new.delay_s - old.delay_s))
+    return float(np.max(np.abs(new.error(values, expected)))) / case.limits[column]
+
+
+@pytest.mark.parametrize(
+    ("fault", "scene"),
+    [
+        ("two_swapped", "fourbar-lecture-1"),
+        ("three_swapped", "sixbar-watt"),
+        ("rate_and_place_swapped", "fourbar-lecture-1"),
+        ("of_another_link", "sixbar-watt"),
+        ("of_a_joint", "fourbar-lecture-1"),
+        ("another_kind", "sixbar-watt"),
+        ("another_unit", "fourbar-lecture-1"),
+        ("another_sign", "sixbar-watt"),
+        ("another_zero", "fourbar-lecture-1"),
+        ("another_sign_and_zero", "sixbar-watt"),
+        ("one_late", "fourbar-lecture-1"),
+        ("one_very_late", "sixbar-watt"),
+        ("rates_half_a_sample_late", "fourbar-lecture-1"),
+        ("all_late", "sixbar-watt"),
+        ("from_behind", "fourbar-lecture-1"),
+        ("wrapped_angle", "sixbar-watt"),
+    ],
+)
+def test_what_is_to_be_written_in_the_map_mends_the_log(
+    fault: str, scene: str, infected: Infected
+) -> None:
+    planted, _ = infected(fault, scene, rows=300)
+    case = planted.case
+    for cause in causes(case):
+        for column in cause.columns:
+            correction = cause.of_column.get(column, cause.correction)
+            assert correction, cause.text
+            assert mended(case, column, correction) < 10.0
+
+
+def test_a_delay_is_told_in_samples_and_seconds_and_for_all_that_share_it() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"), omega("crank"))
+    early = plain.of(solve(SCENE, plain.time_s - 0.5 * plain.step_s, bound=False))
+    late = plain.put({c: early.values[c] for c in ("rocker_w", "coupler_w", "crank_w")})
+    cause = only(late)
+    assert cause.name == "delay"
+    assert cause.columns == ("rocker_w", "coupler_w")
+    assert "belong 0.50 samples (2.62 ms) earlier" in cause.text
+    assert cause.correction["delay_s"] == pytest.approx(-0.5 * plain.step_s, rel=1e-6)
+
+
+def test_a_delay_comes_on_top_of_the_one_that_the_map_says() -> None:
+    plain = of(omega("rocker", delay_s=0.01), angle("coupler"))
+    late = plain.of(solve(SCENE, plain.time_s + 0.004, bound=False), ["rocker_w"])
+    assert only(late).correction["delay_s"] == pytest.approx(0.014, rel=1e-6)
+
+
+def test_a_late_channel_within_its_limit_is_told_of_too() -> None:
+    plain = of(angle("rocker"), omega("rocker"), omega("coupler"))
+    late = plain.of(solve(SCENE, plain.time_s - 0.5 * plain.step_s, bound=False), ["rocker_w"])
+    wide = replace(late, limits=dict.fromkeys(late.limits, 10.0))
+    assert not wide.case.out
+    assert only(wide).columns == ("rocker_w",)
+    assert "0.50 samples" in only(wide).text
+
+
+def test_a_channel_whose_last_digit_is_all_that_is_off_is_not_late() -> None:
+    plain = of(angle("rocker"), omega("rocker"))
+    rounded = plain.put({c: np.round(v, 4) for c, v in plain.values.items()})
+    assert not causes(rounded.case)
+
+
+def test_all_that_is_late_is_a_start_elsewhere() -> None:
+    plain = of(angle("rocker"), angle("crank"), omega("rocker"))
+    cause = only(plain.of(solve(SCENE, plain.time_s + 0.01, bound=False)))
+    assert cause.name == "start"
+    assert "or the driver starts at 95.73 deg, not at 90 deg" in cause.text
+
+
+def test_where_nothing_tells_a_delay_from_a_zero_both_are_told() -> None:
+    plain = of(angle("crank"), angle("rocker"))
+    cause = only(plain.put({"crank_a": plain.values["crank_a"] - 0.05}))
+    assert cause.name == "offset"
+    assert "is off by -0.05 rad all along, as if it belonged 0.95 samples (5.00 ms) earlier" in (
+        cause.text
+    )
+
+
+def test_rates_tell_a_slow_clock_from_a_fast_driver() -> None:
+    plain = of(angle("rocker"), angle("crank"), omega("rocker"), omega("crank"))
+    slow = solve(SCENE, 1.002 * plain.time_s, bound=False)
+    places = plain.of(slow, ["rocker_a", "crank_a"])
+    clock = only(plain.of(slow))
+    assert "the clock of the log runs 0.2 % slow; the rates say" in clock.text
+    law = replace(SCENE.driver.law, speed_rad_s=10.02)
+    fast = replace(SCENE, driver=replace(SCENE.driver, law=law))
+    driver = only(plain.of(solve(fast, plain.time_s, bound=False)))
+    assert driver.text.startswith("the driver turns 0.2 % fast (10.02 rad/s, not 10 rad/s), or")
+    alone = {c: places.channels[c] for c in ("rocker_a", "crank_a")}
+    both = only(replace(places, channels=alone, limits=dict.fromkeys(alone, 0.001)))
+    assert "clock of the log runs 0.2 % slow, or the driver turns 0.2 % fast" in both.text
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        ("another_assembly", r"C = -1 under \[branch\] of the scene"),
+        ("backwards_driver", "the driver turns the other way"),
+        ("rounded_times", r"the times \(column t\) are rounded to \d decimals \(s\)"),
+        ("shaken_times", "the samples are even"),
+        ("all_lengths", "every length is"),
+        ("from_behind", "seen from behind"),
+        ("lost_turn", r"lose(s)? whole turns: [+-]1 at sample \d+ \(t = "),
+        ("stuck_stretch", r"samples \d+ to \d+ \(t = .* s\) repeat the one before"),
+        ("slow_sensor", "is updated at every"),
+        ("spikes", "is off at single samples: sample"),
+        ("arc_tangent", "folded into half a turn"),
+        ("magnitude", "has no sign"),
+        ("few_decimals", "is rounded to"),
+        ("low_passed", r"low-pass of first order, time constant .* samples\)"),
+        ("mean_of_the_last", r"is a mean over \d+ samples, the last ones"),
+        ("mean_of_both_sides", r"is a mean over \d+ samples, \d+ on both sides"),
+    ],
+)
+def test_the_words_of_a_cause(fault: str, words: str, infected: Infected) -> None:
+    planted, _ = infected(fault, "fourbar-lecture-1", rows=300)
+    assert any(re.search(words, cause.text) for cause in causes(planted.case))
+
+
+def test_a_unit_of_time_is_told_with_its_column() -> None:
+    plain = of(angle("rocker"), omega("rocker"))
+    cause = only(replace(plain, time_s=1000.0 * plain.time_s, stamp=("tick", "s")))
+    assert cause.text == (
+        'the times (column tick) are in ms, not in s: unit = "ms" under [time] of the map'
+    )
+
+
+def test_a_length_is_told_with_its_number_in_the_scene() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"))
+    link = SCENE.links["coupler"]
+    longer = replace(link, points={**link.points, "C": (0.2525, 0.0)})
+    other = replace(SCENE, links={**SCENE.links, "coupler": longer})
+    cause = only(plain.of(solve(other, plain.time_s, bound=False)))
+    assert cause.text == ("length BC of coupler is 0.2525 m in the log, 0.25 m in the scene (+1 %)")
+
+
+def test_a_log_that_goes_over_to_the_other_assembly_says_when() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"))
+    other = plain.of(solve(replace(SCENE, branch={"C": -1}), plain.time_s, bound=False))
+    later = plain.time_s >= 0.5
+    over = {c: np.where(later, other.values[c], plain.values[c]) for c in plain.values}
+    cause = only(plain.put(over))
+    assert cause.name == "branch"
+    assert "from t = 0.5" in cause.text
+
+
+def test_single_precision_is_told() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    coarse = plain.put({"rocker_a": plain.values["rocker_a"].astype(np.float32).astype(float)})
+    tight = replace(coarse, limits={"rocker_a": 1e-9, "coupler_a": 1e-9})
+    assert only(tight).name == "float32"
+
+
+def test_two_faults_in_different_channels_are_each_named() -> None:
+    rng = np.random.default_rng(4)
+    plain = sheet(load_scene("sixbar-watt"), rng, rows=300)
+    first, second = plain.moving(lambda c: c.kind.order == 1)[:2]
+    stuck = plain.values[second].copy()
+    stuck[100:130] = stuck[99]
+    found = causes(plain.put({first: -plain.values[first], second: stuck}).case)
+    assert {cause.name: cause.columns for cause in found} == {
+        "sign": (first,),
+        "stuck": (second,),
+    }
+
+
+def test_a_fault_of_the_log_and_one_of_a_channel_are_each_named() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
+    slow = plain.of(solve(SCENE, 1.01 * plain.time_s, bound=False))
+    wrong = slow.put({"coupler_a": -slow.values["coupler_a"]})
+    assert {cause.name: cause.columns for cause in causes(wrong.case)} == {
+        "drift": ("rocker_a", "rocker_w", "coupler_w"),
+        "sign": ("coupler_a",),
+    }
+
+
+def test_a_sample_that_sticks_in_a_log_that_is_late_is_named_too() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
+    late = plain.of(solve(SCENE, plain.time_s + 0.3, bound=False))
+    stuck = late.values["rocker_a"].copy()
+    stuck[100:105] = stuck[99]
+    found = {cause.name: cause.columns for cause in causes(late.put({"rocker_a": stuck}).case)}
+    assert found["stuck"] == ("rocker_a",)
+    assert "rocker_a" in found["start"]
+
+
+def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
+    plain = of(angle("crank"), angle("rocker"), angle("coupler"))
+    crank = plain.values["crank_a"] + 0.2 * np.sin(plain.time_s)
+    truth = AtCrank(SCENE, time_s=plain.time_s, crank_rad=crank)
+    motion = truth.at(plain.time_s)
+    driven = plain.of(motion).put({"crank_a": crank})
+    wrong = driven.put({"rocker_a": -driven.values["rocker_a"]})
+    case = replace(wrong.case, truth=truth)
+    (cause,) = causes(case)
+    assert (cause.name, cause.columns) == ("sign", ("rocker_a",))
+
+
+def test_a_channel_without_a_limit_is_not_judged() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    wrong = plain.put({"rocker_a": -plain.values["rocker_a"]})
+    for limits in ({"coupler_a": 1e-3}, {"coupler_a": 1e-3, "rocker_a": math.inf}):
+        assert not causes(replace(wrong, limits=limits).case)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("rows", [2, 3, 7])
+def test_what_is_no_log_of_anything_raises_nothing(rows: int) -> None:
+    plain = of(angle("rocker"), omega("rocker"), angle("crank"), rows=rows)
+    rng = np.random.default_rng(rows)
+    for values in (np.zeros(rows), rng.normal(size=rows) * 1e300, np.full(rows, math.nan)):
+        for wrong in (
+            plain.put({"rocker_a": values}),
+            plain.put(dict.fromkeys(plain.values, values)),
+        ):
+            causes(wrong.case)
+            causes(replace(wrong, limits=dict.fromkeys(wrong.limits, 0.0)).case)
+
+
+@pytest.mark.slow
+def test_a_million_rows_are_looked_through_in_two_seconds() -> None:
+    """Only here is a log so long that hypotheses may not look at all of it."""
+    plain = of(angle("rocker"), omega("rocker"), omega("coupler"), rows=1_000_000, turns=500.0)
+    late = plain.of(solve(SCENE, plain.time_s - 1e-4, bound=False), ["rocker_w"])
+    case = late.case
+    for reading in case.readings:
+        reading.expected(case.truth)  # which has been compared with already
+    began = time.process_time()
+    assert [cause.columns for cause in causes(case)] == [("rocker_w",)]
+    assert time.process_time() - began < 2.0
+
+
+def test_readings_of_copies_are_looked_at_where_they_have_limits() -> None:
+    time_s = np.linspace(0.0, 1.0, 200)
+    motion = solve(SCENE, time_s, bound=False)
+    channel = Channel("C2_x", KINDS["point", "x"], "C", "m", on="rocker")
+    copy = Reading(channel, 1000.0 * channel.expected(motion), time_s)
+    log = Log("copied", SCENE, time_s, (), copies=(copy,))
+    (cause,) = causes(Case(log, Truth(SCENE), {"C2_x": 1e-3}))
+    assert cause.correction == {"unit": "mm"}

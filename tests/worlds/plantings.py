@@ -1,0 +1,540 @@
+"""Faults to plant in a log of a scene: what each is, and by which names a cause may tell it.
+
+Each takes a healthy sheet and a generator, and returns the sheet with the fault and the columns
+that have it (none for all that the fault reaches); None where the sheet has nothing to plant it in.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.random import Generator
+
+from analytic.kinematics import solve
+from analytic.structure.mobility import analyse
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed
+from models.motion import Motion
+from models.scene import Scene
+from reports.logs.channel import Channel
+from reports.logs.kinds import KINDS
+from reports.logs.units import UNITS
+from tests.worlds.sheets import Sheet, wrapped
+
+T = TypeVar("T")
+Planted = tuple[Sheet, list[str]] | None
+Plant = Callable[[Sheet, Generator], Planted]
+
+
+@dataclass(frozen=True)
+class Planting:
+    """How to plant a fault, the names of causes that tell it, and whether it needs even steps."""
+
+    plant: Plant
+    names: tuple[str, ...]
+    even: bool = False
+
+
+PLANTINGS: dict[str, Planting] = {}
+
+
+def planting(*names: str, even: bool = False) -> Callable[[Plant], Plant]:
+    """Put a fault into `PLANTINGS` under the name of its function."""
+
+    def put(plant: Plant) -> Plant:
+        PLANTINGS[plant.__name__] = Planting(plant, names, even)
+        return plant
+
+    return put
+
+
+def one(rng: Generator, choice: Sequence[T]) -> T | None:
+    """One of a choice; None of nothing."""
+    return choice[int(rng.integers(len(choice)))] if choice else None
+
+
+def either(rng: Generator) -> float:
+    return float(rng.choice([-1.0, 1.0]))
+
+
+def decades(rng: Generator, low: float, high: float) -> float:
+    """A number between two powers of ten."""
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def truth(sheet: Sheet, time_s: Array) -> Motion:
+    return solve(sheet.scene, time_s, bound=False)
+
+
+def size_of(channel: Channel) -> float:
+    return UNITS[channel.kind.dimension][channel.unit]
+
+
+def numbers(sheet: Sheet, column: str) -> Array:
+    """What stands in a column."""
+    channel = sheet.channels[column]
+    return channel.sign * sheet.values[column] / size_of(channel)
+
+
+def read(sheet: Sheet, column: str, written: Array) -> Array:
+    """What the map makes of numbers that stand in a column."""
+    channel = sheet.channels[column]
+    return channel.sign * written * size_of(channel)
+
+
+def of_scene(sheet: Sheet, scene: Scene) -> Planted:
+    """The sheet with the readings of another scene."""
+    try:
+        return sheet.of(solve(scene, sheet.time_s, bound=False)), []
+    except CrankcheckError:
+        return None
+
+
+def exchanged(sheet: Sheet, columns: Sequence[str]) -> Planted:
+    """The sheet with the numbers of each column in the one before it."""
+    others = (*columns[1:], columns[0])
+    written = {
+        column: read(sheet, column, numbers(sheet, other))
+        for column, other in zip(columns, others, strict=True)
+    }
+    return sheet.put(written), list(columns)
+
+
+def changed(sheet: Sheet, column: str | None, change: Callable[[Array], Array]) -> Planted:
+    """The sheet with other readings in one column."""
+    if column is None:
+        return None
+    values = wrapped(sheet.channels[column], change(sheet.values[column]))
+    return sheet.put({column: values}), [column]
+
+
+def places(channel: Channel) -> bool:
+    return channel.kind.order == 0
+
+
+def unwrapped(channel: Channel) -> bool:
+    return not channel.wrapped
+
+
+@planting("swapped")
+def two_swapped(sheet: Sheet, rng: Generator) -> Planted:
+    dimension = {c: sheet.channels[c].kind.dimension for c in sheet.channels}
+    moving = sheet.moving()
+    pairs = [(a, b) for a in moving for b in moving if a < b and dimension[a] == dimension[b]]
+    pair = one(rng, pairs)
+    return None if pair is None else exchanged(sheet, pair)
+
+
+@planting("swapped")
+def three_swapped(sheet: Sheet, rng: Generator) -> Planted:
+    angles = sheet.moving(lambda channel: channel.kind.turns)
+    lengths = sheet.moving(lambda channel: channel.kind.dimension == "length")
+    among = angles if len(angles) > 2 else lengths
+    if len(among) < 3:
+        return None
+    return exchanged(sheet, [among[place] for place in rng.permutation(len(among))[:3]])
+
+
+@planting("swapped")
+def rate_and_place_swapped(sheet: Sheet, rng: Generator) -> Planted:
+    pairs = [
+        (place, rate)
+        for place in sheet.moving(places)
+        for rate in sheet.moving(lambda channel: channel.kind.order == 1)
+        if sheet.channels[place].of == sheet.channels[rate].of
+    ]
+    pair = one(rng, pairs)
+    return None if pair is None else exchanged(sheet, pair)
+
+
+@planting("misnamed")
+def of_another_link(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(lambda channel: channel.kind.body_kind == "link"))
+    if column is None:
+        return None
+    channel = sheet.channels[column]
+    other = one(rng, [link for link in sheet.scene.links if link != channel.of])
+    values = replace(channel, of=str(other)).expected(truth(sheet, sheet.time_s))
+    return changed(sheet, column, lambda _: values) if np.ptp(values) > 1e-6 else None
+
+
+@planting("relative")
+def of_a_joint(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(lambda c: c.kind.body_kind == "link" and c.kind.order < 2))
+    if column is None:
+        return None
+    channel = sheet.channels[column]
+    other = one(rng, [link for link in sheet.scene.links if link != channel.of])
+    values = replace(channel, relative_to=str(other)).expected(truth(sheet, sheet.time_s))
+    return changed(sheet, column, lambda _: values)
+
+
+@planting("kind")
+def another_kind(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(lambda c: c.unit in ("rad", "rad/s", "m", "m/s")))
+    if column is None:
+        return None
+    channel = sheet.channels[column]
+    kinds = [
+        kind
+        for kind in KINDS.values()
+        if (kind.body_kind, kind.axis) == (channel.kind.body_kind, channel.kind.axis)
+        and kind.order != channel.kind.order
+    ]
+    kind = kinds[int(rng.integers(len(kinds)))]
+    values = replace(channel, kind=kind).expected(truth(sheet, sheet.time_s))
+    return (sheet.put({column: values}), [column]) if np.ptp(values) > 1e-6 else None
+
+
+@planting("unit")
+def another_unit(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.telling())
+    if column is None:
+        return None
+    channel = sheet.channels[column]
+    units = UNITS[channel.kind.dimension]
+    unit = one(rng, [unit for unit in units if unit != channel.unit])
+    return sheet.put({column: sheet.values[column] * units[channel.unit] / units[str(unit)]}), [
+        column
+    ]
+
+
+@planting("sign")
+def another_sign(sheet: Sheet, rng: Generator) -> Planted:
+    return changed(sheet, one(rng, sheet.moving()), lambda values: -values)
+
+
+@planting("offset")
+def another_zero(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.columns())
+    off = sheet.limits[str(column)] * either(rng) * decades(rng, 0.7, 2.5)
+    return changed(sheet, column, lambda values: values + off)
+
+
+@planting("sign")
+def another_sign_and_zero(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(places))
+    if column is None:
+        return None
+    off = sheet.limits[column] * decades(rng, 1.0, 2.5)
+    return changed(sheet, column, lambda values: off - values)
+
+
+@planting("scaled")
+def another_gain(sheet: Sheet, rng: Generator) -> Planted:
+    gain = 1.0 + either(rng) * decades(rng, -2.0, -0.5)
+    return changed(sheet, one(rng, sheet.moving(unwrapped)), lambda values: gain * values)
+
+
+@planting("delay")
+def one_late(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.bending())
+    if column is None:
+        return None
+    by_s = sheet.step_s * either(rng) * decades(rng, -0.3, 1.2)
+    return sheet.of(truth(sheet, sheet.time_s - by_s), [column]), [column]
+
+
+@planting("delay")
+def one_very_late(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.bending())
+    if column is None:
+        return None
+    by_s = sheet.scene.driver.law.period_s * rng.uniform(-0.45, 0.45)
+    return sheet.of(truth(sheet, sheet.time_s - by_s), [column]), [column]
+
+
+@planting("delay")
+def rates_half_a_sample_late(sheet: Sheet, rng: Generator) -> Planted:
+    rates = sheet.bending(lambda channel: channel.kind.order > 0)
+    return sheet.of(truth(sheet, sheet.time_s - 0.5 * sheet.step_s), rates), rates
+
+
+@planting("start")
+def all_late(sheet: Sheet, rng: Generator) -> Planted:
+    by_s = sheet.step_s * either(rng) * decades(rng, -0.3, 1.5)
+    return sheet.of(truth(sheet, sheet.time_s + by_s)), []
+
+
+@planting("drift")
+def slow_clock(sheet: Sheet, rng: Generator) -> Planted:
+    pace = 1.0 + either(rng) * decades(rng, -3.0, -1.0)
+    return sheet.of(truth(sheet, pace * sheet.time_s)), []
+
+
+@planting("drift")
+def fast_driver(sheet: Sheet, rng: Generator) -> Planted:
+    return _driven(sheet, 1.0 + either(rng) * decades(rng, -3.0, -0.3))
+
+
+@planting("reversed")
+def backwards_driver(sheet: Sheet, rng: Generator) -> Planted:
+    return _driven(sheet, -1.0)
+
+
+def _driven(sheet: Sheet, times: float) -> Planted:
+    """The sheet of a driver that is so many times as fast."""
+    scene, law = sheet.scene, sheet.scene.driver.law
+    assert isinstance(law, ConstantSpeed)
+    law = replace(law, speed_rad_s=times * law.speed_rad_s)
+    return of_scene(sheet, replace(scene, driver=replace(scene.driver, law=law)))
+
+
+@planting("time unit")
+def another_unit_of_time(sheet: Sheet, rng: Generator) -> Planted:
+    pairs = [("ms", "s"), ("s", "ms"), ("us", "ms"), ("min", "s"), ("s", "min")]
+    unit, told = pairs[int(rng.integers(len(pairs)))]
+    ratio = UNITS["time"][told] / UNITS["time"][unit]
+    return replace(sheet, time_s=sheet.time_s * ratio, stamp=("t", told)), []
+
+
+@planting("time stamps", even=True)
+def rounded_times(sheet: Sheet, rng: Generator) -> Planted:
+    digit = 10.0 ** math.floor(math.log10(0.4 * sheet.step_s))
+    return replace(sheet, time_s=np.round(sheet.time_s / digit) * digit), []
+
+
+@planting("time stamps", even=True)
+def shaken_times(sheet: Sheet, rng: Generator) -> Planted:
+    shaken = sheet.time_s + sheet.step_s * rng.uniform(-0.3, 0.3, sheet.time_s.size)
+    return replace(sheet, time_s=shaken), []
+
+
+@planting("branch")
+def another_assembly(sheet: Sheet, rng: Generator) -> Planted:
+    scene = sheet.scene
+    keys = [group.branch_key for group in analyse(scene).groups if group.assemblies == 2]
+    key = str(one(rng, keys))
+    return of_scene(sheet, replace(scene, branch={**scene.branch, key: -scene.branch.get(key, 1)}))
+
+
+@planting("length")
+def another_length(sheet: Sheet, rng: Generator) -> Planted:
+    """A bar of another length, a pivot elsewhere, or the line of a slider beside where it is."""
+    scene = sheet.scene
+    by = scene.longest_m * either(rng) * decades(rng, -2.0, -1.0)
+    choice = [*scene.links, *(pin for pin in scene.ground if pin != scene.driver_pivot)]
+    name = str(one(rng, [*choice, *scene.sliders]))
+    if name in scene.ground:
+        x, y = scene.ground[name]
+        place = (x + by, y) if rng.random() < 0.5 else (x, y + by)
+        return of_scene(sheet, replace(scene, ground={**scene.ground, name: place}))
+    if name in scene.sliders:
+        line = scene.sliders[name]
+        x, y = line.through_m
+        sine, cosine = math.sin(line.direction_rad), math.cos(line.direction_rad)
+        line = replace(line, through_m=(x - by * sine, y + by * cosine))
+        return of_scene(sheet, replace(scene, sliders={**scene.sliders, name: line}))
+    link = scene.links[name]
+    first, second = list(link.points)[:2]
+    (x0, y0), (x1, y1) = link.points[first], link.points[second]
+    longer = 1.0 + by / math.hypot(x1 - x0, y1 - y0)
+    place = (x0 + longer * (x1 - x0), y0 + longer * (y1 - y0))
+    link = replace(link, points={**link.points, second: place})
+    return of_scene(sheet, replace(scene, links={**scene.links, name: link}))
+
+
+@planting("size")
+def all_lengths(sheet: Sheet, rng: Generator) -> Planted:
+    columns = sheet.columns(lambda channel: channel.kind.body_kind != "link")
+    size = 1.0 + either(rng) * decades(rng, -2.0, -0.5)
+    if len(columns) < 2:
+        return None
+    return sheet.put({column: size * sheet.values[column] for column in columns}), columns
+
+
+@planting("mirrored")
+def from_behind(sheet: Sheet, rng: Generator) -> Planted:
+    turn = math.pi if rng.random() < 0.5 else 0.0
+    return _seen(sheet, cmath.rect(1.0, turn), mirrored=True)
+
+
+@planting("turned")
+def turned_axes(sheet: Sheet, rng: Generator) -> Planted:
+    turns = [0.5 * math.pi, -0.5 * math.pi, math.pi, rng.uniform(0.02, 3.0)]
+    return _seen(sheet, cmath.rect(1.0, float(rng.choice(turns))))
+
+
+@planting("moved", "offset")
+def another_origin(sheet: Sheet, rng: Generator) -> Planted:
+    return _seen(sheet, 1.0, complex(*rng.uniform(0.02, 0.3, 2)))
+
+
+def _seen(sheet: Sheet, turn: complex, shift: complex = 0.0, *, mirrored: bool = False) -> Planted:
+    """The sheet with the plane of complex numbers mirrored at the real axis, turned and moved."""
+    motion, found = truth(sheet, sheet.time_s), {}
+    for column, channel in sheet.channels.items():
+        kind = channel.kind
+        values = kind.of(motion, channel.of)
+        if kind.body_kind == "link":
+            values = (-values if mirrored else values) + (cmath.phase(turn) if kind.turns else 0.0)
+        elif kind.axis is not None:
+            both = getattr(motion.points[channel.of], kind.field)
+            z = both[:, 0] + (-1j if mirrored else 1j) * both[:, 1]
+            z = turn * z + (shift if kind.order == 0 else 0.0)
+            values = (z.real, z.imag)[kind.axis]
+        found[column] = wrapped(channel, values)
+    return sheet.put(found), []
+
+
+@planting("stuck")
+def stuck_sample(sheet: Sheet, rng: Generator) -> Planted:
+    steps = {c: np.abs(np.diff(sheet.values[c])) for c in sheet.moving()}
+    places = [(c, k) for c in steps for k in np.flatnonzero(steps[c] > 4 * sheet.limits[c])]
+    found = one(rng, places)
+    return None if found is None else _held(sheet, found[0], int(found[1]) + 1, 1)
+
+
+@planting("stuck")
+def stuck_stretch(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving())
+    first = int(rng.integers(5, sheet.time_s.size // 2))
+    return _held(sheet, column, first, int(rng.integers(10, 60)))
+
+
+def _held(sheet: Sheet, column: str | None, first: int, count: int) -> Planted:
+    """The sheet where a channel repeats the sample before ``first`` so many times."""
+    if column is None:
+        return None
+    values = sheet.values[column].copy()
+    values[first : first + count] = values[first - 1]
+    return sheet.put({column: values}), [column]
+
+
+@planting("held")
+def slow_sensor(sheet: Sheet, rng: Generator) -> Planted:
+    every = int(rng.integers(2, 12))
+    column = one(rng, sheet.moving(unwrapped))
+    return changed(sheet, column, lambda values: np.repeat(values[::every], every)[: values.size])
+
+
+@planting("spike")
+def spikes(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.columns())
+    if column is None:
+        return None
+    values = sheet.values[column].copy()
+    places = np.arange(3, values.size - 3, 7)
+    for place in rng.choice(places, int(rng.integers(1, 6)), replace=False):
+        values[place] += sheet.limits[column] * either(rng) * decades(rng, 1.0, 2.5)
+    return changed(sheet, column, lambda _: values)
+
+
+@planting("lost turn")
+def lost_turn(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.columns(lambda c: c.kind.turns and not c.wrapped))
+    if column is None:
+        return None
+    values = sheet.values[column].copy()
+    values[int(rng.integers(5, values.size - 5)) :] += either(rng) * math.tau
+    return sheet.put({column: values}), [column]
+
+
+@planting("wrapped")
+def wrapped_angle(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(lambda c: c.kind.turns and not c.wrapped))
+    if column is None:
+        return None
+    values = np.remainder(sheet.values[column] + math.pi, math.tau) - math.pi
+    return sheet.put({column: values}), [column]
+
+
+@planting("half turns")
+def arc_tangent(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving(lambda channel: channel.kind.turns))
+    return changed(sheet, column, lambda values: np.arctan(np.tan(values)))
+
+
+@planting("unsigned")
+def magnitude(sheet: Sheet, rng: Generator) -> Planted:
+    both = [c for c in sheet.moving() if sheet.signals[c].min() * sheet.signals[c].max() < 0.0]
+    column = one(rng, [c for c in both if not sheet.channels[c].kind.turns])
+    return changed(sheet, column, np.abs)
+
+
+@planting("low-pass")
+def low_passed(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.bending(unwrapped))
+    if column is None:
+        return None
+    constant = sheet.step_s * decades(rng, 0.3, math.log10(sheet.time_s.size / 8))
+    gains = 1.0 - np.exp(-np.diff(sheet.time_s) / constant)
+    values = sheet.values[column].copy()
+    for place, gain in enumerate(gains, start=1):
+        values[place] = values[place - 1] + gain * (values[place] - values[place - 1])
+    return sheet.put({column: values}), [column]
+
+
+@planting("mean", even=True)
+def mean_of_both_sides(sheet: Sheet, rng: Generator) -> Planted:
+    half = int(rng.integers(3, max(4, sheet.time_s.size // 20)))
+    return _averaged(sheet, one(rng, sheet.bending(unwrapped)), half, half)
+
+
+@planting("mean", even=True)
+def mean_of_the_last(sheet: Sheet, rng: Generator) -> Planted:
+    count = int(rng.integers(3, max(4, sheet.time_s.size // 10)))
+    return _averaged(sheet, one(rng, sheet.bending(unwrapped)), count - 1, 0)
+
+
+def _averaged(sheet: Sheet, column: str | None, before: int, after: int) -> Planted:
+    """The sheet with the mean over so many samples before and after each in a column."""
+    if column is None:
+        return None
+    steps = np.arange(-before, sheet.time_s.size + after) * sheet.step_s
+    values = sheet.channels[column].expected(truth(sheet, sheet.time_s[0] + steps))
+    count = before + after + 1
+    means = np.convolve(values, np.full(count, 1.0 / count), mode="valid")
+    return sheet.put({column: means}), [column]
+
+
+@planting("rounded")
+def few_decimals(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.moving())
+    if column is None:
+        return None
+    size = size_of(sheet.channels[column])
+    decimals = math.floor(-math.log10(8.0 * sheet.limits[column] / size))
+    written = np.round(numbers(sheet, column), decimals)
+    return sheet.put({column: read(sheet, column, written)}), [column]
+
+
+@planting()
+def healthy(sheet: Sheet, rng: Generator) -> Planted:
+    return sheet, []
+
+
+@planting()
+def noise(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.columns())
+    off = 20.0 * sheet.limits[str(column)] * rng.normal(size=sheet.time_s.size)
+    return changed(sheet, column, lambda values: values + off)
+
+
+@planting()
+def wandering(sheet: Sheet, rng: Generator) -> Planted:
+    column = one(rng, sheet.columns())
+    walk = np.cumsum(rng.normal(size=sheet.time_s.size))
+    off = 20.0 * sheet.limits[str(column)] * walk / np.max(np.abs(walk))
+    return changed(sheet, column, lambda values: values + off)
+
+
+@planting()
+def waves_of_no_mechanism(sheet: Sheet, rng: Generator) -> Planted:
+    turns = math.tau * sheet.time_s / sheet.scene.driver.law.period_s
+    columns = [column for column in sheet.columns() if rng.random() < 0.5]
+    waves: Mapping[str, Array] = {
+        column: 10.0 * sheet.limits[column] * sum(
+            rng.normal() / k * np.sin(rng.uniform(0.3, 6.0) * turns + rng.uniform(0.0, 6.0))
+            for k in range(1, 5)
+        )
+        for column in columns
+    }  # fmt: skip
+    off = {column: sheet.values[column] + wave for column, wave in waves.items()}
+    return sheet.put(off), columns
