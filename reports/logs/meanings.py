@@ -303,8 +303,9 @@ def _without_lengths(
 def _slots(
     channels: Sequence[Channel], scene: Scene
 ) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
-    """The channels to be judged, those of further copies of a point, and what is not judged with
-    the reason. Raises CrankcheckError for two columns of one quantity."""
+    """The channels to be judged, those of further copies of a point's place, which a gap is taken
+    of, and what is not judged with the reason. Raises CrankcheckError for two columns of one
+    quantity."""
     first: dict[tuple[object, ...], Channel] = {}
     main: list[Channel] = []
     copies: list[Channel] = []
@@ -322,13 +323,10 @@ def _slots(
             spare.append((each.column, "it is of a point of the ground, which does not move"))
             continue
         before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
-        if before is None:
-            main.append(each)
-        elif each.on != before.on:
+        if before is not None and each.kind.body_kind == "point" and each.kind.order == 0:
             copies.append(each)
         else:
-            spare.append((each.column, f"{each.kind.name} of {each.of} is judged from "
-                          f"{before.column!r}"))  # fmt: skip
+            main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
     return sorted(main, key=lambda one: place[one.column]), copies, spare
 
