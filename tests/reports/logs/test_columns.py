@@ -125,3 +125,18 @@ def test_a_frame_is_a_log_too() -> None:
     found = columns_of(pd.DataFrame({"t": [0, 1], "a": [1.5, None]}))
     with pytest.raises(CrankcheckError, match="the frame, row 1, column 'a': found nan"):
         found.numbers("a")
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        (pd.to_timedelta([0, 1], unit="s"), r"column 't': found durations .*give .* seconds"),
+        (pd.to_datetime([0, 1], unit="s"), r"column 't': found dates .*give .* seconds"),
+        (pd.to_datetime([0, 1], unit="s", utc=True), "column 't': found Timestamp"),
+        ([True, False], "column 't': found True, no number"),
+        ([1j, 2.0], "column 't': found 1j, no number"),
+    ],
+)
+def test_what_only_looks_like_numbers_is_told(values: object, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        columns_of(pd.DataFrame({"t": values})).numbers("t")
