@@ -112,9 +112,9 @@ class Named:
         return [name for _, name in sorted(places)], [word for word in words if word]
 
 
-def time_of(column: str) -> tuple[str, str] | None:
+def time_of(column: str, told: str = "") -> tuple[str, str] | None:
     """Of a column of times: whose (``time``, ``velocity time``, ``acceleration time``), and the
-    unit; None for another column. Raises CrankcheckError for two units."""
+    unit, which may be ``told``; None for another column. Raises CrankcheckError for two units."""
     words = [
         word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", _without_unit(column)[0]) if word
     ]
@@ -124,7 +124,7 @@ def time_of(column: str) -> tuple[str, str] | None:
     name = " ".join(words)
     if name not in TIMES and name not in ("velocity time", "acceleration time"):
         return None
-    unit = _one_unit(column, unit) or si("time")
+    unit = told or _one_unit(column, unit) or si("time")
     return ("time" if name in TIMES else name, unit) if DIMENSION[unit] == "time" else None
 
 
