@@ -19,6 +19,7 @@ from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import Log, Reading
+from reports.logs.kinds import Kind
 from reports.quantities import QUANTITIES, named
 from reports.quantities.moving import Order
 from sim.engine import Run
@@ -126,16 +127,15 @@ def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     scene = log.scene
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
     bodies: dict[str, dict[str, dict[str, Array]]] = {"links": {}, "points": {}, "sliders": {}}
-    for reading in log.readings:
-        kind = reading.channel.kind
-        right = kind.of(truth.at(instants[kind.order]), reading.channel.of)
-        wrong = reading.error(truth)
-        fields = bodies[f"{kind.body_kind}s"].setdefault(reading.channel.of, {})
+    for (kind, body), several in _slots(log).items():
+        right = kind.of(truth.at(instants[kind.order]), body)
+        wrong = _largest([reading.error(truth) for reading in several], kind.order)
+        fields = bodies[f"{kind.body_kind}s"].setdefault(body, {})
         if kind.axis is None:
             fields[kind.field] = right + wrong
             continue
         if kind.field not in fields:
-            motion = truth.at(instants[kind.order]).points[reading.channel.of]
+            motion = truth.at(instants[kind.order]).points[body]
             fields[kind.field] = getattr(motion, kind.field).copy()
         fields[kind.field][:, kind.axis] += wrong
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
@@ -161,6 +161,27 @@ def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     assert run.motion is not None
     alone = isinstance(truth, AtCrank)
     return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
+
+
+def _slots(log: Log) -> dict[tuple[Kind, str], list[Reading]]:
+    """The readings by what of a motion they are of: one, but for rates of a point on several
+    bodies, and for angles of a link that are relative to others as well."""
+    slots: dict[tuple[Kind, str], list[Reading]] = {}
+    for reading in log.readings:
+        slots.setdefault((reading.channel.kind, reading.channel.of), []).append(reading)
+    return slots
+
+
+def _largest(errors: Sequence[Array], order: Order) -> Array:
+    """What a place or rate is off by, of which there are several readings, so that no right one
+    hides a wrong one: of rates the largest at every sample; of places, which are differenced and
+    must not jump from one to another, those of the reading whose largest is."""
+    if len(errors) == 1:
+        return errors[0]
+    if order == 0:
+        return max(errors, key=lambda error: float(np.max(np.abs(error))))
+    every = np.stack(errors)
+    return np.asarray(every[np.argmax(np.abs(every), axis=0), np.arange(every.shape[1])])
 
 
 def _instants(log: Log, order: Order) -> Array:
@@ -201,8 +222,6 @@ def _gaps(log: Log) -> dict[str, Array]:
     main = {(each.channel.kind, each.channel.of): each for each in log.readings}
     square: dict[tuple[str, str], Array] = {}
     for copy in log.copies:
-        if copy.channel.kind.order:
-            continue
         off = copy.values - main[copy.channel.kind, copy.channel.of].values
         key = (copy.channel.of, copy.channel.on)
         square[key] = square.get(key, np.zeros_like(off)) + off**2

@@ -95,7 +95,8 @@ class Log:
     ``stamp`` is the column that the instants stand in, and its unit; ``zero_s`` is what was taken
     from its times [s].
 
-    ``copies`` are readings of a point as further bodies have it, which the gap is taken of;
+    Several ``readings`` may be of one rate of a point, or of one link, each relative to another.
+    ``copies`` are readings of a point's place as further bodies have it, which the gap is taken of;
     ``gaps`` are those that the log itself tells. ``unused`` names
     columns that nothing was made of, with the reason.
     """

@@ -19,6 +19,7 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 from models.array import Array
 from models.errors import CrankcheckError, cut, suggestion
 from models.regular import UnreadableError, regular_bytes
+from models.samples import NO_NUMBERS
 from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.text import Layout, text_columns
 
@@ -51,9 +52,15 @@ class Columns:
         Raises
         ------
         CrankcheckError
-            A cell that is empty, NaN, infinite or no number; the message has its row.
+            A cell that is empty, NaN, infinite or no number; the message has its row. Durations and
+            dates.
         """
         values = np.asarray(self.raw[name])
+        if values.dtype.kind in "mM":  # which numpy would count in nanoseconds
+            raise CrankcheckError(
+                f"{self.source}, column {cut(name)!r}: found {NO_NUMBERS[values.dtype.kind]} "
+                f"({values.dtype}); give floats, such as seconds"
+            )
         if values.dtype.kind not in "iuf":
             values = self._parsed(name, values)
         found = values.astype(np.float64)

@@ -36,6 +36,14 @@ def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -
     time_s = columns.numbers(column) * UNITS["time"][unit]
     if time_s.size < 2:
         raise CrankcheckError(f"{columns.source}: {time_s.size} row; a motion has at least 2")
+    refuse_back(columns, column, time_s)
+    if not holes:
+        _refuse_holes(columns, column, time_s, np.diff(time_s))
+    return np.asarray(time_s)
+
+
+def refuse_back(columns: Columns, column: str, time_s: Array) -> None:
+    """Refuse times that go back or stand still. Raises CrankcheckError."""
     steps = np.diff(time_s)
     back = np.flatnonzero(steps <= 0.0)
     if back.size:
@@ -46,9 +54,6 @@ def instants(columns: Columns, column: str, unit: str, *, holes: bool = False) -
             f"{time_s[row + 1]:.9g} s ({back.size} such rows); sort the rows, and keep one of each "
             "instant"
         )
-    if not holes:
-        _refuse_holes(columns, column, time_s, steps)
-    return np.asarray(time_s)
 
 
 def refuse_far(columns: Columns, column: str, time_s: Array, scene: Scene) -> None:

@@ -39,6 +39,7 @@ from reports.logs.text import Layout
 from reports.logs.units import UNITS
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e15, le=1e15)]
+Truth = Annotated[bool, Field(strict=True)]
 Name = Annotated[str, Field(min_length=1, max_length=400)]
 KIND_NAMES = (*dict.fromkeys(name for _, name in KINDS), "gap")
 LEFT_OUT = "the map leaves it out"
@@ -73,13 +74,13 @@ class ChannelTable(Table):
     """What a column means; what is left out is taken from its name."""
 
     column: Name
-    ignore: bool = False
+    ignore: Truth = False
     of: Name | None = None
     kind: str | None = None
     unit: str | None = None
     sign: Literal[1, -1] = 1
     offset: Number = 0.0
-    wrapped: bool | None = None
+    wrapped: Truth | None = None
     relative_to: str | None = None
     on: str | None = None
     delay_s: Number = 0.0

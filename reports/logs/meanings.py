@@ -13,13 +13,15 @@ from models.errors import CrankcheckError, cut, few, suggestion
 from models.scene import Scene
 from reports.logs.channel import Channel, Gap, Log, Reading
 from reports.logs.columns import Columns
-from reports.logs.instants import instants, refuse_far
+from reports.logs.instants import MOST_TURNS, instants, refuse_back, refuse_far
 from reports.logs.kinds import KINDS
 from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
 from reports.logs.names import LENGTH, Meaning, Named, meaning, time_of
 from reports.logs.spelling import DIMENSION
 from reports.logs.units import UNITS, si
 
+MOST = 1e15
+"""The most of a reading [SI] that is no angle."""
 DIGITS = 2e-3
 """What rounding may add to half a turn [rad]: that to 3.142."""
 
@@ -54,6 +56,12 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
     times = _times(columns, map_)
     told = {one.column: one for one in map_.channel}
     _refuse_unknown(told, columns, "[[channel]] column")
+    for column in told:
+        if column in times.values():
+            raise CrankcheckError(
+                f"[[channel]] {column!r}: it is the column of times; say of it in [time], or which "
+                "other column that is"
+            )
     named = Named(scene)
     channels: list[Channel] = []
     gaps: list[_Gap] = []
@@ -79,7 +87,7 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
     zero_s = float(base[0]) if map_.time.zero else 0.0
     base = base - zero_s
     refuse_far(columns, main, base, scene)
-    others = {c: _stamp(columns, c) - zero_s for c in times.values() if c != main}
+    others = {c: _stamp(columns, c, zero_s, scene) for c in times.values() if c != main}
     reader = _Reader(columns, base, others)
     return Log(
         source=columns.source,
@@ -125,7 +133,9 @@ class _Reader:
         """The numbers of a channel in SI, and their instants."""
         unit = UNITS[channel.kind.dimension][channel.unit]
         raw = self.columns.numbers(channel.column)
-        values = channel.sign * unit * (raw + channel.offset)
+        with np.errstate(over="ignore"):  # which is refused
+            values = channel.sign * unit * (raw + channel.offset)
+        _refuse_huge(self.columns, channel, values)
         if channel.kind.turns:
             wrapped = told.wrapped if told else None
             if wrapped is None:
@@ -135,6 +145,22 @@ class _Reader:
         if channel.delay_s:
             own = own + channel.delay_s
         return Reading(channel, np.asarray(values), own)
+
+
+def _refuse_huge(columns: Columns, of: Channel | _Gap, values: Array) -> None:
+    """Refuse readings [SI] beyond all sense: of an angle its place within a turn would be lost.
+    Raises CrankcheckError."""
+    angle = isinstance(of, Channel) and of.kind.turns
+    most = MOST_TURNS * math.tau if angle else MOST
+    row = int(np.argmax(np.abs(values) > most))
+    if not abs(values[row]) > most:
+        return
+    bound = f"{MOST_TURNS:g} turns" if angle else f"{MOST:g} {si(DIMENSION[of.unit])}"
+    raise CrankcheckError(
+        f"{columns.at(of.column, row)}: found {float(columns.raw[of.column][row]):.6g} {of.unit}; "
+        f"readings are at most {bound}: mend the cell, or leave the column out ([[channel]] ignore "
+        "= true)"
+    )
 
 
 def _is_wrapped(angle_rad: Array) -> bool:
@@ -152,9 +178,9 @@ def _times(columns: Columns, map_: Map) -> dict[str, str]:
     Raises CrankcheckError for none, and for two.
     """
     found: dict[str, list[str]] = {}
-    left_out = {one.column for one in map_.channel if one.ignore}
+    others = {one.column for one in map_.channel if one.ignore or map_.time.column is not None}
     for column in columns.raw:
-        if column not in left_out and (time := time_of(column)):
+        if column not in others and (time := time_of(column, map_.time.unit or "")):
             found.setdefault(time[0], []).append(column)
     if map_.time.column is not None:
         _refuse_unknown([map_.time.column], columns, "[time] column")
@@ -177,14 +203,18 @@ def _times(columns: Columns, map_: Map) -> dict[str, str]:
 
 def _unit_of_time(column: str, map_: Map) -> str:
     """The unit of the times of all rows."""
-    told = time_of(column)
+    told = time_of(column, map_.time.unit or "")
     return map_.time.unit or (told[1] if told else si("time"))
 
 
-def _stamp(columns: Columns, column: str) -> Array:
-    """The instants in a further column of times [s]."""
+def _stamp(columns: Columns, column: str, zero_s: float, scene: Scene) -> Array:
+    """The instants in a further column of times [s]. Raises CrankcheckError for those that go back,
+    and for some that are far from the start."""
     told = time_of(column)
-    return columns.numbers(column) * UNITS["time"][told[1] if told else si("time")]
+    time_s = columns.numbers(column) * UNITS["time"][told[1] if told else si("time")]
+    refuse_back(columns, column, time_s)
+    refuse_far(columns, column, time_s - zero_s, scene)
+    return np.asarray(time_s - zero_s)
 
 
 def _meaning(
@@ -303,8 +333,9 @@ def _without_lengths(
 def _slots(
     channels: Sequence[Channel], scene: Scene
 ) -> tuple[list[Channel], list[Channel], list[tuple[str, str]]]:
-    """The channels to be judged, those of further copies of a point, and what is not judged with
-    the reason. Raises CrankcheckError for two columns of one quantity."""
+    """The channels to be judged, those of further copies of a point's place, which a gap is taken
+    of, and what is not judged with the reason. Raises CrankcheckError for two columns of one
+    quantity."""
     first: dict[tuple[object, ...], Channel] = {}
     main: list[Channel] = []
     copies: list[Channel] = []
@@ -322,13 +353,10 @@ def _slots(
             spare.append((each.column, "it is of a point of the ground, which does not move"))
             continue
         before = next((o for o in main if (o.kind, o.of) == (each.kind, each.of)), None)
-        if before is None:
-            main.append(each)
-        elif each.on != before.on:
+        if before is not None and each.kind.body_kind == "point" and each.kind.order == 0:
             copies.append(each)
         else:
-            spare.append((each.column, f"{each.kind.name} of {each.of} is judged from "
-                          f"{before.column!r}"))  # fmt: skip
+            main.append(each)
     place = {each.column: n for n, each in enumerate(channels)}
     return sorted(main, key=lambda one: place[one.column]), copies, spare
 
@@ -344,6 +372,7 @@ def _gaps(columns: Columns, gaps: Iterable[_Gap]) -> tuple[Gap, ...]:
         if DIMENSION[gap.unit] != "length":
             raise CrankcheckError(f"column {gap.column!r}: {gap.unit} is no unit of length")
         opening = np.abs(columns.numbers(gap.column) * UNITS["length"][gap.unit])
+        _refuse_huge(columns, gap, opening)
         found.append(Gap(gap.column, gap.of, gap.unit, opening))
     return tuple(found)
 

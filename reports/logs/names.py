@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from models.errors import CrankcheckError, cut
@@ -14,19 +14,31 @@ from reports.logs.spelling import DIMENSION, spelled_unit
 from reports.logs.units import si
 from reports.quantities.moving import MovingKind
 
-TIMES = {"time", "t", "timestamp", "times", "sim time", "simulation time", "elapsed"}
+TIMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime", "simulation time",
+         "elapsed", "elapsed time"}  # fmt: skip
 PLACES = {"pos", "position", "place", "coordinate", "coord"}
 SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
-SECONDS = {"a", "acc", "accel", "acceleration"}
+ACCELERATIONS = {"a", "acc", "accel", "acceleration"}
+OWN: Mapping[tuple[MovingKind, str], str] = {
+    ("link", "angle"): "theta_rad",
+    ("link", "angular velocity"): "omega_rad_s",
+    ("link", "angular acceleration"): "alpha_rad_s2",
+    ("slider", "displacement"): "slider_displacement_m",
+    ("slider", "speed"): "slider_speed_m_s",
+    ("slider", "acceleration"): "slider_acceleration_m_s2",
+    **{("point", f"{rate}{axis}"): f"{rate}{axis}_{unit}"
+       for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for axis in "xy"},
+}  # fmt: skip
+"""What we call columns ourselves, after the name of the body (`reports.describe.frame`)."""
 TURNING: Sequence[set[str]] = (
     {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
     {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
-    {"alpha", "angacc", "thetaddot", "qdd", *SECONDS},
+    {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
 )
 SLIDING: Sequence[set[str]] = (
     {"displacement", "disp", "s", "stroke", "travel", *PLACES},
     {"sdot", *SPEEDS},
-    {"sddot", *SECONDS},
+    {"sddot", *ACCELERATIONS},
 )
 AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
         enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
@@ -34,8 +46,8 @@ FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "
            "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
 AFTER = {"on", "of", "at"}
 """Words after which a body has stood."""
-MODEL = re.compile(r"^\.?model_?\d*(?=\.)", re.IGNORECASE)
-"""What Adams begins all names with."""
+MODEL = re.compile(r"^[./]?model_?\d*(?=[./])", re.IGNORECASE)
+"""What Adams begins all names with, and Gazebo."""
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
 DRIVERS = {"driver", "input", "motor"}
 LENGTH = "it is the length of a vector, whose components are judged"
@@ -72,6 +84,24 @@ class Named:
         every = {*self.scene.links, *self.points, *self.scene.sliders, GROUND}
         return sorted(every, key=lambda name: (-len(name), name))
 
+    @cached_property
+    def own(self) -> Mapping[str, Meaning | str]:
+        """What the columns say that we write ourselves, whatever bodies are called: by name."""
+        found: dict[str, Meaning | str] = {}
+        for body in self.bodies:
+            kinds = self.kinds_of(body)
+            said: dict[str, Meaning | str] = {
+                name: Meaning(body, KINDS[key], False, si(KINDS[key].dimension))
+                for key, name in OWN.items()
+                if key[0] in kinds
+            }
+            if "point" in kinds:
+                said |= dict.fromkeys(("v_m_s", "a_m_s2"), LENGTH)
+            if "point" in kinds or "slider" in kinds:
+                said["gap_m"] = Meaning(body, None, True, "m")
+            found |= {f"{body}{mark}{name}": each for name, each in said.items() for mark in "_."}
+        return found
+
     def kinds_of(self, name: str) -> tuple[MovingKind, ...]:
         """What has that name: often a slider and its point have the same."""
         there: Iterable[tuple[MovingKind, bool]] = (
@@ -92,6 +122,11 @@ class Named:
             words = [word for word in words if word not in DRIVERS]
         return bodies, words
 
+    def _in_its_case(self, text: str) -> str:
+        """The body that is spelled so, or else the only one in other letters; "" for several."""
+        alike = [name for name in self.bodies if name.lower() == text.lower()]
+        return text if text in alike else alike[0] if len(alike) == 1 else ""
+
     def _parted(self, text: str) -> str:
         """A text with a space before each capital in a word, and between a point and its axis."""
         text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
@@ -106,25 +141,29 @@ class Named:
             flags = 0 if len(name) <= SHORT else re.IGNORECASE
             pattern = rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])"
             while hit := re.search(pattern, text, flags):
-                places.append((hit.start(), name))
+                body = self._in_its_case(hit[0])
+                if not body:
+                    break
+                places.append((hit.start(), body))
                 text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
         words = [word.strip("/").lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text)]
         return [name for _, name in sorted(places)], [word for word in words if word]
 
 
-def time_of(column: str) -> tuple[str, str] | None:
+def time_of(column: str, told: str = "") -> tuple[str, str] | None:
     """Of a column of times: whose (``time``, ``velocity time``, ``acceleration time``), and the
-    unit; None for another column. Raises CrankcheckError for two units."""
-    words = [
-        word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", _without_unit(column)[0]) if word
-    ]
+    unit, which may be ``told``; None for another column. Raises CrankcheckError for two units."""
+    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", _without_unit(column)[0])
+    words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
     unit = ""
     if len(words) > 1 and DIMENSION.get(spelled_unit(words[-1])) == "time":
         unit = spelled_unit(words.pop())
+        if words[-1] == "in":
+            words.pop()
     name = " ".join(words)
     if name not in TIMES and name not in ("velocity time", "acceleration time"):
         return None
-    unit = _one_unit(column, unit) or si("time")
+    unit = told or _one_unit(column, unit) or si("time")
     return ("time" if name in TIMES else name, unit) if DIMENSION[unit] == "time" else None
 
 
@@ -134,6 +173,11 @@ def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
 
     Raises CrankcheckError for units that contradict each other, or what they are units of.
     """
+    if own := named.own.get(column):
+        if isinstance(own, str) or not told:
+            return own
+        _held(column, told, own.kind.dimension if own.kind else "length")
+        return replace(own, unit=told)
     bodies, words = named.found(re.sub(MODEL, " ", _without_unit(column)[0]))
     while words and words[-1] in AFTER:
         words.pop()
@@ -142,6 +186,8 @@ def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
+    if "angular" in words:
+        words = ["angle" if word == "displacement" else word for word in words]
     words = [word for word in words if word not in FILLERS | RELATIVE]
     of, relative_to, on = _roles(bodies, named, relative=relative)
     if not of:
@@ -167,6 +213,10 @@ def _without_unit(column: str) -> tuple[str, str]:
 
 def _trailing_unit(words: list[str]) -> tuple[str, list[str]]:
     """The unit that the last words spell, and the words before it. A lone `s` is a displacement."""
+    if words and not spelled_unit(words[-1]):
+        word, _, unit = words[-1].partition("/")
+        if word and spelled_unit(unit):
+            words = [*words[:-1], word, unit]
     for count in (3, 2, 1):
         if len(words) < count:
             continue
@@ -218,6 +268,8 @@ def _kind(
     """The kind of reading that words and a unit name, or why none."""
     dimension = DIMENSION.get(unit)
     if "link" in kinds:
+        if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
+            words = words[:-1]
         order = _order(words, TURNING)
         chosen = [k for k in KINDS.values() if k.body_kind == "link" and k.order == order]
         if not words:
@@ -261,7 +313,7 @@ def _axis(words: Sequence[str]) -> tuple[int, int] | None:
             continue
         if word in SPEEDS and order == 0:
             order = 1
-        elif word in SECONDS and order == 0:
+        elif word in ACCELERATIONS and order == 0:
             order = 2
         else:
             return None

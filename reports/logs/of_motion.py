@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -16,20 +16,9 @@ from reports.logs.columns import Columns
 from reports.logs.kinds import KINDS, Kind
 from reports.logs.map_file import ChannelTable, Map, TimeTable
 from reports.logs.meanings import understood
+from reports.logs.names import OWN
 from reports.logs.units import si
-from reports.quantities.moving import MovingKind
 
-NAMES: Mapping[tuple[MovingKind, str], str] = {
-    ("link", "angle"): "theta_rad",
-    ("link", "angular velocity"): "omega_rad_s",
-    ("link", "angular acceleration"): "alpha_rad_s2",
-    ("slider", "displacement"): "slider_displacement_m",
-    ("slider", "speed"): "slider_speed_m_s",
-    ("slider", "acceleration"): "slider_acceleration_m_s2",
-    **{("point", f"{rate}{axis}"): f"{rate}{axis}_{unit}"
-       for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for axis in "xy"},
-}  # fmt: skip
-"""What columns of a motion are called, after the name of the body (`reports.describe.frame`)."""
 TIME = "time_s"
 
 
@@ -49,7 +38,7 @@ def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> L
         values = _fitting(series, kind, raw[TIME], f"{source}: {body}, {kind.field}")
         if np.all(np.isnan(values)):
             continue
-        column = f"{body}_{NAMES[kind.body_kind, kind.name]}"
+        column = f"{body}_{OWN[kind.body_kind, kind.name]}"
         raw[column] = values
         channels.append(
             ChannelTable(column=column, of=body, kind=kind.name, unit=si(kind.dimension))

@@ -18,10 +18,13 @@ LOOK = 200_000
 """Bytes at the beginning in which the header, and what follows it, must stand."""
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", " ": "spaces"}
 REMARKS = ("#", "%", "//")
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.I)
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|[-+]?(nan|inf(inity)?)", re.I)
 SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """The line that tells Excel."""
 COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
+
+DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
+"""What is left of a number on either side of its decimal comma."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +61,17 @@ def text_columns(
     told = SEPARATOR.fullmatch(lines[at])
     if told and at + 1 < len(lines):
         at += 1
-    separator = layout.separator or (told[1] if told else _separator(lines[at], lines[at + 1 :]))
-    names = _fields(lines[at], separator)
+    separator = layout.separator or (told[1] if told else "")
+    header, below = lines[at], _next(lines, at + 1)
+    if remark := _header_of_remark(lines, at, separator):
+        header, below = remark, at
+    separator = separator or _separator(header, lines[at + (header is lines[at]) :])
+    names = _fields(header, separator)
     refuse_columns(len(names))
-    _check_header(names, at, separator)
-    below = next((n for n in range(at + 1, len(lines)) if lines[n].strip()), None)
+    # Some programs end all lines, the header as well, in a separator.
+    ends = len(names) > 1 and not names[-1] and below is not None
+    ends = ends and lines[below or 0].rstrip(" ").endswith(separator)
+    _check_header(header, names[:-1] if ends else names, at)
     if below is None:
         raise UnreadableError("a header and no rows; a log has rows of numbers")
     units = _units(_fields(lines[below], separator), len(names))
@@ -70,7 +79,7 @@ def text_columns(
         names = [
             f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)
         ]
-        below = next((n for n in range(below + 1, len(lines)) if lines[n].strip()), None)
+        below = _next(lines, below + 1)
         if below is None:
             raise UnreadableError("a header and units, and no rows; a log has rows of numbers")
     fields = _fields(lines[below], separator)
@@ -79,11 +88,46 @@ def text_columns(
     types = {
         name: pa.float64() if NUMBER.fullmatch(field) or COMMA.fullmatch(field) else None
         for name, field in pairs
-        if wanted(name)
+        if wanted(name) or not name
     }
     body = memoryview(raw)[offsets[below] :]
     table = _table(body, names, types, separator, layout.decimal, below)
+    if ends:
+        table, names = _without_last(table, below, len(names)), names[:-1]
     return TextTable(table, names, below + 1)
+
+
+def _next(lines: Sequence[str], at: int) -> int | None:
+    """The first line from there on that is not blank."""
+    return next((n for n in range(at, len(lines)) if lines[n].strip()), None)
+
+
+def _header_of_remark(lines: Sequence[str], at: int, separator: str) -> str:
+    """The last remark above numbers, as numpy writes a header, where it has a name for each; ""
+    for none."""
+    remarks = [line for line in lines[:at] if line.startswith(REMARKS)]
+    if not remarks:
+        return ""
+    text = remarks[-1].lstrip("#%/ ")
+    separator = separator or _separator(text, lines[at:])
+    names, fields = _fields(text, separator), _fields(lines[at], separator)
+    fits = len(names) == len(fields) and all(names) and not _are_numbers(names)
+    return text if fits and _are_numbers(fields) else ""
+
+
+def _without_last(table: pa.Table, below: int, place: int) -> pa.Table:
+    """The table without the column behind the separator that ends all lines. Raises
+    UnreadableError where something stands in it."""
+    last = table.column("")
+    if last.null_count < table.num_rows:
+        cells = last.to_pylist()
+        row = next((n for n, cell in enumerate(cells) if str(cell or "").strip()), None)
+        if row is not None:
+            raise UnreadableError(
+                f"row {below + 1 + row}: found {cut(str(cells[row]), 40)!r} in column {place}, "
+                "which has no name; give it one"
+            )
+    return table.drop_columns([""])
 
 
 def _first_lines(raw: bytes) -> tuple[list[str], list[int]]:
@@ -129,12 +173,24 @@ def _fields(line: str, separator: str) -> list[str]:
     if separator == " ":
         return line.split()
     found = re.findall(rf'(?:^|{re.escape(separator)})\s*("(?:[^"]|"")*"|[^{separator}]*)', line)
-    return [field.strip().strip('"').replace('""', '"').strip() for field in found]
+    return [_unquoted(field.strip()).strip() for field in found]
 
 
-def _check_header(names: Sequence[str], at: int, separator: str) -> None:
+def _unquoted(field: str) -> str:
+    """A field without its quotes; those in it are written twice."""
+    if len(field) > 1 and field[0] == field[-1] == '"':
+        return field[1:-1].replace('""', '"')
+    return field
+
+
+def _are_numbers(fields: Sequence[str]) -> bool:
+    """Whether no field that is not blank is a name."""
+    return all(NUMBER.fullmatch(field) or COMMA.fullmatch(field) for field in fields if field)
+
+
+def _check_header(header: str, names: Sequence[str], at: int) -> None:
     """Refuse a header that names nothing. Raises UnreadableError."""
-    if all(NUMBER.fullmatch(name) or COMMA.fullmatch(name) for name in names if name):
+    if _are_numbers(names):
         raise UnreadableError(
             f"line {at + 1} holds numbers and no names; put a header above them, such as "
             "time_s,rocker_deg"
@@ -142,7 +198,7 @@ def _check_header(names: Sequence[str], at: int, separator: str) -> None:
     blank = next((n for n, name in enumerate(names) if not name), None)
     if blank is not None:
         raise UnreadableError(f"line {at + 1}: column {blank + 1} has no name; give it one")
-    if any('"' in name for name in names):
+    if header.count('"') % 2:
         raise UnreadableError(f"line {at + 1}: a quote that is not closed")
 
 
@@ -164,15 +220,21 @@ def _check_row(
 ) -> None:
     """Refuse a first row that does not fit the header. Raises UnreadableError."""
     pairs = len(fields) >= 2 * len(names) - 1 and separator == "," and len(names) > 1
-    if pairs:
+    if pairs and all(DIGITS.fullmatch(field) for field in fields):
         raise UnreadableError(
             f"line {at + 1} has {len(fields)} fields, the header {len(names)}: decimal commas "
             "between commas; write decimal points, or separate the columns by semicolons"
         )
     if len(fields) != len(names):
+        mark = SEPARATORS.get(separator, repr(separator))
+        if len(fields) == len(names) + 1 and not fields[-1]:
+            raise UnreadableError(
+                f"line {at + 1} has {len(fields)} fields, the header {len(names)}: it ends in a "
+                f"separator, {mark}, and the header does not; end both so, or neither"
+            )
         raise UnreadableError(
             f"line {at + 1} has {len(fields)} fields, the header {len(names)}, separated by "
-            f"{SEPARATORS.get(separator, repr(separator))}; say separator in [file] of the map if "
+            f"{mark}; say separator in [file] of the map if "
             "that is another"
         )
     if layout.decimal == ".":

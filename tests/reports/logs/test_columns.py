@@ -30,6 +30,10 @@ def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
         "t\ta b\n0\t1.5\n0.1\t-2.25\n0.2\t3e-7",
         "# made by a solver, today\n# 2 columns\nt,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         '\ufeff"t","a b"\n0,1.5\n0.1,-2.25\n\n0.2,3e-7\n',
+        "t,a b,\n0,1.5,\n0.1,-2.25,\n0.2,3e-7,\n",
+        "t;a b;\r\n0;1.5;\r\n0.1;-2.25;\r\n0.2;3e-7;\r\n",
+        "# t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
+        "% a solver, of today, in s\n%t;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
         "sep=;\nt;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
     ],
 )
@@ -42,6 +46,23 @@ def test_the_separator_is_found(tmp_path: Path, text: str) -> None:
 def test_columns_that_spaces_line_up_are_read(tmp_path: Path) -> None:
     found = read_columns(written(tmp_path, "  t     ab \n 0.0   1.5\n 0.1  -2.25\n", "log.txt"))
     assert found.numbers("ab").tolist() == [1.5, -2.25]
+
+
+def test_a_header_among_remarks_may_have_spaces_between(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "# time_s ab\n0.0 1.5\n0.1 -2.25\n"))
+    assert found.numbers("ab").tolist() == [1.5, -2.25]
+    assert found.at("ab", 0).endswith("row 2, column 'ab'")
+
+
+def test_units_go_into_names_that_all_end_in_a_separator(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t,rocker,\ns,deg,\n0,1,\n1,1,\n"))
+    assert list(found.raw) == ["t [s]", "rocker [deg]"]
+
+
+def test_quotes_in_a_name_are_read(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, 't,"junk""x","in ""s"""\n0,1,2\n1,1,2\n'))
+    assert list(found.raw) == ["t", 'junk"x', 'in "s"']
+    assert found.numbers('in "s"').tolist() == [2, 2]
 
 
 def test_a_row_of_units_goes_into_the_names(tmp_path: Path) -> None:
@@ -83,6 +104,13 @@ def test_every_digit_is_kept(tmp_path: Path) -> None:
         ("t,a\n0,1\n1\n", "row 3: 1 fields, the header 2"),
         ("t;a\n0,5;1,25\n", "row 2, column 't': found '0,5', a decimal comma"),
         ("t,a,b\n0,5,1,25,3,5\n", "decimal commas between commas"),
+        ("t,a,b\n0,1,25,3,5e-3\n", "decimal commas between commas"),
+        ("t,a\n0,1,\n", "line 2 has 3 fields, the header 2: it ends in a separator"),
+        ("t,a\n0.5,1.5,2.5\n", "line 2 has 3 fields, the header 2"),
+        ("t,a,\n0,1,\n1,2,3\n", "row 3: found '3' in column 3, which has no name"),
+        ("t,a,\n0,1\n", "column 3 has no name"),
+        ('t,"a\n0,1\n', "a quote that is not closed"),
+        ("# 0,1\n0,1\n", "line 2 holds numbers and no names"),
         (b"t,a\n0,1\x00\n", "null bytes"),
         ("t,a\n0,1\n".encode("utf-16"), "UTF-16"),
         ("t,ä\n0,1\n".encode("latin-1"), "not UTF-8"),
@@ -125,3 +153,18 @@ def test_a_frame_is_a_log_too() -> None:
     found = columns_of(pd.DataFrame({"t": [0, 1], "a": [1.5, None]}))
     with pytest.raises(CrankcheckError, match="the frame, row 1, column 'a': found nan"):
         found.numbers("a")
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        (pd.to_timedelta([0, 1], unit="s"), r"column 't': found durations .*give .* seconds"),
+        (pd.to_datetime([0, 1], unit="s"), r"column 't': found dates .*give .* seconds"),
+        (pd.to_datetime([0, 1], unit="s", utc=True), "column 't': found Timestamp"),
+        ([True, False], "column 't': found True, no number"),
+        ([1j, 2.0], "column 't': found 1j, no number"),
+    ],
+)
+def test_what_only_looks_like_numbers_is_told(values: object, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        columns_of(pd.DataFrame({"t": values})).numbers("t")

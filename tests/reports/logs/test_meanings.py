@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pandas as pd
 import pytest
 
 from analytic.kinematics import solve
+from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.compare.beside import Truth
@@ -24,7 +26,7 @@ CRANK, COUPLER, ROCKER = (MOTION.links[name] for name in ("crank", "coupler", "r
 TRUTH = Truth(SCENE)
 
 
-def log_of(columns: dict[str, object], **told: object) -> Log:
+def log_of(columns: Mapping[str, object], **told: object) -> Log:
     return understood(columns_of(pd.DataFrame(columns)), SCENE, map_of(told, "the map"))
 
 
@@ -175,6 +177,8 @@ def test_a_hole_that_is_meant_is_no_fault() -> None:
         ("[[channel]]\ncolumn = 'a'\nsigns = 1", "channel.1.signs: unknown key; did you mean sign"),
         ("[[channel]]\nof = 'a'", "channel.1.column: missing"),
         ("[[channel]]\ncolumn = 'a'\n[[channel]]\ncolumn = 'a'", "told twice"),
+        ("[[channel]]\ncolumn = 'a'\nwrapped = 'yes'", "wrapped: found 'yes'"),
+        ("[[channel]]\ncolumn = 'a'\nignore = 1", "ignore: found 1"),
         ("[file]\ndecimal = '!'", "file.decimal: found '!'"),
         ("x", "not valid TOML"),
     ],
@@ -183,3 +187,60 @@ def test_a_map_with_faults_is_refused(tmp_path: Path, text: str, words: str) -> 
     (tmp_path / "map.toml").write_text(text, encoding="utf-8")
     with pytest.raises(CrankcheckError, match=words):
         read_map(tmp_path / "map.toml")
+
+
+HUGE = np.full(400, 1e300)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"rocker_deg": HUGE}, "row 0, column 'rocker_deg': found 1e\\+300 deg; .* 1e\\+07 turns"),
+        ({"rocker_deg": HUGE * 1e-280}, "found 1e\\+20 deg; .* turns"),
+        ({"rocker": np.where(TIME_S > 1, -7e7, 0.0)}, "row 333, column 'rocker'"),
+        ({"C.x_mm": HUGE * 1e-281}, "row 0, column 'C.x_mm': found 1e\\+19 mm; .* 1e\\+15 m"),
+        ({"rocker_omega_rad_s": HUGE}, "column 'rocker_omega_rad_s': found 1e\\+300 rad/s"),
+        ({"rocker [rev]": HUGE * 1e8}, "found 1e\\+308 rev"),
+        ({"C_gap_m": HUGE}, "column 'C_gap_m': found 1e\\+300 m"),
+        ({"C_gap_ft": HUGE * 1e8}, "column 'C_gap_ft': found 1e\\+308 ft"),
+    ],
+)
+def test_a_reading_beyond_all_sense_is_refused(columns: dict[str, object], words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        log_of({"t": TIME_S, **columns})
+
+
+@pytest.mark.parametrize("column", ["velocity_time_s", "acceleration_time_s"])
+@pytest.mark.parametrize(
+    ("time_s", "words"),
+    [
+        (TIME_S[::-1], "row 1, column '{}': time goes back"),
+        (0 * TIME_S, "row 1, column '{}': time stands still"),
+        (TIME_S * 1e30, "column '{}': t = .* turns of crank after the start"),
+        (TIME_S[:, None].repeat(2, 1).ravel()[:400], "time stands still"),
+    ],
+)
+def test_times_of_rates_are_checked_as_those_of_rows(
+    column: str, time_s: Array, words: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=words.format(column)):
+        log_of({"t": TIME_S, column: time_s, "rocker": ROCKER.theta})
+
+
+def test_the_unit_of_times_is_what_the_map_says() -> None:
+    columns = {"time_ms [s]": TIME_S, "rocker": ROCKER.theta}
+    with pytest.raises(CrankcheckError, match="ms and s"):
+        log_of(columns)
+    assert worst(log_of(columns, time={"unit": "s"})) < 1e-12
+
+
+def test_a_channel_of_the_column_of_times_is_refused() -> None:
+    told = [{"column": "t", "of": "rocker", "kind": "angle"}]
+    with pytest.raises(CrankcheckError, match=r"'t': it is the column of times; say .* \[time\]"):
+        log_of({"t": TIME_S, "rocker": ROCKER.theta}, channel=told)
+
+
+def test_a_column_called_as_times_are_is_what_the_map_says_beside_one_that_it_names() -> None:
+    told = [{"column": "t", "of": "rocker", "kind": "angle", "unit": "rad"}]
+    log = log_of({"clock": TIME_S, "t": ROCKER.theta}, time={"column": "clock"}, channel=told)
+    assert worst(log) < 1e-12

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.logs.names import Meaning, Named, meaning, time_of
+from models.scene import Scene
+from reports.describe.frame import motion_frame
+from reports.logs.names import LENGTH, Meaning, Named, meaning, time_of
 
 FOURBAR = Named(load_scene("fourbar-lecture-1"))
 SLIDER_CRANK = Named(load_scene("slider-crank-central"))
@@ -44,6 +50,12 @@ SLIDER_CRANK = Named(load_scene("slider-crank-central"))
         ("xC [mm]", "C", "x", "mm"),
         ("vyC", "C", "vy", "m/s"),
         ("C_x_mm on coupler", "C", "x", "mm"),
+        ("rocker.rotation.z", "rocker", "angle", "rad"),
+        ("rocker.angular_velocity.z", "rocker", "angular velocity", "rad/s"),
+        ("rocker angular displacement [deg]", "rocker", "angle", "deg"),
+        ("/model/rocker.theta", "rocker", "angle", "rad"),
+        ("rocker angle/deg", "rocker", "angle", "deg"),
+        ("rocker omega/rad/s", "rocker", "angular velocity", "rad/s"),
     ],
 )
 def test_a_name_tells_body_kind_and_unit(column: str, body: str, kind: str, unit: str) -> None:
@@ -91,7 +103,17 @@ def test_a_gap_is_a_length() -> None:
 
 
 @pytest.mark.parametrize(
-    "column", ["temperature", "C_deg", "C_v_m_s", "rocker_deg_filtered", "a", "coupler_rocker_deg"]
+    "column",
+    [
+        "rocker.z",
+        "rocker_displacement_mm",
+        "temperature",
+        "C_deg",
+        "C_v_m_s",
+        "rocker_deg_filtered",
+        "a",
+        "coupler_rocker_deg",
+    ],
 )
 def test_nothing_is_made_of_what_a_name_does_not_say(column: str) -> None:
     assert isinstance(meaning(column, FOURBAR), str)
@@ -113,7 +135,20 @@ def test_units_that_contradict_are_refused(column: str, words: str) -> None:
 
 @pytest.mark.parametrize(
     ("column", "unit"),
-    [("time_s", "s"), ("time_ms", "ms"), ("t", "s"), ("t [ms]", "ms"), ("Time (sec)", "s")],
+    [
+        ("time_s", "s"),
+        ("time_ms", "ms"),
+        ("t", "s"),
+        ("t [ms]", "ms"),
+        ("Time (sec)", "s"),
+        ("simTime", "s"),
+        ("SimTime_s", "s"),
+        ("time in s", "s"),
+        ("t in s", "s"),
+        ("elapsed_time", "s"),
+        ("time in ms", "ms"),
+        ("time/s", "s"),
+    ],
 )
 def test_a_column_of_times_has_its_unit(column: str, unit: str) -> None:
     assert time_of(column) == ("time", unit)
@@ -122,3 +157,60 @@ def test_a_column_of_times_has_its_unit(column: str, unit: str) -> None:
 def test_velocities_may_have_times_of_their_own() -> None:
     assert time_of("velocity_time_s") == ("velocity time", "s")
     assert time_of("rocker_deg") is None
+
+
+def of_links(names: tuple[str, str, str]) -> Scene:
+    """The lecture's four-bar with other names of crank, coupler and rocker."""
+    told = dict(zip(("crank", "coupler", "rocker"), names, strict=True))
+    scene = load_scene("fourbar-lecture-1")
+    return replace(
+        scene,
+        links={told[name]: replace(link, name=told[name]) for name, link in scene.links.items()},
+        driver=replace(scene.driver, link=told[scene.driver.link]),
+    )
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("t", "time", "s"),
+        ("m", "deg", "rad"),
+        ("Rocker", "rocker", "ROCKER"),
+        ("gap", "slider", "rel"),
+        ("velocity_time_s", "time_s", "theta"),
+        ("A_x", "x", "A_x_m"),
+    ],
+)
+def test_our_own_names_are_understood_whatever_bodies_are_called(
+    names: tuple[str, str, str],
+) -> None:
+    scene = of_links(names)
+    named = Named(scene)
+    motion = solve(scene, np.linspace(0.0, 0.1, 3))
+    alone = replace(motion, links={}, points={}, sliders={}, bound=None)
+    parts = [(body, replace(alone, links={body: one})) for body, one in motion.links.items()]
+    parts += [(body, replace(alone, points={body: one})) for body, one in motion.points.items()]
+    for body, part in parts:
+        for column in (*motion_frame(part).columns[1:], f"{body}_gap_m"):
+            _is_of(body, column, named)
+            _is_of(body, f"{body}.{column[len(body) + 1 :]}", named)
+
+
+def _is_of(body: str, column: str, named: Named) -> None:
+    """Fail where a column of ours is not understood to be of that body."""
+    assert time_of(column) is None
+    found = meaning(column, named)
+    if column[len(body) + 1 :] in ("v_m_s", "a_m_s2"):
+        assert found == LENGTH
+    elif not column.endswith("gap_m") or body in named.points:
+        assert isinstance(found, Meaning)
+        assert (found.of, found.gap) == (body, column.endswith("gap_m"))
+
+
+def test_the_case_of_a_name_tells_bodies_apart() -> None:
+    named = Named(of_links(("Rocker", "rocker", "ROCKER")))
+    for body in ("Rocker", "rocker", "ROCKER"):
+        found = meaning(f"{body} angle [deg]", named)
+        assert isinstance(found, Meaning)
+        assert found.of == body
+    assert isinstance(meaning("rOcKer_deg", named), str)
