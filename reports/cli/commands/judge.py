@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from models.files import load_scene
+from models.files import find_scene, load_scene
 from reports.cli.own_log import JudgeRequest
 from reports.judge.tolerance import check_names, parse
 from reports.logs.columns import read_columns
@@ -17,7 +17,7 @@ from reports.logs.meanings import understood, wanted
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
-from reports.output.write import check_file, write
+from reports.output.write import check_file, check_outputs, write
 from reports.own_log.drives import chosen_drive
 from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
 from reports.own_log.junit import suite
@@ -58,14 +58,13 @@ def _checked(request: JudgeRequest) -> LogRequest:
     """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
-    for option, path, endings in (
-        ("--write-map", request.write_map, (".toml",)),
-        ("--json", request.json, ()),
-        ("--junit", request.junit, ()),
-        ("-o", request.output, (".html",)),
-    ):
+    endings = {"--write-map": (".toml",), "-o": (".html",)}
+    files = {"--write-map": request.write_map, "-o": request.output}
+    for option, path in files.items():
         if path is not None:
-            check_file(path, option, endings)
+            check_file(path, option, endings[option])
+    files |= {"--json": request.json, "--junit": request.junit}
+    check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     return LogRequest(
