@@ -44,6 +44,13 @@ Name = Annotated[str, Field(min_length=1, max_length=400)]
 KIND_NAMES = (*dict.fromkeys(name for _, name in KINDS), "gap")
 LEFT_OUT = "the map leaves it out"
 """Why a column is not used that a map has ignored."""
+HEAD = (
+    "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
+    "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
+    "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
+    "# A reading is sign * (number + offset); ignore = true leaves a column out.",
+)
+"""What stands on top of a map that is written."""
 
 
 class Table(BaseModel):
@@ -150,43 +157,56 @@ def _check_words(map_: Map, place: str) -> None:
 def map_text(log: Log, file: FileTable) -> str:
     """The map of a log as its columns were understood, with what was not as remarks, and what the
     map that it was read by says of the file."""
-    told = file.model_dump(exclude_defaults=True)
-    head = ["[file]", *(f"{key} = {_text(value)}" for key, value in told.items()), ""]
     lines = [
-        "# What the columns of the log mean: `crankcheck judge SCENE LOG --map` and this file.",
-        "# kinds: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax, ay of",
-        "# a point; displacement, speed, acceleration of a slider; gap of a pin or slider.",
-        "# A reading is sign * (number + offset); ignore = true leaves a column out.",
+        *HEAD,
         "",
-        *(head if told else []),
+        *file_lines(file),
         "[time]",
-        f"column = {_text(log.stamp[0])}",
-        f"unit = {_text(log.stamp[1])}",
+        f"column = {toml_text(log.stamp[0])}",
+        f"unit = {toml_text(log.stamp[1])}",
     ]
     if log.zero_s:
         lines.append('zero = "first"')
     for reading in (*log.readings, *log.copies):
         lines += ["", "[[channel]]", *_channel(reading.channel)]
     for gap in log.gaps:
-        lines += ["", "[[channel]]", f"column = {_text(gap.column)}", f"of = {_text(gap.of)}",
-                  'kind = "gap"', f"unit = {_text(gap.unit)}"]  # fmt: skip
+        lines += ["", "[[channel]]", f"column = {toml_text(gap.column)}"]
+        lines += [f"of = {toml_text(gap.of)}", 'kind = "gap"', f"unit = {toml_text(gap.unit)}"]
     for column, reason in log.unused:
         if reason == LEFT_OUT:
-            lines += ["", "[[channel]]", f"column = {_text(column)}", "ignore = true"]
+            lines += ["", "[[channel]]", f"column = {toml_text(column)}", "ignore = true"]
             continue
         lines += ["", f"# {' '.join(reason.split())}", "# [[channel]]",
-                  f"# column = {_text(column)}"]  # fmt: skip
+                  f"# column = {toml_text(column)}"]  # fmt: skip
         lines += ['# of = ""', '# kind = ""', '# unit = ""']
     return "\n".join(lines) + "\n"
+
+
+def file_lines(file: FileTable) -> Sequence[str]:
+    """What a map says of the file as lines of TOML, none where it says nothing."""
+    told = file.model_dump(exclude_defaults=True)
+    head = ["[file]", *(f"{key} = {toml_text(value)}" for key, value in told.items()), ""]
+    return head if told else []
+
+
+def told_lines(told: ChannelTable) -> Sequence[str]:
+    """What a map says of a column, as lines of TOML."""
+    lines = ["[[channel]]"]
+    for key, value in told.model_dump(exclude_defaults=True).items():
+        if isinstance(value, bool):
+            lines.append(f"{key} = {'true' if value else 'false'}")
+        else:
+            lines.append(f"{key} = {toml_text(value) if isinstance(value, str) else repr(value)}")
+    return lines
 
 
 def _channel(channel: Channel) -> Sequence[str]:
     """A channel as lines of TOML, without what is as it is by default."""
     lines = [
-        f"column = {_text(channel.column)}",
-        f"of = {_text(channel.of)}",
-        f"kind = {_text(channel.kind.name)}",
-        f"unit = {_text(channel.unit)}",
+        f"column = {toml_text(channel.column)}",
+        f"of = {toml_text(channel.of)}",
+        f"kind = {toml_text(channel.kind.name)}",
+        f"unit = {toml_text(channel.unit)}",
     ]
     if channel.sign != 1:
         lines.append(f"sign = {channel.sign}")
@@ -195,13 +215,13 @@ def _channel(channel: Channel) -> Sequence[str]:
     if channel.kind.turns:
         lines.append(f"wrapped = {'true' if channel.wrapped else 'false'}")
     texts = {key: getattr(channel, key) for key in ("relative_to", "on", "time")}
-    lines += [f"{key} = {_text(value)}" for key, value in texts.items() if value]
+    lines += [f"{key} = {toml_text(value)}" for key, value in texts.items() if value]
     if channel.delay_s:
         lines.append(f"delay_s = {channel.delay_s!r}")
     return lines
 
 
-def _text(value: str) -> str:
+def toml_text(value: str) -> str:
     """A basic string of TOML; JSON escapes what that does."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 

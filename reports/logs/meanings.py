@@ -81,7 +81,8 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
     channels, copies, spare = _slots(channels, scene)
     unused += spare
     if not (channels or gaps):
-        raise CrankcheckError(_nothing(columns, scene, unused))
+        in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
+        raise CrankcheckError(f"{_nothing(columns, scene, unused)} {in_python}")
     main = times["time"]
     base = instants(columns, main, _unit_of_time(main, map_), holes=map_.file.holes == "meant")
     zero_s = float(base[0]) if map_.time.zero else 0.0

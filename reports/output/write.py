@@ -108,10 +108,15 @@ def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
 
 
 def check_outputs(
-    files: Mapping[str, Path | None], folder: Path | None = None, names: Sequence[str] = ()
+    files: Mapping[str, Path | None],
+    folder: Path | None = None,
+    names: Sequence[str] = (),
+    *,
+    inputs: Iterable[Path | None] = (),
 ) -> None:
     """Refuse files, by their options, and ``names`` in the folder of -o, that could not be written,
-    and two of all these that are one file. Raises CrankcheckError."""
+    two of all these that are one file, and one that is read (``inputs``). Raises CrankcheckError.
+    """
     outputs = [(option, path) for option, path in files.items() if path is not None]
     for option, path in outputs:
         check_file(path, option)
@@ -128,6 +133,21 @@ def check_outputs(
                 f"{taken[real]} and {option}: both name {path}; give each a file of its own"
             )
         taken[real] = option
+        if not several:
+            _refuse_input(path, option, inputs)
+
+
+def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> None:
+    """Refuse to write over a file that is read. Raises CrankcheckError."""
+    for read in inputs:
+        try:
+            same = read is not None and read.samefile(path)
+        except (OSError, ValueError):  # one of them is not there, which whoever reads it says
+            same = False
+        if same:
+            raise CrankcheckError(
+                f"{option} {path}: that is {read}, which is read; name another file"
+            )
 
 
 @contextlib.contextmanager

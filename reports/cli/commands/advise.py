@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
-from models.files import parse_scene, scene_texts
+from models.files import find_scene, parse_scene, scene_texts
 from models.scene import Scene
 from reports.advise.advice import Advice, offers
 from reports.advise.choices import choices
@@ -39,7 +39,7 @@ def run_advise(request: AdviseRequest, console: Console, progress: Console) -> i
     scenes, texts = _scenes(request, stored)
     demand = demanded(scenes, request.speed, request.dt_s, request.target, request.turns)
     engines = chosen_engines(request.engines)
-    check_outputs({"--json": request.json})
+    check_outputs({"--json": request.json}, inputs=[find_scene(name) for name in request.scenes])
     every = lines(stored) if stored else ()
     wanted = choices(engines, stored_choices(every))
     known = evidence(stored, every, demand, texts, wanted) if stored else Evidence()

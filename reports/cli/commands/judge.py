@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
-from models.files import load_scene
+from models.files import find_scene, load_scene
+from models.scene import Scene
 from reports.cli.own_log import JudgeRequest
 from reports.judge.tolerance import check_names, parse
+from reports.logs.blank_map import blank_map
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, map_text, read_map
 from reports.logs.meanings import understood, wanted
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
-from reports.output.write import check_file, write
+from reports.output.write import check_file, check_outputs, write
 from reports.own_log.drives import chosen_drive
 from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
 from reports.own_log.junit import suite
@@ -35,13 +38,12 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     scene = load_scene(request.scene)
     check_names(scene)
     map_ = read_map(request.map) if request.map else Map()
+    if request.write_map is not None:
+        told = f"{request.write_map}: {_write_map(request.write_map, request.log, scene, map_)}"
+        console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
+        return 0
     # No name for the columns, which take as much memory as all readings: let go when understood.
     log = understood(read_columns(request.log, map_.layout, wanted(scene, map_)), scene, map_)
-    if request.write_map is not None:
-        write(request.write_map, map_text(log, map_.file))
-        told = harmless(f"{request.write_map}: what {request.log} says, as it was understood")
-        console.print(told, highlight=False, markup=False)
-        return 0
     judged = judge_log(log, asked)
     facts = provenance({})
     try:
@@ -58,14 +60,13 @@ def _checked(request: JudgeRequest) -> LogRequest:
     """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
-    for option, path, endings in (
-        ("--write-map", request.write_map, (".toml",)),
-        ("--json", request.json, ()),
-        ("--junit", request.junit, ()),
-        ("-o", request.output, (".html",)),
-    ):
+    endings = {"--write-map": (".toml",), "-o": (".html",)}
+    files = {"--write-map": request.write_map, "-o": request.output}
+    for option, path in files.items():
         if path is not None:
-            check_file(path, option, endings)
+            check_file(path, option, endings[option])
+    files |= {"--json": request.json, "--junit": request.junit}
+    check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     return LogRequest(
@@ -74,6 +75,25 @@ def _checked(request: JudgeRequest) -> LogRequest:
         drive=chosen_drive(request.drive),
         require=request.require,
     )
+
+
+def _write_map(path: Path, log: Path, scene: Scene, map_: Map) -> str:
+    """Write the map of a log, or a form of it to be filled in; returns what that is.
+
+    Raises CrankcheckError for a log that no map alone can mend.
+    """
+    columns = read_columns(log, map_.layout, wanted(scene, map_))
+    try:
+        text = map_text(understood(columns, scene, map_), map_.file)
+    except CrankcheckError:
+        blank = blank_map(columns, scene, map_)
+        if blank is None:
+            raise
+        text, lacks = blank
+        write(path, text)
+        return f"the columns of {log}, to be filled in: {lacks}; then judge with --map {path}"
+    write(path, text)
+    return f"what {log} says, as it was understood"
 
 
 def _write(request: JudgeRequest, judged: JudgedLog, facts: Mapping[str, str]) -> None:

@@ -7,10 +7,11 @@ import shlex
 from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
+from models.files import find_scene
 from reports.cli.showing import RunRequest
 from reports.face.simulation import Simulation, simulated
 from reports.output.frame_file import ENDINGS, write_frame
-from reports.output.write import check_file
+from reports.output.write import check_file, check_outputs
 from sim.registry import FIRST
 
 
@@ -23,6 +24,7 @@ def run_run(request: RunRequest, console: Console) -> int:
     """
     if request.output is not None:
         check_file(request.output, "-o", ENDINGS)
+        check_outputs({"-o": request.output}, inputs=[find_scene(request.scene)])
     done = simulated(
         request.scene,
         FIRST if request.engine is None else request.engine,

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
+from models.files import find_scene
 from reports.cli.checking import VerifyRequest
 from reports.diff.junit import suite as diff_suite
 from reports.diff.terminal import show as show_diff
@@ -55,7 +56,8 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     to be run. Raises CrankcheckError for what can be told of the request before running."""
     cells = plan(request)
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    check_outputs(files, request.folder, IN_FOLDER)
+    read = [find_scene(name) for name in request.scenes]
+    check_outputs(files, request.folder, IN_FOLDER, inputs=read)
     kept = request.baseline or request.folder or request.json
     digests = scene_digests(request.scenes) if kept else {}
     for note in passages(cells):
