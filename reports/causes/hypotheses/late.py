@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed
 from reports.causes.account import CAUSE, NUMBER, Account
@@ -26,6 +26,8 @@ SAME = 0.02
 """Delays of which one differs by less than this part of itself, or of a sample, may be one."""
 MOST_PERIODS = 0.75
 GROUPS = 8
+MOSTLY = 0.7
+"""The part of the readings that a delay has to be of."""
 LEAST_SAMPLES = 0.05
 """A delay of less is none that a log within its limits is told of."""
 CLEAR = 5.0
@@ -104,7 +106,8 @@ class Search:
         """The error of readings that belong ``by_s`` later. Raises CrankcheckError."""
         world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
         channel = excerpt.channel
-        return excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
+        error = excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
+        return np.where(_logged(excerpt, by_s), error, 0.0)
 
     def _scan(self, column: str) -> Sequence[float]:
         """The two delays within half a period of which the least is left of an error."""
@@ -131,6 +134,15 @@ class Search:
         return self._scans[by_s]
 
 
+def _logged(excerpt: Excerpt, by_s: float) -> Mask:
+    """Where readings that belong ``by_s`` later belong to an instant of the log: what shifts a
+    channel has nothing for the others, and holds a reading there, or takes it from the other end.
+    All, where these are most."""
+    instants = excerpt.instants + by_s
+    there = (instants >= excerpt.instants[0]) & (instants <= excerpt.instants[-1])
+    return there if np.mean(there) >= MOSTLY else np.ones_like(there)
+
+
 def _groups(delays: Sequence[Delay], step_s: float) -> list[list[Delay]]:
     """Delays that may be one, each group around its surest."""
     groups: list[list[Delay]] = []
@@ -154,7 +166,12 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         expected = inquiry.expected(world)
     except CrankcheckError:
         return None
-    errors = {column: inquiry.excerpts[column].beside(each) for column, each in expected.items()}
+    errors = {
+        column: np.where(
+            _logged(inquiry.excerpts[column], by_s), inquiry.excerpts[column].beside(each), 0.0
+        )
+        for column, each in expected.items()
+    }
     advised: list[str] = []
     if abs(by_s) >= LEAST_SAMPLES * inquiry.step_s:
         advised = [c for c in _doubtful(inquiry) if _clearly(inquiry.excerpts[c], errors[c])]

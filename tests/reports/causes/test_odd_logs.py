@@ -64,6 +64,19 @@ def test_another_start_and_another_speed_are_both_told() -> None:
     assert cause.left < 1e-6
 
 
+@pytest.mark.parametrize("shift", [12, -12, 40])
+@pytest.mark.parametrize("ends", ["held", "from the other end"])
+def test_a_delay_is_one_whatever_stands_where_it_had_no_readings(shift: int, ends: str) -> None:
+    rocker = solve(load_scene(FOURBAR), TIME_S).links["rocker"].theta
+    places = np.arange(TIME_S.size) - shift
+    late = rocker[np.clip(places, 0, TIME_S.size - 1) if ends == "held" else places % TIME_S.size]
+    one = judged(FOURBAR, {"time_s": TIME_S, "rocker_rad": late})
+    (cause,) = one.causes
+    assert cause.name == "delay"
+    assert f"{abs(shift)}.00 samples" in cause.text or f" {abs(shift)}.0 samples" in cause.text
+    assert ("earlier" if shift > 0 else "later") in cause.text
+
+
 def test_noise_has_no_cause() -> None:
     rocker = solve(load_scene(FOURBAR), TIME_S).links["rocker"].theta
     noise = 0.01 * np.random.default_rng(1).normal(size=TIME_S.size)
