@@ -21,7 +21,7 @@ from models.errors import CrankcheckError, cut, suggestion
 from models.regular import UnreadableError, regular_bytes
 from models.samples import NO_NUMBERS
 from reports.logs.extent import refuse_columns, refuse_rows
-from reports.logs.text import Layout, text_columns
+from reports.logs.text import COMMA, Layout, text_columns
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
@@ -29,7 +29,9 @@ MOST_SHEET_BYTES = 400_000_000
 """Of a workbook when it is unpacked."""
 MOST_CELLS = 20_000_000
 """Of a sheet, from the first to the last."""
-COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*")
+
+FORTRAN = re.compile(r"[-+]?[\d.]+d[-+]?\d+", re.IGNORECASE)
+"""A double of Fortran: 1.5D-3."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,10 @@ class Columns:
 
 def _cure(cell: object) -> str:
     """What would make a number of a cell."""
-    if isinstance(cell, str) and COMMA.fullmatch(cell):
+    if isinstance(cell, str) and COMMA.fullmatch(cell.strip()):
         return "write decimal points, or say decimal = ',' in [file] of the map"
+    if isinstance(cell, str) and FORTRAN.fullmatch(cell.strip()):
+        return "write e for the d of the exponent"
     return "write numbers alone, or leave the column out ([[channel]] ignore = true)"
 
 
@@ -172,7 +176,6 @@ def _of_table(source: str, tables: list[pa.Table], first: int = 1) -> Columns:
     as soon as it is an array, as a long log would be in memory twice. Text stays text."""
     table = tables.pop()
     rows, names = table.num_rows, [str(name) for name in table.column_names]
-    _refuse_twins(names, f"log {source}")
     if rows == 0:
         raise UnreadableError("a header and no rows; a log has rows of numbers")
     parts = table.columns[::-1]

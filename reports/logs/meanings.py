@@ -27,7 +27,7 @@ DIGITS = 2e-3
 
 
 @dataclass(frozen=True)
-class _Gap:
+class _GapColumn:
     """A column that says how far the bodies at a pin or slider are apart."""
 
     column: str
@@ -64,7 +64,7 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
             )
     named = Named(scene)
     channels: list[Channel] = []
-    gaps: list[_Gap] = []
+    gaps: list[_GapColumn] = []
     unused: list[tuple[str, str]] = []
     for column in columns.raw:
         if column in times.values():
@@ -72,7 +72,7 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
         found = _meaning(column, told.get(column), named, times)
         if isinstance(found, str):
             unused.append((column, found))
-        elif isinstance(found, _Gap):
+        elif isinstance(found, _GapColumn):
             gaps.append(found)
         else:
             channels.append(found)
@@ -148,7 +148,7 @@ class _Reader:
         return Reading(channel, np.asarray(values), own)
 
 
-def _refuse_huge(columns: Columns, of: Channel | _Gap, values: Array) -> None:
+def _refuse_huge(columns: Columns, of: Channel | _GapColumn, values: Array) -> None:
     """Refuse readings [SI] beyond all sense: of an angle its place within a turn would be lost.
     Raises CrankcheckError."""
     angle = isinstance(of, Channel) and of.kind.turns
@@ -220,7 +220,7 @@ def _stamp(columns: Columns, column: str, zero_s: float, scene: Scene) -> Array:
 
 def _meaning(
     column: str, told: ChannelTable | None, named: Named, times: dict[str, str]
-) -> Channel | _Gap | str:
+) -> Channel | _GapColumn | str:
     """What a column is, or why nothing is made of it. Raises CrankcheckError."""
     if told and told.ignore:
         return LEFT_OUT
@@ -246,7 +246,7 @@ def _channel(
     found: Meaning,
     named: Named,
     times: dict[str, str],
-) -> Channel | _Gap:
+) -> Channel | _GapColumn:
     """A channel of what the name says and the map corrects. Raises CrankcheckError."""
     told = told or ChannelTable.model_construct(column=column)
     where = f"[[channel]] {column!r}"
@@ -256,7 +256,7 @@ def _channel(
         hint = suggestion(of, [n for n in named.bodies if n != "ground"], "the scene has")
         raise CrankcheckError(f"{where}, of: {of!r} is not in scene {named.scene.name}; {hint}")
     if (told.kind or ("gap" if found.gap else "")) == "gap":
-        return _Gap(column, of, told.unit or found.unit or "m")
+        return _GapColumn(column, of, told.unit or found.unit or "m")
     if told.kind is not None:
         kind = next((KINDS[k, told.kind] for k in kinds if (k, told.kind) in KINDS), None)
     else:
@@ -362,7 +362,7 @@ def _slots(
     return sorted(main, key=lambda one: place[one.column]), copies, spare
 
 
-def _gaps(columns: Columns, gaps: Iterable[_Gap]) -> tuple[Gap, ...]:
+def _gaps(columns: Columns, gaps: Iterable[_GapColumn]) -> tuple[Gap, ...]:
     """The gaps that a log tells itself. Raises CrankcheckError for two of one pin."""
     found: list[Gap] = []
     for gap in gaps:

@@ -168,3 +168,9 @@ def test_a_frame_is_a_log_too() -> None:
 def test_what_only_looks_like_numbers_is_told(values: object, words: str) -> None:
     with pytest.raises(CrankcheckError, match=words):
         columns_of(pd.DataFrame({"t": values})).numbers("t")
+
+
+def test_an_exponent_that_is_no_number_here_is_told_by_row_and_column(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t,a\n0,1.5D-3\n1,2D0\n"))
+    with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1.5D-3', .*write e for"):
+        found.numbers("a")
