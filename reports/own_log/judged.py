@@ -18,7 +18,8 @@ from reports.compare.errors import Error, Errors
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
-from reports.judge.tolerance import DEFAULTS, Limit, limits
+from reports.judge.rules.start import start_limit
+from reports.judge.tolerance import DEFAULTS, Limit, in_passage, limits
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking, readings_of
 from reports.logs.channel import Log
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
@@ -120,7 +121,7 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         step_s=request.step_s,
         fit=fit,
         findings=(*_findings(evidence, request), *_absent(required, not_judged, errors)),
-        causes=causes(Case(log, truth, _by_column(log, errors, chosen))) if sound else (),
+        causes=causes(Case(log, truth, _by_column(log, evidence, errors))) if sound else (),
         not_judged=not_judged,
         notes=_notes(errors) if sound else (NO_FIT,),
     )
@@ -173,16 +174,33 @@ def _limits(scene: Scene, errors: Errors, request: LogRequest) -> dict[str, Limi
     return {name: told.get(name, Limit(math.inf, "none")) for name in DEFAULTS}
 
 
-def _by_column(log: Log, errors: Errors, chosen: Mapping[str, Limit]) -> dict[str, float]:
-    """What the error of each column may be [SI]."""
-    found: dict[str, float] = {}
+def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
+    """What an error of a log is held to: at the start, and near change points, to limits of their
+    own."""
+    limit = evidence.limits[error.tolerance]
+    if error.kind == "passage":
+        return in_passage(error.tolerance, limit, errors)
+    if error.kind == "start":
+        return Limit(start_limit(error.tolerance, evidence, errors), f"{limit.origin} at the start")
+    return limit
+
+
+def _by_column(log: Log, evidence: Evidence, errors: Errors) -> dict[str, float]:
+    """What the error of each column may be [SI]: the least limit that it is over, or the largest
+    where it is over none."""
+    over: dict[str, list[float]] = {}
+    under: dict[str, list[float]] = {}
     for row in errors.rows:
-        if (row.source, row.kind) == ("reported", "geometric") or row.source != "reported":
+        if row.source != "reported" or row.kind == "geometric":
             continue
+        limit = limit_of(row, evidence, errors).number
         for reading in readings_of(log, row.quantity, row.body):
             if reading.channel.kind.body_kind == row.body_kind or row.quantity == "drive":
-                found[reading.channel.column] = chosen[row.tolerance].number * row.scale
-    return found
+                side = under if row.pure <= limit else over
+                side.setdefault(reading.channel.column, []).append(limit * row.scale)
+    return {column: max(each) for column, each in under.items()} | {
+        column: min(each) for column, each in over.items()
+    }
 
 
 def _required(scene: Scene, name: str) -> tuple[str, str, str]:

@@ -9,13 +9,12 @@ from typing import Literal
 
 from models.errors import cut, harmless
 from reports.compare.errors import Error
-from reports.judge.rules.start import start_limit
-from reports.judge.tolerance import Limit, in_passage
+from reports.judge.tolerance import Limit
 from reports.logs.beside_truth import readings_of
 from reports.logs.channel import Reading
 from reports.logs.units import UNITS
 from reports.output.numbers import error_text
-from reports.own_log.judged import JudgedLog
+from reports.own_log.judged import JudgedLog, limit_of
 from reports.quantities import QUANTITIES
 
 LONGEST = 60
@@ -77,12 +76,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
     for error in errors.rows:
         if error.kind not in KINDS:
             continue
-        limit = judged.limits[error.tolerance]
-        if error.kind == "passage":
-            limit = in_passage(error.tolerance, limit, errors)
-        elif error.kind == "start":
-            number = start_limit(error.tolerance, judged, errors)
-            limit = Limit(number, f"{limit.origin} at the start")
+        limit = limit_of(error, judged, errors)
         read = [
             each
             for each in readings_of(judged.log, error.quantity, error.body)
