@@ -37,8 +37,8 @@ class JudgedLog(Evidence):
     """A log with what came of it.
 
     ``beside`` is what was compared, ``fit`` what moves its truth where that was fitted. ``causes``
-    explain what is out of tolerance, and say what is late in any case; ``not_judged`` is what the
-    scene has and the log has not; ``notes`` are worth knowing.
+    explain what is out of tolerance, and delays that are within it; ``not_judged`` is what the scene
+    has and the log has not; ``notes`` are worth knowing.
     """
 
     log: Log
@@ -93,9 +93,11 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
     assert errors is not None
     errors = _of_what_is_held(errors)
     if not errors.rows:
+        held = [each.channel.name for each in log.readings]
+        held += [f"gap of {gap.of} (a gap is of a pin or a slider)" for gap in log.gaps]
         raise CrankcheckError(
             f"{log.source}: nothing in it is judged with --drive {request.drive}: it holds "
-            f"{few((each.channel.name for each in log.readings), 6)}"
+            f"{few(held, 6)}"
         )
     not_judged = lacking(log, beside)
     absent = _absent(log.scene, required, not_judged, errors)

@@ -13,6 +13,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.judge.rules import RULES
 from reports.logs.columns import columns_of
+from reports.logs.map_file import map_of
 from reports.logs.meanings import understood
 from reports.own_log.drives import moved
 from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
@@ -179,3 +180,10 @@ def test_the_reference_itself_is_within_and_says_so() -> None:
     one = judged({"rocker": ROCKER.theta})
     assert one.verdict == "within"
     assert "compared with itself" in one.notes[0]
+
+
+def test_the_gap_of_a_link_is_named_where_nothing_is_judged() -> None:
+    told = map_of({"channel": [{"column": "open", "of": "rocker", "kind": "gap"}]}, "map")
+    frame = pd.DataFrame({"t": TIME_S, "open": 1e-6 * TIME_S})
+    with pytest.raises(CrankcheckError, match=r"it holds gap of rocker .a gap is of a pin"):
+        judge_log(understood(columns_of(frame), SCENE, told), LogRequest(target={EVERY: 1e-3}))
