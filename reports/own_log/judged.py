@@ -37,8 +37,8 @@ class JudgedLog(Evidence):
     """A log with what came of it.
 
     ``beside`` is what was compared, ``fit`` what moves its truth where that was fitted. ``causes``
-    explain what is out of tolerance, and delays that are within it; ``not_judged`` is what the scene
-    has and the log has not; ``notes`` are worth knowing.
+    explain what is out of tolerance, and delays that are within it; ``not_judged`` is what the
+    scene has and the log has not; ``notes`` are worth knowing.
     """
 
     log: Log
