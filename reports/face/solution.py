@@ -26,6 +26,8 @@ SAMPLES = 361
 """Instants of a period, both ends included, where none are given: as in a file of the command."""
 ROWS = 13
 """Samples that are printed."""
+MOST_TURNS = 1e7
+"""Beyond, too few digits of an angle are left to say where in its turn the driver is."""
 Names = str | Iterable[str] | None
 
 
@@ -111,7 +113,20 @@ def solve(
         sliders=sliders,
         bound=is_true(bound, "bound"),
     )
+    _refuse_far(scene, motion)
     return Solution(**vars(motion), scene=scene)
+
+
+def _refuse_far(scene: Scene, motion: Motion) -> None:
+    """Refuse times so late that the place within a turn is lost. Raises CrankcheckError."""
+    far_s = float(np.max(np.abs(motion.time_s), initial=0.0))
+    turns = far_s / scene.driver.law.period_s
+    if turns > MOST_TURNS:
+        raise CrankcheckError(
+            f"time_s: t = {far_s:.6g} s is {turns:.3g} turns of {scene.name}, and at most "
+            f"{MOST_TURNS:g} leave the digits that tell where in a turn it is; "
+            "give times in seconds"
+        )
 
 
 @told_at_the_call

@@ -110,7 +110,13 @@ def sweep(
     CrankcheckError
         What can be told of the arguments before running; a folder that is not to be written.
     """
-    from reports.face.sweep_arguments import command_of, numbers_of, overrides_of, scene_names
+    from reports.face.sweep_arguments import (
+        command_of,
+        numbers_of,
+        overrides_of,
+        refuse_empty_lists,
+        scene_names,
+    )
     from reports.output.console import terminal
     from reports.plan.chosen import chosen_engines
     from reports.plan.chosen_study import Choice, chosen_study
@@ -119,6 +125,8 @@ def sweep(
     from reports.workers.isolated import checked_limits
 
     where = path_of(folder, "folder")
+    chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
+    refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
     limits = checked_limits(
         positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
@@ -15,6 +15,19 @@ from reports.face.arguments import each_of, kind_of, path_of, scene_of, setting_
 from reports.plan.chosen_study import Choice, Overrides, refuse_other_engine
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
+
+
+def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
+    """Refuse lists and the like without anything in them: () alone leaves what the study has.
+
+    Raises CrankcheckError that names the argument.
+    """
+    for name, value in arguments.items():
+        if isinstance(value, Sized) and not isinstance(value, str | tuple) and len(value) == 0:
+            raise CrankcheckError(
+                f"{name}: found nothing in it ({kind_of(value)}); give at least one, or () for "
+                "those of the study"
+            )
 
 
 def scene_names(scenes: object, kept: ExitStack) -> list[str]:

@@ -42,7 +42,7 @@ class JudgedLog(Evidence):
     """A log with what came of it.
 
     ``beside`` is what was compared, ``fit`` what moves its truth where that was fitted. ``causes``
-    explain what is out of tolerance, and say what is late in any case; ``not_judged`` is what the
+    explain what is out of tolerance, and delays that are within it; ``not_judged`` is what the
     scene has and the log has not; ``notes`` are worth knowing.
     """
 
@@ -98,10 +98,14 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
     assert errors is not None
     errors = _of_what_is_held(errors)
     if not errors.rows:
+        held = [each.channel.name for each in log.readings]
+        held += [f"gap of {gap.of} (a gap is of a pin or a slider)" for gap in log.gaps]
         raise CrankcheckError(
             f"{log.source}: nothing in it is judged with --drive {request.drive}: it holds "
-            f"{few((each.channel.name for each in log.readings), 6)}"
+            f"{few(held, 6)}"
         )
+    not_judged = lacking(log, beside)
+    absent = _absent(log.scene, required, not_judged, errors)
     chosen = _limits(beside.scene, errors, request)
     departure = errors.departure
     evidence = Evidence(
@@ -110,8 +114,8 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         stopped_at_s=float(log.time_s[-1]),
         errors=errors,
         limits=chosen,
+        absent=absent if required else None,
     )
-    not_judged = lacking(log, beside)
     sound = fit is None or fit.explains
     return JudgedLog(
         **vars(evidence),
@@ -120,7 +124,7 @@ def judge_log(log: Log, request: LogRequest) -> JudgedLog:
         drive=request.drive,
         step_s=request.step_s,
         fit=fit,
-        findings=(*_findings(evidence, request), *_absent(required, not_judged, errors)),
+        findings=_findings(evidence, request),
         causes=causes(Case(log, truth, _by_column(log, evidence, errors))) if sound else (),
         not_judged=not_judged,
         notes=_notes(errors) if sound else (NO_FIT,),
@@ -226,23 +230,36 @@ def _required(scene: Scene, name: str) -> tuple[str, str, str]:
 
 
 def _absent(
-    required: Iterable[tuple[str, str, str]], not_judged: Sequence[str], errors: Errors
-) -> list[Finding]:
-    """A failure for each name that is required and not in the log: of a quantity every body, of a
-    body anything."""
-    held = {row.body for row in errors.rows}
+    scene: Scene,
+    required: Iterable[tuple[str, str, str]],
+    not_judged: Sequence[str],
+    errors: Errors,
+) -> tuple[str, ...]:
+    """Each name that is required and not in the log, with what is lacking: of a quantity every
+    body, of a body anything. Raises CrankcheckError for what is judged in no log."""
+    held = {(row.quantity, row.body) for row in errors.rows}
     found = []
     for name, quantity, body in required:
         lacks = [
-            each
+            each.replace("drive of", "angle of")
             for each in not_judged
             if (not quantity or each.startswith(f"{quantity} of "))
             and (not body or each.endswith(f" of {body}"))
         ]
-        if lacks and (quantity or body not in held):
-            text = f"--require {name}: not in the log: {few(lacks, 6)}"
-            found.append(Finding("CC109", "fail", text, float(len(lacks)), 0.0))
-    return found
+        there = any(quantity in ("", q) and body in ("", b) for q, b in held)
+        if not (lacks or there):
+            none = f"{body or scene.name} has none"
+            why = "a point of the ground does not move" if body in scene.ground else none
+            raise CrankcheckError(f"--require {name}: {why}, so that is not judged; leave it out")
+        if not lacks or (there and not quantity):
+            continue
+        if body in scene.ground:
+            found.append(f"{few(lacks, 6)} (a point of the ground is not judged else)")
+        elif lacks == [name] or body:
+            found.append(few(lacks, 6))
+        else:
+            found.append(f"{name} ({few(lacks, 6)})")
+    return tuple(found)
 
 
 def _notes(errors: Errors) -> tuple[str, ...]:

@@ -71,6 +71,11 @@ def counted(
             f"engine takes up its pins in the first {SETTLING}, so a run has at least "
             f"{least}: take {least / per_turn:.3g} turns or more, or a shorter step"
         )
+    if every > math.ceil(steps):
+        raise CrankcheckError(
+            f"--every {every}: the run of {scene.name} has {math.ceil(steps)} steps, so that none "
+            "is logged but the start; log more of them, or take more turns"
+        )
     return dt_s or period / per_turn, math.ceil(steps)
 
 

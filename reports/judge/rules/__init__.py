@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from reports.judge.rules.limits import LIMITS
-from reports.judge.rules.log import AsAsked, LogComplete, StatusOk, ValuesFinite
+from reports.judge.rules.log import AsAsked, LogComplete, Required, StatusOk, ValuesFinite
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.shrinking import ErrorShrinks
@@ -24,6 +24,7 @@ _ALL: tuple[Rule, ...] = (
     StartWithin(),
     AsAsked(),
     ErrorSmooth(),
+    Required(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")

@@ -1,5 +1,5 @@
-"""CC101, CC109, CC115, CC117: the run is the one asked for, came to its end, and its log is whole
-and made of numbers."""
+"""CC101, CC109, CC115, CC117, CC119: the run is the one asked for, came to its end, and its log is
+whole, made of numbers, and holds what is required."""
 
 from __future__ import annotations
 
@@ -87,3 +87,21 @@ class AsAsked:
         if faults:
             return Finding(self.id, "fail", "; ".join(faults), float(len(faults)), 0.0)
         return Finding(self.id, "pass", "the runs are those that were asked for")
+
+
+class Required:
+    id = "CC119"
+    title = "required"
+    explanation = (
+        "What a log does not hold is not judged, and no failure; what was required of it has to be "
+        "there."
+    )
+    cure = "Log what is named, or leave it out of --require."
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        if evidence.absent is None:
+            return None
+        if evidence.absent:
+            text = f"not in the log: {'; '.join(evidence.absent)}"
+            return Finding(self.id, "fail", text, float(len(evidence.absent)), 0.0)
+        return Finding(self.id, "pass", "all that is required is in the log")

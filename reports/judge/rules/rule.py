@@ -24,7 +24,8 @@ class Evidence:
     cell that is not ``gated`` is shown only. ``placing`` and ``order`` are the engine's
     (`sim.engine.Engine`); ``unasked`` says what of the run, and of the finer ones, is not as it was
     asked for, None where there is no run. ``remedy`` says what came of other settings, where they
-    were tried (`reports.verify.advised`).
+    were tried (`reports.verify.advised`). ``absent`` is what a log was required to hold and
+    does not, None where nothing was required.
     """
 
     status: str
@@ -39,6 +40,7 @@ class Evidence:
     order: int = 2
     unasked: tuple[str, ...] | None = None
     remedy: str = ""
+    absent: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)

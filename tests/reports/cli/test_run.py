@@ -112,3 +112,15 @@ def test_bad_input_is_one_message_and_exit_code_2(args: str, told: str) -> None:
     assert result.exit_code == 2
     assert told in result.output
     assert "Traceback" not in result.output
+
+
+def test_a_log_of_the_start_alone_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    result = crank("run", "fourbar-lecture-1", *COARSE, "--every", "91", "-o", str(path))
+    assert result.exit_code == 2
+    assert "--every 91: the run of fourbar-lecture-1 has 90 steps" in " ".join(
+        result.stderr.split()
+    )
+    assert not path.exists()
+    result = crank("run", "fourbar-lecture-1", *COARSE, "--every", "90", "-o", str(path))
+    assert result.exit_code == 0

@@ -220,3 +220,9 @@ def test_a_motion_of_other_shapes_is_refused(change: dict[str, object], told: st
     motion = spoilt(crankcheck.solve(SCENE), **change)
     with pytest.raises(crankcheck.CrankcheckError, match=told):
         crankcheck.judge(SCENE, motion, target=1e-3)
+
+
+@pytest.mark.parametrize("far_s", [1e300, -1e8])
+def test_times_that_have_lost_their_place_in_a_turn_are_refused(far_s: float) -> None:
+    with pytest.raises(crankcheck.CrankcheckError, match=f"time_s: t = .* turns of {SCENE}"):
+        crankcheck.solve(SCENE, [0.0, far_s])

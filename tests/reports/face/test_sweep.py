@@ -73,3 +73,11 @@ def test_a_report_is_a_page_or_text(swept: crankcheck.Sweep, tmp_path: Path) -> 
     assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
     text = crankcheck.report(swept.folder, tmp_path / "text.md")
     assert text.read_text(encoding="utf-8").startswith("#")
+
+
+@pytest.mark.parametrize("name", ["scenes", "engines", "profiles", "steps_per_turn"])
+def test_an_empty_list_is_refused_and_not_taken_for_everything(name: str, tmp_path: Path) -> None:
+    scene = {"scenes": "fourbar-lecture-1", "limit_s": 1e-6}
+    with pytest.raises(crankcheck.CrankcheckError, match=f"{name}: found nothing in it"):
+        crankcheck.sweep(**{**scene, "folder": tmp_path / "out", "jobs": -1, name: []})
+    assert not list(tmp_path.iterdir())

@@ -11,7 +11,9 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
+from reports.judge.rules import RULES
 from reports.logs.columns import columns_of
+from reports.logs.map_file import map_of
 from reports.logs.meanings import understood
 from reports.own_log.drives import moved
 from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
@@ -166,9 +168,38 @@ def test_the_geometry_alone_is_judged_at_the_logged_crank() -> None:
 def test_what_is_required_must_be_there() -> None:
     columns = {"rocker": ROCKER.theta}
     assert rules(judged(columns, require=["rocker.angle"])) == []
-    assert rules(judged(columns, require=["velocity", "rocker.angle"])) == ["CC109"]
+    assert rules(judged(columns, require=["velocity", "rocker.angle"])) == ["CC119"]
+    assert rules(judged(columns, require=["coupler", "velocity"])) == ["CC119"]
     with pytest.raises(CrankcheckError, match="neither a quantity nor a body"):
         judged(columns, require=["velocities"])
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("crank.angle", "not in the log: angle of crank"),
+        ("drive", "not in the log: drive (angle of crank)"),
+        ("A", "not in the log: gap of A (a point of the ground is not judged else)"),
+        ("coupler.velocity", "not in the log: velocity of coupler"),
+    ],
+)
+def test_what_is_required_and_not_there_is_named_as_its_user_does(name: str, text: str) -> None:
+    one = judged({"rocker": ROCKER.theta}, require=[name])
+    assert [finding.text for finding in one.failures] == [text]
+    assert RULES[one.failures[0].rule].title == "required"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("A.position", "a point of the ground"),
+        ("rocker.position", "rocker has none"),
+        ("displacement", "fourbar-lecture-1 has none"),
+    ],
+)
+def test_what_no_log_is_judged_for_is_not_to_be_required(name: str, why: str) -> None:
+    with pytest.raises(CrankcheckError, match=f"--require {name}: {why}"):
+        judged({"rocker": ROCKER.theta}, require=[name])
 
 
 def test_another_assembly_is_named() -> None:
@@ -183,3 +214,10 @@ def test_the_reference_itself_is_within_and_says_so() -> None:
     one = judged({"rocker": ROCKER.theta})
     assert one.verdict == "within"
     assert "compared with itself" in one.notes[0]
+
+
+def test_the_gap_of_a_link_is_named_where_nothing_is_judged() -> None:
+    told = map_of({"channel": [{"column": "open", "of": "rocker", "kind": "gap"}]}, "map")
+    frame = pd.DataFrame({"t": TIME_S, "open": 1e-6 * TIME_S})
+    with pytest.raises(CrankcheckError, match=r"it holds gap of rocker .a gap is of a pin"):
+        judge_log(understood(columns_of(frame), SCENE, told), LogRequest(target={EVERY: 1e-3}))
