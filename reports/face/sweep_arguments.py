@@ -23,11 +23,19 @@ def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
     Raises CrankcheckError that names the argument.
     """
     for name, value in arguments.items():
-        if isinstance(value, Sized) and not isinstance(value, str | tuple) and len(value) == 0:
+        if _is_empty(value) and not isinstance(value, str | tuple):
             raise CrankcheckError(
                 f"{name}: found nothing in it ({kind_of(value)}); give at least one, or () for "
                 "those of the study"
             )
+
+
+def _is_empty(value: object) -> bool:
+    """Whether it has nothing in it; a number that numpy has made an array is no list."""
+    try:
+        return isinstance(value, Sized) and len(value) == 0
+    except TypeError:
+        return False
 
 
 def scene_names(scenes: object, kept: ExitStack) -> list[str]:

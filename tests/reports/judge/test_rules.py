@@ -65,6 +65,7 @@ HEALTHY = Evidence(
     limits=LIMITS,
     convergence=convergence((4e-3, 2e-3, 1e-3), (16e-5, 4e-5, 1e-5), "rad"),
     unasked=(),
+    absent=(),
 )
 
 
