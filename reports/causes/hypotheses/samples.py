@@ -29,8 +29,6 @@ MINORITY = 0.2
 """The part of the readings of a short log that may be: the others must tell what is right."""
 LONGEST_SPIKE = 3
 """Samples in a row that are one spike."""
-BESIDE = 0.2
-"""The most that the samples beside a spike are off, over it: an error that grows is none."""
 
 
 def samples(inquiry: Inquiry) -> Iterator[Account]:
@@ -92,11 +90,6 @@ def _spikes(
     spikes = runs(off)
     if np.any(spikes[:, 1] - spikes[:, 0] >= LONGEST_SPIKE):
         return None
-    size = np.abs(error)
-    padded = np.concatenate([[0.0], size, [0.0]])
-    for first, last in spikes:
-        if max(padded[first], padded[last + 2]) > BESIDE * size[first : last + 1].max():
-            return None
     phrase = f"{{who}} {{is}} off at single samples: {_places(inquiry, spikes)}"
     cost = CAUSE + CHOICE * min(1 + len(spikes), 4)
     return _without(inquiry, column, error, off, ("spike", cost, phrase))

@@ -47,8 +47,8 @@ def _whole(inquiry: Inquiry, column: str, values: Array, error: Array) -> Accoun
         return None
     turn = np.round(error / math.tau)
     jumps = np.flatnonzero(np.diff(turn)) + 1
-    if not jumps.size or np.any(np.abs(np.diff(error)[jumps - 1]) < math.pi):
-        return None  # an error that grows is no turn
+    if not jumps.size:
+        return None
     left = error - math.tau * turn
     if _wrapped(values, values - left):
         phrase = "{who} {is} wrapped into one turn"

@@ -13,40 +13,15 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene
-from reports.causes import Case, Cause, causes
+from reports.causes import Case, causes
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import AtCrank
 from reports.logs.channel import Channel, Log, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.units import UNITS
 from tests.reports.causes.conftest import Infected
-from tests.worlds.sheets import Sheet, sheet
-
-SCENE = load_scene("fourbar-lecture-1")
-OMEGA, ANGLE = KINDS["link", "angular velocity"], KINDS["link", "angle"]
-
-
-def of(*channels: Channel, rows: int = 241, turns: float = 2.0) -> Sheet:
-    """A healthy sheet of some channels of the four-bar, with limits of 1e-3 times its speed."""
-    time_s = np.linspace(0.0, turns * SCENE.driver.law.period_s, rows)
-    motion = solve(SCENE, time_s, bound=False)
-    limits = {each.column: 1e-3 * 10.0**each.kind.order for each in channels}
-    by_column = {each.column: each for each in channels}
-    signals = {each.column: each.expected(motion) for each in channels}
-    return Sheet(SCENE, time_s, by_column, {}, limits, signals).of(motion)
-
-
-def angle(link: str, unit: str = "rad", **options: object) -> Channel:
-    return Channel(f"{link}_a", ANGLE, link, unit, **options)
-
-
-def omega(link: str, unit: str = "rad/s", **options: object) -> Channel:
-    return Channel(f"{link}_w", OMEGA, link, unit, **options)
-
-
-def only(planted: Sheet) -> Cause:
-    (cause,) = causes(planted.case)
-    return cause
+from tests.worlds.fourbar_sheets import SCENE, angle, of, omega, only
+from tests.worlds.sheets import sheet
 
 
 def mended(case: Case, column: str, correction: Mapping[str, object]) -> float:
@@ -265,10 +240,10 @@ def test_causes_are_found_of_the_geometry_at_the_logged_crank() -> None:
     truth = AtCrank(SCENE, time_s=plain.time_s, crank_rad=crank)
     motion = truth.at(plain.time_s)
     driven = plain.of(motion).put({"crank_a": crank})
-    wrong = driven.put({"rocker_a": -driven.values["rocker_a"]})
+    wrong = driven.put({"rocker_a": motion.links["coupler"].theta})
     case = replace(wrong.case, truth=truth)
     (cause,) = causes(case)
-    assert (cause.name, cause.columns) == ("sign", ("rocker_a",))
+    assert (cause.name, cause.columns) == ("misnamed", ("rocker_a",))
 
 
 def test_a_channel_without_a_limit_is_not_judged() -> None:

@@ -1,0 +1,160 @@
+"""What keeps a cause from being told where it explains too little, or spoils what is right."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.scene import Scene
+from reports.causes import causes
+from reports.causes.account import Account
+from reports.causes.choice import chosen
+from reports.causes.world import World
+from reports.logs.channel import Channel
+from reports.logs.kinds import KINDS
+from tests.worlds.fourbar_sheets import SCENE, angle, of, omega, only
+
+PLACES = {"x": KINDS["point", "x"], "y": KINDS["point", "y"]}
+
+
+def point(name: str, axis: str) -> Channel:
+    return Channel(f"{name}_{axis}", PLACES[axis], name, "m")
+
+
+def bars(**lengths: float) -> Scene:
+    """The four-bar with bars of other lengths [m]."""
+    links = dict(SCENE.links)
+    for name, length in lengths.items():
+        first, second = links[name].points
+        points = {first: (0.0, 0.0), second: (length, 0.0)}
+        links[name] = replace(links[name], points=points)
+    return replace(SCENE, links=links)
+
+
+def test_no_length_is_told_that_would_move_a_channel_that_is_right() -> None:
+    plain = of(angle("rocker"), omega("rocker"), angle("coupler"), omega("coupler"))
+    longer = solve(bars(coupler=0.2525), plain.time_s, bound=False)
+    found = causes(plain.of(longer, ["rocker_a", "rocker_w"]).case)
+    assert "length" not in {cause.name for cause in found}
+
+
+def test_two_bars_of_other_lengths_are_not_a_scene_of_another_size() -> None:
+    plain = of(point("B", "x"), point("B", "y"), point("C", "x"), angle("rocker"))
+    both = plain.of(solve(bars(crank=0.11, coupler=0.24), plain.time_s, bound=False))
+    assert "size" not in {cause.name for cause in causes(both.case)}
+
+
+def test_what_one_fault_brings_within_its_limit_is_told_with_it_whatever_the_noise() -> None:
+    plain = of(point("B", "x"), point("B", "y"), point("C", "x"), point("C", "y"))
+    limits = {"B_x": 1.0, "B_y": 1.0, "C_x": 1e-3, "C_y": 1.0}
+    limits = {c: 0.025 * np.ptp(plain.values[c]) / 2 * min(1.0, limits[c]) for c in limits}
+    rng = np.random.default_rng(1)
+    noisy = {
+        column: 1.03 * values + 0.9 * limits[column] * rng.uniform(-1.0, 1.0, values.size)
+        for column, values in plain.values.items()
+    }
+    cause = only(replace(plain.put(noisy), limits=limits))
+    assert cause.name == "size"
+    assert len(cause.columns) == 4
+
+
+def test_readings_that_are_only_brought_nearer_are_not_explained() -> None:
+    plain = of(omega("rocker"), angle("coupler"))
+    far = 1000.0 * np.random.default_rng(1).normal(size=plain.time_s.size)
+    assert not causes(plain.put({"rocker_w": far}).case)
+
+
+@pytest.mark.parametrize("share", [-0.45, -0.3, 0.2, 0.4])
+def test_delays_of_up_to_half_a_turn_are_found(share: float) -> None:
+    rate = Channel("rocker_w", KINDS["link", "angular acceleration"], "rocker", "rad/s^2")
+    plain = of(rate, angle("coupler"))
+    by_s = share * SCENE.driver.law.period_s
+    late = plain.of(solve(SCENE, plain.time_s + by_s, bound=False), ["rocker_w"])
+    assert only(late).correction["delay_s"] == pytest.approx(by_s, rel=1e-6)
+
+
+def test_a_gain_and_a_zero_do_not_explain_what_has_another_shape() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    signal = plain.values["rocker_a"]
+    higher = signal.mean() + 1.2 * (signal - signal.mean())
+    assert only(plain.put({"rocker_a": higher})).name == "scaled"
+    bend = 0.008 * np.ptp(signal) * np.sin(20.0 * plain.time_s + 1.0)
+    assert not causes(plain.put({"rocker_a": higher + bend}).case)
+
+
+def test_a_delay_that_the_last_digit_may_have_made_is_not_told() -> None:
+    plain = of(angle("rocker"), angle("coupler"), rows=2401)
+    late = plain.of(solve(SCENE, plain.time_s + 0.2 * plain.step_s, bound=False), ["rocker_a"])
+    assert causes(late.case)
+    assert not causes(late.put({"rocker_a": np.round(late.values["rocker_a"], 4)}).case)
+
+
+def test_a_drift_of_turns_is_followed_from_the_beginning() -> None:
+    plain = of(angle("rocker"), angle("coupler"), rows=6001, turns=200.0)
+    drifted = plain.of(solve(SCENE, 1.01 * plain.time_s, bound=False))
+    rng = np.random.default_rng(1)
+    noisy = {c: v + 0.03 * rng.normal(size=v.size) for c, v in drifted.values.items()}
+    cause = only(replace(drifted.put(noisy), limits=dict.fromkeys(plain.limits, 0.2)))
+    assert cause.name == "drift"
+    assert "(10.1 rad/s, not 10 rad/s)" in cause.text
+
+
+def test_a_channel_with_another_fault_does_not_bend_the_length_that_is_told() -> None:
+    plain = of(angle("rocker"), omega("rocker"), angle("coupler"), omega("coupler"))
+    longer = plain.of(solve(bars(coupler=0.2525), plain.time_s, bound=False))
+    wrong = longer.put({"rocker_w": 1.3 * longer.values["rocker_w"]})
+    found = {cause.name: cause for cause in causes(wrong.case)}
+    assert "length BC of coupler is 0.2525 m in the log" in found["length"].text
+    assert found["length"].left < 1e-5
+    assert "reads 1.3 times as much" in found["scaled"].text
+
+
+def test_shaken_times_are_told_though_their_line_is_not_quite_that_of_the_samples() -> None:
+    plain = of(angle("rocker"), omega("rocker"), rows=60)
+    rng = np.random.default_rng(2)
+    shaken = plain.time_s + 0.3 * plain.step_s * rng.uniform(-1.0, 1.0, 60)
+    tight = dict.fromkeys(plain.limits, 1e-6)
+    assert only(replace(plain, time_s=shaken, limits=tight)).name == "time stamps"
+
+
+def test_the_top_of_an_error_that_grows_and_falls_is_no_spike() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    bump = 1.005e-3 * np.exp(-(((plain.time_s - 0.5) / 0.05) ** 2))
+    wrong = plain.put({"rocker_a": plain.values["rocker_a"] + bump})
+    assert 0 < wrong.case.excerpts["rocker_a"].over < 4
+    assert not causes(wrong.case)
+
+
+def test_what_another_world_explains_is_not_told_of_a_single_channel_as_well() -> None:
+    world = World(SCENE)
+    lefts = {"a": 0.0, "b": 0.0, "c": 0.0}
+    whole = Account("branch", 0.5, {"a": 1e-5, "b": 1e-5}, lefts, "", world=world, order=9)
+    single = Account("delay", 1.5, {"b": 1e-5, "c": 1e-5}, lefts, "{who}", order=5)
+    told = {account.name: account.columns for account in chosen([single, whole], ["a", "b", "c"])}
+    assert told == {"branch": ("a", "b"), "delay": ("c",)}
+
+
+def test_of_two_worlds_the_one_that_explains_more_is_told() -> None:
+    world, lefts = World(SCENE), dict.fromkeys("abc", 0.0)
+    one = Account("start", 1.5, {"a": 1e-5, "b": 1e-5}, lefts, "", world=world)
+    two = Account("drift", 2.5, dict.fromkeys("abc", 1e-5), lefts, "", world=world)
+    assert [account.name for account in chosen([one, two], "abc")] == ["drift"]
+
+
+def test_one_more_number_has_to_leave_ten_times_less() -> None:
+    lefts = {"a": 0.0}
+    plain = Account("offset", 1.5, {"a": 0.05}, lefts, "{who}")
+    for rest, name in ((0.02, "offset"), (0.001, "scaled")):
+        free = Account("scaled", 2.5, {"a": rest}, lefts, "{who}")
+        assert [account.name for account in chosen([plain, free], ["a"])] == [name]
+
+
+def test_a_channel_that_stays_is_read_in_another_unit_before_it_has_another_zero() -> None:
+    plain = of(omega("crank", "rpm"), angle("rocker"))
+    cause = only(plain.put({"crank_w": plain.values["crank_w"] * math.tau / 60.0}))
+    assert cause.correction == {"unit": "rad/s"}
+    assert only(plain.put({"crank_w": plain.values["crank_w"] + 0.3})).name == "offset"
