@@ -8,7 +8,7 @@ from functools import cached_property
 
 from reports.causes.excerpt import Excerpt, excerpts
 from reports.compare.beside import Truth
-from reports.logs.channel import Log, Reading
+from reports.logs.channel import OwnLog, Reading
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Case:
     """A log beside the truth of its scene as it is driven, with what the error of each channel may
     be [SI], by column; what has no limit is not judged."""
 
-    log: Log
+    log: OwnLog
     truth: Truth
     limits: Mapping[str, float]
 

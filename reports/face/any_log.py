@@ -12,7 +12,7 @@ from models.scene import Scene
 from reports.face.arguments import kind_of, path_of
 from reports.face.simulation import Simulation
 from reports.face.solution import Solution
-from reports.logs.channel import Log
+from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
 from sim.engine import Run
 
@@ -32,7 +32,7 @@ def _told(map_: MapLike) -> Map:
     return map_of(map_, "--map") if isinstance(map_, Mapping) else read_map(path_of(map_, "--map"))
 
 
-def log_of(scene: Scene, log: object, map_: MapLike = None) -> Log:
+def log_of(scene: Scene, log: object, map_: MapLike = None) -> OwnLog:
     """A log of a scene, of whatever kind. Raises CrankcheckError."""
     told = _told(map_)
     if isinstance(log, Motion):

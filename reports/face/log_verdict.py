@@ -35,7 +35,8 @@ class LogVerdict(Shown, JudgedLog):
 
     ``verdict`` is "within" or "out"; ``findings`` is what every rule says, and those of
     ``failures`` make the verdict; ``causes`` explain what is out of tolerance, and say
-    what is late within it; ``not_judged`` is what the scene has and the log has not; ``facts`` says where the numbers come from.
+    what is late within it; ``not_judged`` is what the scene has and the log has not; ``facts``
+    says where the numbers come from.
     """
 
     facts: Mapping[str, str]

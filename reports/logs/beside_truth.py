@@ -18,7 +18,7 @@ from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track, tracks
-from reports.logs.channel import Log, Reading
+from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import Kind
 from reports.quantities import QUANTITIES, named
 from reports.quantities.moving import Order
@@ -122,7 +122,7 @@ def _of_places(quantity: str) -> bool:
     return quantity in named("place", "closure")
 
 
-def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
+def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
     scene = log.scene
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
@@ -163,7 +163,7 @@ def beside_truth(log: Log, truth: Truth, *, step_s: float = 0.0) -> LogBeside:
     return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
 
 
-def _slots(log: Log) -> dict[tuple[Kind, str], list[Reading]]:
+def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:
     """The readings by what of a motion they are of: one, but for rates of a point on several
     bodies, and for angles of a link that are relative to others as well."""
     slots: dict[tuple[Kind, str], list[Reading]] = {}
@@ -184,7 +184,7 @@ def _largest(errors: Sequence[Array], order: Order) -> Array:
     return np.asarray(every[np.argmax(np.abs(every), axis=0), np.arange(every.shape[1])])
 
 
-def _instants(log: Log, order: Order) -> Array:
+def _instants(log: OwnLog, order: Order) -> Array:
     """The instants that rates of an order are compared at: their own, where all share them."""
     own = [each.instants for each in log.readings if each.channel.kind.order == order]
     if order and own and all(np.array_equal(each, own[0]) for each in own):
@@ -217,7 +217,7 @@ def _motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Array]
     )
 
 
-def _gaps(log: Log) -> dict[str, Array]:
+def _gaps(log: OwnLog) -> dict[str, Array]:
     """How far the copies of a point are from the one that is judged [m], the widest at each row."""
     main = {(each.channel.kind, each.channel.of): each for each in log.readings}
     square: dict[tuple[str, str], Array] = {}
@@ -231,7 +231,7 @@ def _gaps(log: Log) -> dict[str, Array]:
     return gaps
 
 
-def lacking(log: Log, beside: LogBeside) -> tuple[str, ...]:
+def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     """What of the scene's places and rates the log does not hold, quantity by quantity."""
     scene, reference = beside.scene, beside.whole
     held = {
@@ -248,7 +248,7 @@ def lacking(log: Log, beside: LogBeside) -> tuple[str, ...]:
     )
 
 
-def readings_of(log: Log, quantity: str, body: str) -> tuple[Reading, ...]:
+def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
     """The readings that a quantity of a body is judged by."""
     scene = log.scene
     return tuple(

@@ -89,7 +89,7 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class Log:
+class OwnLog:
     """A user's log, as its columns were understood: instants (T,) [s] and one reading a channel.
 
     ``stamp`` is the column that the instants stand in, and its unit; ``zero_s`` is what was taken

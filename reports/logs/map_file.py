@@ -32,7 +32,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from models.errors import CrankcheckError, listed, shown, suggestion
 from models.regular import UnreadableError, regular_text
 from models.toml_text import tables
-from reports.logs.channel import Channel, Log
+from reports.logs.channel import Channel, OwnLog
 from reports.logs.kinds import KINDS
 from reports.logs.spelling import DIMENSION
 from reports.logs.text import Layout
@@ -154,7 +154,7 @@ def _check_words(map_: Map, place: str) -> None:
         raise CrankcheckError(listed(place, faults))
 
 
-def map_text(log: Log, file: FileTable) -> str:
+def map_text(log: OwnLog, file: FileTable) -> str:
     """The map of a log as its columns were understood, with what was not as remarks, and what the
     map that it was read by says of the file."""
     lines = [

@@ -11,7 +11,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError, cut, few, suggestion
 from models.scene import Scene
-from reports.logs.channel import Channel, Gap, Log, Reading
+from reports.logs.channel import Channel, Gap, OwnLog, Reading
 from reports.logs.columns import Columns
 from reports.logs.instants import MOST_TURNS, instants, refuse_back, refuse_far
 from reports.logs.kinds import KINDS
@@ -35,7 +35,7 @@ class _GapColumn:
     unit: str
 
 
-def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
+def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> OwnLog:
     """The log of a scene.
 
     Parameters
@@ -90,7 +90,7 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> Log:
     refuse_far(columns, main, base, scene)
     others = {c: _stamp(columns, c, zero_s, scene) for c in times.values() if c != main}
     reader = _Reader(columns, base, others)
-    return Log(
+    return OwnLog(
         source=columns.source,
         scene=scene,
         time_s=base,

@@ -11,7 +11,7 @@ from models.errors import CrankcheckError, suggestion
 from models.motion import Motion
 from models.samples import numbers, samples
 from models.scene import Scene
-from reports.logs.channel import Log
+from reports.logs.channel import OwnLog
 from reports.logs.columns import Columns
 from reports.logs.kinds import KINDS, Kind
 from reports.logs.map_file import ChannelTable, Map, TimeTable
@@ -22,7 +22,7 @@ from reports.logs.units import si
 TIME = "time_s"
 
 
-def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> Log:
+def log_of_motion(scene: Scene, motion: Motion, source: str = "the motion") -> OwnLog:
     """The log of a motion; a series that is NaN throughout, as of an engine that does not report
     it, is none.
 

@@ -15,7 +15,7 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import MANY, AtCrank
-from reports.logs.channel import Log, Reading
+from reports.logs.channel import OwnLog, Reading
 from reports.own_log.speeds import speeds
 
 LogDrive = Literal["scene", "fitted", "logged"]
@@ -59,7 +59,7 @@ def chosen_drive(text: str) -> LogDrive:
     raise CrankcheckError(f"--drive {shown(text)}: unknown; use scene, fitted or logged")
 
 
-def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
+def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     """The truth, and the fit that moves it.
 
     Raises
@@ -90,7 +90,7 @@ def truth_of_log(log: Log, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     return Truth(scene, links=links, points=points), fit
 
 
-def _compared(log: Log) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
+def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     """The links, None for all, and the points that a log is compared with: those that move, and of
     a long log what is in it, as the truth takes most of the memory."""
     scene = log.scene
@@ -104,7 +104,7 @@ def _compared(log: Log) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     return links, tuple(name for name in moving if name in named)
 
 
-def crank_reading(log: Log) -> Reading | None:
+def crank_reading(log: OwnLog) -> Reading | None:
     """The reading of the driver's angle, if there is one."""
     return next(
         (
@@ -124,7 +124,7 @@ def moved(scene: Scene, speed_rad_s: float, start_rad: float) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=law))
 
 
-def _continuous(log: Log, crank: Reading) -> Array:
+def _continuous(log: OwnLog, crank: Reading) -> Array:
     """The angle of the crank, without the jumps of one that is wrapped: it goes on as the scene's
     driver does, so that samples may be far apart."""
     if not crank.channel.wrapped:
@@ -133,7 +133,7 @@ def _continuous(log: Log, crank: Reading) -> Array:
     return np.asarray(led + np.unwrap(crank.values - led))
 
 
-def _of_crank(log: Log, crank: Reading) -> DriveFit:
+def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
     """Speed and start by a straight line through the angles. Raises CrankcheckError."""
     time_s, angle = crank.instants, _continuous(log, crank)
     mean = float(np.mean(time_s))
@@ -160,7 +160,7 @@ def _near(start_rad: float, scene: Scene) -> float:
     return told + math.remainder(start_rad - told, math.tau)
 
 
-def _of_places(log: Log) -> DriveFit:
+def _of_places(log: OwnLog) -> DriveFit:
     """Speed and start by least squares over all places. Raises CrankcheckError."""
     places = [each for each in log.readings if each.channel.kind.order == 0]
     if not places:

@@ -21,7 +21,7 @@ from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.rules.start import start_limit
 from reports.judge.tolerance import DEFAULTS, Limit, in_passage, limits
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking, readings_of
-from reports.logs.channel import Log
+from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
 from reports.quantities import QUANTITIES
 
@@ -46,7 +46,7 @@ class JudgedLog(Evidence):
     scene has and the log has not; ``notes`` are worth knowing.
     """
 
-    log: Log
+    log: OwnLog
     beside: LogBeside
     drive: LogDrive
     step_s: float
@@ -80,7 +80,7 @@ class LogRequest:
     require: Sequence[str] = ()
 
 
-def judge_log(log: Log, request: LogRequest) -> JudgedLog:
+def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     """Compare a log with the closed form, and judge it.
 
     Raises
@@ -138,7 +138,7 @@ def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
     return tuple(replace(finding, cure="") for finding in judge(evidence, rules))
 
 
-def _check_step(log: Log, step_s: float) -> None:
+def _check_step(log: OwnLog, step_s: float) -> None:
     """Refuse a step that is none, or longer than a sample. Raises CrankcheckError."""
     if not (math.isfinite(step_s) and step_s >= 0.0):
         raise CrankcheckError(f"--step {step_s:g}: give a time above 0, in seconds")
@@ -189,7 +189,7 @@ def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
     return limit
 
 
-def _by_column(log: Log, evidence: Evidence, errors: Errors) -> dict[str, float]:
+def _by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, float]:
     """What the error of each column may be [SI]: the least limit that it is over, or the largest
     where it is over none."""
     over: dict[str, list[float]] = {}

@@ -15,7 +15,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.causes import Case
 from reports.compare.beside import Truth
-from reports.logs.channel import Channel, Log, Reading
+from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 
 TURNING = {0: ("rad", "deg"), 1: ("rad/s", "deg/s", "rpm"), 2: ("rad/s^2", "deg/s^2")}
@@ -41,7 +41,7 @@ class Sheet:
             Reading(channel, self.values[column], self.time_s)
             for column, channel in self.channels.items()
         )
-        log = Log("planted", self.scene, self.time_s, readings, self.stamp)
+        log = OwnLog("planted", self.scene, self.time_s, readings, self.stamp)
         return Case(log, Truth(self.scene, bound=False), self.limits)
 
     def put(self, values: Mapping[str, Array]) -> Sheet:

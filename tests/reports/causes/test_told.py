@@ -16,7 +16,7 @@ from models.files import load_scene
 from reports.causes import Case, causes
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import AtCrank
-from reports.logs.channel import Channel, Log, Reading
+from reports.logs.channel import Channel, OwnLog, Reading
 from reports.logs.kinds import KINDS
 from reports.logs.units import UNITS
 from tests.reports.causes.conftest import Infected
@@ -285,6 +285,6 @@ def test_readings_of_copies_are_looked_at_where_they_have_limits() -> None:
     motion = solve(SCENE, time_s, bound=False)
     channel = Channel("C2_x", KINDS["point", "x"], "C", "m", on="rocker")
     copy = Reading(channel, 1000.0 * channel.expected(motion), time_s)
-    log = Log("copied", SCENE, time_s, (), copies=(copy,))
+    log = OwnLog("copied", SCENE, time_s, (), copies=(copy,))
     (cause,) = causes(Case(log, Truth(SCENE), {"C2_x": 1e-3}))
     assert cause.correction == {"unit": "mm"}

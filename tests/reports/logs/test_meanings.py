@@ -14,7 +14,7 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.compare.beside import Truth
-from reports.logs.channel import Log
+from reports.logs.channel import OwnLog
 from reports.logs.columns import columns_of
 from reports.logs.map_file import FileTable, map_of, map_text, read_map
 from reports.logs.meanings import understood
@@ -26,11 +26,11 @@ CRANK, COUPLER, ROCKER = (MOTION.links[name] for name in ("crank", "coupler", "r
 TRUTH = Truth(SCENE)
 
 
-def log_of(columns: Mapping[str, object], **told: object) -> Log:
+def log_of(columns: Mapping[str, object], **told: object) -> OwnLog:
     return understood(columns_of(pd.DataFrame(columns)), SCENE, map_of(told, "the map"))
 
 
-def worst(log: Log) -> float:
+def worst(log: OwnLog) -> float:
     return max(float(np.max(np.abs(each.error(TRUTH)))) for each in log.readings)
 
 
