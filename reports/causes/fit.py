@@ -9,7 +9,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 
-ROUNDS = 12
+ROUNDS = 30
 HALVINGS = 5
 SETTLED = 1e-4
 """A round that takes less of what is left than this part of it is the last one."""

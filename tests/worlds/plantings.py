@@ -474,7 +474,7 @@ def low_passed(sheet: Sheet, rng: Generator) -> Planted:
 @planting("mean", even=True)
 def mean_of_both_sides(sheet: Sheet, rng: Generator) -> Planted:
     half = int(rng.integers(3, max(4, sheet.time_s.size // 20)))
-    return _averaged(sheet, one(rng, sheet.bending(unwrapped)), half, half)
+    return _averaged(sheet, one(rng, sheet.uneven()), half, half)
 
 
 @planting("mean", even=True)

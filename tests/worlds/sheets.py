@@ -78,6 +78,12 @@ class Sheet:
                 found.append(column)
         return found
 
+    def uneven(self) -> list[str]:
+        """Those that are no angles in one turn, and no pure sine, of which means are as a gain."""
+        crank = self.scene.links[self.scene.driver.link]
+        own = {*crank.points, crank.name}
+        return self.bending(lambda channel: not channel.wrapped and channel.of not in own)
+
     @property
     def step_s(self) -> float:
         """The median interval [s]."""

@@ -7,13 +7,14 @@ that, a delay explains the readings too, and what is left tells which it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.excerpt import Excerpt
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
@@ -101,30 +102,38 @@ def low_pass(signal: Array, start: float, decay: Array, feed: float) -> Array:
 def _mean(stretch: Inquiry, column: str) -> Account | None:
     """The account of a mean over the last samples, or over as many on both sides."""
     excerpt = stretch.excerpts[column]
-    readings = excerpt.expected + excerpt.error
-    sums = np.concatenate([[0.0], np.cumsum(excerpt.expected)])
-    best: tuple[float, int, int] | None = None
-    for width in _widths(excerpt.rows.size):
-        means = (sums[width:] - sums[:-width]) / width
-        for ahead in {0, width // 2} if width % 2 else {0}:
-            first = width - 1 - ahead
-            left = readings[first : first + means.size] - means
-            rest = float(left @ left) / left.size
-            if best is None or rest < best[0]:
-                best = (rest, width, ahead)
-    if best is None:
-        return None
-    _, width, ahead = best
-    means = (sums[width:] - sums[:-width]) / width
-    rows = np.arange(width - 1 - ahead, width - 1 - ahead + means.size)
-    errors = {column: readings[rows] - means}
+    rows = excerpt.rows.size
+    _, coarse, _ = min(_means(excerpt, _widths(rows)))
+    near = range(int(0.95 * coarse), min(int(1.05 * coarse), int(WIDEST * rows)) + 1)
+    _, width, ahead = min(_means(excerpt, [coarse, *near]))
+    first, left = _left_by_mean(excerpt, width, ahead)
     where = f"{width // 2} on both sides" if ahead else "the last ones"
     phrase = f"{{who}} {{is}} a mean over {width} samples, {where}"
-    return stretch.part(rows).account("mean", CAUSE + NUMBER, errors, phrase)
+    part = stretch.part(np.arange(first, first + left.size))
+    return part.account("mean", CAUSE + NUMBER, {column: left}, phrase)
+
+
+def _means(excerpt: Excerpt, widths: Iterable[int]) -> Iterator[tuple[float, int, int]]:
+    """What means leave (the mean square), how many samples they are over, and how many of these
+    are ahead."""
+    for width in widths:
+        for ahead in (0, width // 2) if width % 2 else (0,):
+            if width > 1:
+                _, left = _left_by_mean(excerpt, width, ahead)
+                yield float(left @ left) / left.size, width, ahead
+
+
+def _left_by_mean(excerpt: Excerpt, width: int, ahead: int) -> tuple[int, Array]:
+    """The first row that has all samples of its mean, and what is left of the error from there."""
+    sums = np.concatenate([[0.0], np.cumsum(excerpt.expected)])
+    means = (sums[width:] - sums[:-width]) / width
+    first = width - 1 - ahead
+    readings = excerpt.expected + excerpt.error
+    return first, readings[first : first + means.size] - means
 
 
 def _widths(rows: int) -> list[int]:
-    """The widths in samples that are tried."""
+    """The widths in samples that are tried: of wide ones, those that have a middle."""
     widest = int(WIDEST * rows)
-    wide = np.unique(np.geomspace(NEAR, max(widest, NEAR), 60).astype(int))
-    return [*range(2, min(NEAR, widest)), *(int(each) for each in wide if each <= widest)]
+    wide = {int(each) | 1 for each in np.geomspace(NEAR, max(widest, NEAR), 60)}
+    return [*range(2, min(NEAR, widest)), *(each for each in sorted(wide) if each <= widest)]
