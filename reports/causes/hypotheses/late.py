@@ -26,7 +26,7 @@ SAME = 0.02
 """Delays of which one differs by less than this part of itself, or of a sample, may be one."""
 MOST_PERIODS = 0.75
 GROUPS = 8
-MOSTLY = 0.7
+MOSTLY = 0.5
 """The part of the readings that a delay has to be of."""
 LEAST_SAMPLES = 0.05
 """A delay of less is none that a log within its limits is told of."""
