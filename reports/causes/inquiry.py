@@ -216,10 +216,8 @@ class Inquiry:
             expected = self.expected(world)
         except CrankcheckError:
             return None
-        changed = {
-            column: self.excerpts[column].in_world(each) for column, each in expected.items()
-        }
-        return replace(self, world=world, excerpts=changed, open=tuple(left), changed=True)
+        there = {column: self.excerpts[column].in_world(each) for column, each in expected.items()}
+        return replace(self, world=world, excerpts=there, open=tuple(left), changed=True)
 
     def stretch(self, column: str) -> Inquiry:
         """The inquiry into one column at rows that follow one another, around that where its error
@@ -243,11 +241,10 @@ class Inquiry:
         """All readings of a column, and their errors, 0 where a number is missing. Raises
         CrankcheckError."""
         reading = self.case.excerpts[column].reading
-        truth = self.case.truth
         channel = reading.channel
         if self.changed:
             expected = channel.expected(self.world.at(reading.instants, [channel]))
         else:
-            expected = reading.expected(truth)
+            expected = reading.expected(self.case.truth)
         error = channel.error(reading.values, expected)
         return reading.values, np.where(np.isfinite(error), error, 0.0)

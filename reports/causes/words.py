@@ -71,6 +71,6 @@ def number(value: float, digits: int = 4) -> str:
 def change(now: float, before: float) -> str:
     """How much more a number is than another one that is not 0: +1 %, -120 ppm."""
     share = now / before - 1.0
-    if abs(share) < 1e-3:
+    if abs(share) < 0.9995e-3:
         return f"{1e6 * share:+.3g} ppm"
     return f"{100.0 * share:+.3g} %"

@@ -14,6 +14,7 @@ import pytest
 from analytic.kinematics import solve
 from models.files import load_scene
 from reports.causes import Case, causes
+from reports.causes.words import change
 from reports.compare.beside import Truth
 from reports.logs.beside_truth import AtCrank
 from reports.logs.channel import Channel, OwnLog, Reading
@@ -173,6 +174,13 @@ def test_a_unit_of_time_is_told_with_its_column() -> None:
     assert cause.text == (
         'the times (column tick) are in ms, not in s: unit = "ms" under [time] of the map'
     )
+
+
+@pytest.mark.parametrize(
+    ("now", "words"), [(1.01, "+1 %"), (0.999, "-0.1 %"), (1.00012, "+120 ppm"), (2.0, "+100 %")]
+)
+def test_a_change_is_told_in_percent_or_in_parts_of_a_million(now: float, words: str) -> None:
+    assert change(now, 1.0) == words
 
 
 def test_a_length_is_told_with_its_number_in_the_scene() -> None:
