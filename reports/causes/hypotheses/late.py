@@ -25,7 +25,9 @@ SCANNED = 120
 SAME = 0.02
 """Delays of which one differs by less than this part of itself, or of a sample, may be one."""
 MOST_PERIODS = 0.75
+"""Delays beyond so many periods are none: half a period away there is a nearer one."""
 GROUPS = 8
+"""Delays that are told apart."""
 MOSTLY = 0.5
 """The part of the readings that a delay has to be of."""
 LEAST_SAMPLES = 0.05
