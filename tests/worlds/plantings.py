@@ -177,7 +177,8 @@ def of_a_joint(sheet: Sheet, rng: Generator) -> Planted:
 
 @planting("kind")
 def another_kind(sheet: Sheet, rng: Generator) -> Planted:
-    column = one(rng, sheet.moving(lambda c: c.unit in ("rad", "rad/s", "m", "m/s")))
+    si = ("rad", "rad/s", "m", "m/s")
+    column = one(rng, [c for c in sheet.uneven() if sheet.channels[c].unit in si])
     if column is None:
         return None
     channel = sheet.channels[column]
