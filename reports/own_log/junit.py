@@ -31,8 +31,4 @@ def suite(judged: JudgedLog, facts: Mapping[str, str]) -> Element:
 
 def _causes(judged: JudgedLog, columns: tuple[str, ...]) -> list[str]:
     """What explains the errors of some columns."""
-    return [
-        cause_text(cause.text, cause.correction)
-        for cause in judged.causes
-        if set(columns) & set(cause.columns)
-    ]
+    return [cause_text(cause) for cause in judged.causes if set(columns) & set(cause.columns)]

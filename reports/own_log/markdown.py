@@ -35,7 +35,7 @@ def markdown(judged: JudgedLog, facts: Mapping[str, str]) -> str:
         "\n".join(
             f"- {f.rule} {plain(RULES[f.rule].title)}: {plain(f.text)}" for f in judged.failures
         ),
-        "\n".join(f"- cause: {plain(cause_text(c.text, c.correction))}" for c in judged.causes),
+        "\n".join(f"- cause: {plain(cause_text(c))}" for c in judged.causes),
     ]
     cells = [
         (

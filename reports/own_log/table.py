@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from models.errors import cut, few, harmless
+from reports.causes.cause import Cause
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count, error_text, short
@@ -46,7 +47,7 @@ def _failures(console: Console, judged: JudgedLog) -> None:
         hanging(console, f"  {finding.rule} ", f"{RULES[finding.rule].title}: {finding.text}")
     for cause in judged.causes:
         if cause.name not in ADVICE:
-            hanging(console, "  cause: ", cause_text(cause.text, cause.correction), style="cyan")
+            hanging(console, "  cause: ", cause_text(cause), style="cyan")
     if rest := unexplained(judged):
         hanging(console, "  cause: ", f"none that is known explains {few(rest, 6)}",
                 style="cyan")  # fmt: skip
@@ -62,19 +63,28 @@ def _late(console: Console, judged: JudgedLog) -> None:
     if judged.failures:
         return
     for cause in judged.causes:
-        hanging(console, "note: ", cause_text(cause.text, cause.correction), style="yellow")
+        hanging(console, "note: ", cause_text(cause), style="yellow")
     if judged.causes:
         console.print()
 
 
-def cause_text(text: str, correction: Mapping[str, object]) -> str:
+def cause_text(cause: Cause) -> str:
     """A cause, and what to write in the map where the log is right in itself; it may name columns,
     which may be called anything."""
-    text = cut(harmless(text), ROOM)
-    if not correction:
+    text = cut(harmless(cause.text), ROOM)
+    if cause.correction:
+        return f"{text}; if the log means it so, in its [[channel]] of the map: " + _keys(
+            cause.correction
+        )
+    each = [f"{column_text(column)}: {_keys(keys)}" for column, keys in cause.of_column.items()]
+    if not any(cause.of_column.values()):
         return text
-    told = ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())
-    return f"{text}; if the log means it so, in its [[channel]] of the map: {told}"
+    return f"{text}; if the log means it so, in their [[channel]] of the map: {'; '.join(each)}"
+
+
+def _keys(correction: Mapping[str, object]) -> str:
+    """Keys and values of the map."""
+    return ", ".join(f"{key} = {_toml(value)}" for key, value in correction.items())
 
 
 def _toml(value: object) -> str:
