@@ -11,6 +11,10 @@ import numpy as np
 
 from models.array import Array
 
+MOST_TURNS = 1e7
+"""After so many, 9 digits of the angle within a turn are left: times beyond are dates, or in
+another unit."""
+
 
 class Law(ABC):
     """A smooth law of motion of the driver. Raises ValueError for numbers that drive nothing.

@@ -112,7 +112,7 @@ class Beside:
         """How far the driver is from where it was told to be [rad], (T,)."""
         return angle_error(self.crank, self.driver_rad)
 
-    @property
+    @cached_property
     def whole(self) -> Motion:
         """The truth of all that is compared of the scene, which says how hard it is."""
         return self.reference

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from analytic import kinematics
 from models.array import Array
 from models.errors import CrankcheckError
+from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
 from reports.face.arguments import SceneLike, is_true, scene_of
@@ -26,8 +27,6 @@ SAMPLES = 361
 """Instants of a period, both ends included, where none are given: as in a file of the command."""
 ROWS = 13
 """Samples that are printed."""
-MOST_TURNS = 1e7
-"""Beyond, too few digits of an angle are left to say where in its turn the driver is."""
 Names = str | Iterable[str] | None
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -73,7 +74,7 @@ class LogBeside(Beside):
     step_s: float = 0.0
     geometry_alone: bool = False
 
-    @property
+    @cached_property
     def whole(self) -> Motion:
         if self.truth.links is None:
             return self.reference

@@ -6,6 +6,7 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut
+from models.laws import MOST_TURNS
 from models.scene import Scene
 from reports.logs.columns import Columns
 from reports.logs.units import UNITS
@@ -14,8 +15,6 @@ EVEN = 0.02
 """Intervals that differ by less of themselves are the same."""
 MOSTLY = 0.9
 """The share of the intervals of an even log that are the same."""
-MOST_TURNS = 1e7
-"""Beyond, times are dates, or in another unit; 9 digits of an angle are left there."""
 HOLE = 1.9
 """An interval longer than so many of the others leaves out samples."""
 

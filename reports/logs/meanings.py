@@ -10,10 +10,11 @@ import numpy as np
 
 from models.array import Array
 from models.errors import CrankcheckError, cut, few, suggestion
+from models.laws import MOST_TURNS
 from models.scene import Scene
 from reports.logs.channel import Channel, Gap, OwnLog, Reading
 from reports.logs.columns import Columns
-from reports.logs.instants import MOST_TURNS, instants, refuse_back, refuse_far
+from reports.logs.instants import instants, refuse_back, refuse_far
 from reports.logs.kinds import KINDS
 from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
 from reports.logs.names import LENGTH, Meaning, Named, meaning, time_of
