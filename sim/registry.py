@@ -32,15 +32,16 @@ class BrokenEngineError(EngineError):
 class Declaration:
     """What stands in the folder of an engine; its ``__init__`` has it as ``DECLARATION``.
 
-    ``package`` is what Python imports, ``install`` what pip calls it. The adapter is the value
-    ``ENGINE`` of the file ``engine``; each of what it ``offers`` has a file of that name too, with
-    a value of that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler` or
-    `Viewer`.
+    ``package`` is what Python imports, ``install`` what pip calls it; an ``extra`` is no part of a
+    plain install of crankcheck, and runs where it is named. The adapter is the value ``ENGINE`` of
+    the file ``engine``; each of what it ``offers`` has a file of that name too, with a value of
+    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler` or `Viewer`.
     """
 
     package: str
     install: str
     offers: tuple[Capability, ...] = ()
+    extra: bool = False
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,11 @@ def declaration(name: str) -> Declaration:
     if name not in ENGINES:
         raise EngineError(f"engine {name!r}: unknown; {suggestion(name, ENGINES, 'there are')}")
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
+
+
+def usual() -> list[str]:
+    """The engines that run where none is named: those that a plain install brings."""
+    return [name for name in ENGINES if not declaration(name).extra]
 
 
 def engine(name: str) -> Engine:

@@ -12,7 +12,7 @@ from models.files import load_scene, shipped
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
-from sim.registry import ENGINES, engine
+from sim.registry import engine, usual
 
 LOOKS = 721
 """Positions of the first look at a period; the run itself looks at every sample."""
@@ -54,8 +54,8 @@ def refuse_unfollowed(scene: Scene) -> None:
 
 
 def chosen_engines(names: str | Sequence[str]) -> list[str]:
-    """The named engines, installed all of them; all there are where none is named."""
-    engines = list(dict.fromkeys(names_in(names, "engines") or ENGINES))
+    """The named engines, installed all of them; where none is named, the usual."""
+    engines = list(dict.fromkeys(names_in(names, "engines") or usual()))
     for name in engines:
         engine(name).version()
     return engines
