@@ -50,6 +50,19 @@ def test_of_a_run_it_is_the_table_of_verify(ran: crankcheck.Simulation) -> None:
     assert "CC113" not in str(told.value)
 
 
+def test_what_moves_the_truth_is_said_as_of_judge(log: dict[str, np.ndarray]) -> None:
+    time_s = log["time_s"]
+    truth = crankcheck.solve(SCENE, 1.1 * time_s)
+    quicker = {"time_s": time_s, **{f"{name}_rad": truth.links[name].theta
+                                    for name in ("crank", "rocker")}}  # fmt: skip
+    for drive in ("fitted", "logged"):
+        assert_within(SCENE, quicker, drive=drive, angle=1e-9, target={"drive": 1e-9})
+    with pytest.raises(AssertionError, match="CC102 drive"):
+        assert_within(SCENE, quicker, target=1e-3)
+    with pytest.raises(crankcheck.CrankcheckError, match=r"drive: found 1e-09; give scene, fitted"):
+        assert_within(SCENE, quicker, target=1e-3, drive=1e-9)  # type: ignore[arg-type]
+
+
 def test_a_quantity_without_a_tolerance_is_asked_for(log: dict[str, np.ndarray]) -> None:
     with pytest.raises(crankcheck.CrankcheckError, match=r"no limit for angle: .* give target"):
         assert_within(SCENE, log, velocity=1e-3)
