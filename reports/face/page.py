@@ -39,9 +39,7 @@ def as_text(show: Print) -> str:
     Without ``force_jupyter`` rich would show it in the notebook that this runs in, and write
     nothing.
     """
-    console = Console(
-        file=io.StringIO(), width=TABLE_WIDTH, color_system=None, force_jupyter=False
-    )
+    console = Console(file=io.StringIO(), width=TABLE_WIDTH, color_system=None, force_jupyter=False)
     show(console)
     assert isinstance(console.file, io.StringIO)
     return "\n".join(line.rstrip() for line in console.file.getvalue().rstrip().split("\n"))

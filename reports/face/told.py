@@ -4,6 +4,7 @@ at the call."""
 from __future__ import annotations
 
 import functools
+import inspect
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -38,6 +39,8 @@ ARGUMENTS: Mapping[str, str] = {
     "-o": "output",
 }
 """Options of the commands, and what they are called in a call."""
+OTHERS: Mapping[str, str] = {"engine": "engines", "profile": "profiles", "output": "folder"}
+"""What functions call them that have no argument of that name."""
 OPTION = re.compile(rf"(?<![\w./-])({'|'.join(sorted(ARGUMENTS, key=len, reverse=True))})(?![\w-])")
 
 
@@ -46,6 +49,7 @@ def told_at_the_call(
 ) -> Callable[Parameters, Result]:
     """The function, whose CrankcheckErrors name arguments in place of options, and come from here:
     what lies deeper is none of the caller's business."""
+    arguments = _arguments_of(function)
 
     @functools.wraps(function)
     def called(*args: Parameters.args, **options: Parameters.kwargs) -> Result:
@@ -54,11 +58,20 @@ def told_at_the_call(
             return function(*args, **options)
         except CrankcheckError as error:
             error.args = tuple(
-                in_python(part) if isinstance(part, str) else part for part in error.args
+                in_python(each, arguments) if isinstance(each, str) else each for each in error.args
             )
             raise error.with_traceback(None) from None
 
     return called
+
+
+def _arguments_of(function: Callable[..., object]) -> Mapping[str, str]:
+    """Options, and what this function calls them."""
+    own = inspect.signature(function).parameters
+    return {
+        option: OTHERS[name] if name not in own and OTHERS.get(name) in own else name
+        for option, name in ARGUMENTS.items()
+    }
 
 
 def in_python(text: str, arguments: Mapping[str, str] = ARGUMENTS) -> str:

@@ -82,7 +82,7 @@ CASES: dict[str, tuple[Sequence[str], str]] = {
         "-o out/mujoco-3.7.0/verify.json: .* is read",
     ),
     "run by diff": (["diff", "out", "out", "-o", "out/manifest.json"], "-o .*: .* is read"),
-    "run by junit of diff": (["diff", "sub", "out", "--junit", "out/verify.csv"], "--junit .* read"),
+    "run by junit of diff": (["diff", "sub", "out", "--junit", "out/verify.csv"], "--junit .*read"),
     "study by advise": (
         ["advise", "--dt", "0.01", "--speed", "10", "--target", "0.1", "--study", "out", "--json",
          "out/manifest.json"],

@@ -204,6 +204,18 @@ def test_a_solution_is_a_motion_of_the_times_asked_for() -> None:
     assert "mobility 1" in str(crankcheck.solve(SCENE, 0.0, links=(), points="C"))
 
 
+def test_arrays_are_the_callers_own() -> None:
+    """Nothing that is worked out later looks at them, and they are not those that were given."""
+    time_s = np.array([0.1, 0.2])
+    first = crankcheck.solve(SCENE, time_s)
+    kept = first.links["rocker"].theta.copy()
+    first.links["rocker"].theta[:] = first.points["C"].position[:] = first.time_s[:] = 0.0
+    assert time_s.tolist() == [0.1, 0.2]
+    assert crankcheck.solve(SCENE, time_s).links["rocker"].theta.tolist() == kept.tolist()
+    log = {"time_s": time_s, "rocker_rad": kept}
+    assert crankcheck.judge(SCENE, log, target=1e-12).verdict == "within"
+
+
 def test_names_from_files_are_no_html(tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
     text = Path(crankcheck.__file__).parents[1] / "models" / "scenes" / f"{SCENE}.toml"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from traceback import walk_tb
 
 import numpy as np
 import pytest
@@ -35,6 +36,8 @@ def test_what_is_within_is_handed_back(
 def test_what_is_out_is_told_as_the_command_tells_it(log: dict[str, np.ndarray]) -> None:
     with pytest.raises(AssertionError) as told:
         assert_within(SCENE, log, angle=1e-3)
+    hidden = [frame.f_locals.get("__tracebackhide__") for frame, _ in walk_tb(told.tb)]
+    assert hidden == [None, True, True]  # pytest shows the line that asserts, and nothing below it
     text = str(told.value)
     assert text.startswith("\nOUT  the log, scene fourbar-lecture-1\n  CC103 angle: link rocker: ")
     assert "OUT rocker_deg   angle of rocker" in text
