@@ -8,11 +8,13 @@ import inspect
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from models.errors import CrankcheckError
-from reports.judge.cell import Checked
-from reports.own_log.judged import JudgedLog
+
+if TYPE_CHECKING:
+    from reports.judge.cell import Checked
+    from reports.own_log.judged import JudgedLog
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
