@@ -102,7 +102,7 @@ def demanded(
         frames, a driver that does not turn at a constant speed, or one that comes to a position in
         which the motion is not determined.
     """
-    positive("--dt", frame_s, "seconds for a frame, such as 0.0166667")
+    positive("--dt", frame_s, "seconds for a frame, such as 1/60")
     if not SLOWEST <= abs(speed_rad_s) <= FASTEST:
         raise CrankcheckError(
             f"--speed {speed_rad_s:g}: give the driver's speed in rad/s, {SLOWEST:g} to "

@@ -195,7 +195,8 @@ def _of_study(advice: Advice) -> Iterator[str]:
     if known.measured:
         yield (
             f"{ABOUT} read between the steps of the study in {folder}, {known.turns:g} turns long; "
-            "what its steps do not reach to was run now, and so was every promise."
+            "what its steps do not reach to was run now, and so was every promise. Prices are "
+            "timed now as well: times of another hour or machine are not compared."
         )
     else:
         yield f"Nothing of the study in {folder} serves: all was run now."

@@ -14,7 +14,7 @@ from typing import Annotated, Any, NoReturn, TypeVar, get_args, get_type_hints
 
 import typer
 
-from models.errors import CrankcheckError, harmless
+from models.errors import CrankcheckError, harmless, shown
 from reports.cli.broken_package import broken_package
 from reports.output.console import (
     UNWRITABLE,
@@ -39,8 +39,23 @@ BAD_INPUT, INTERNAL, INTERRUPTED, BROKEN_PIPE = 2, 70, 130, 141
 TRACEBACK = "CRANKCHECK_TRACEBACK"
 Request = TypeVar("Request")
 
+
+def seconds(text: str) -> float:
+    """A number of seconds, such as 0.02 or 1/60. Raises typer.BadParameter for what is none."""
+    number, slash, parts = text.partition("/")
+    try:
+        return float(number) / float(parts) if slash else float(number)
+    except (ValueError, ZeroDivisionError):
+        raise typer.BadParameter(
+            f"{shown(text)} is no number of seconds; write it like 0.02, or 1/60"
+        ) from None
+
+
 Engines = Annotated[Sequence[str], typer.Option("--engine", help="Engine; may be repeated.")]
-StepS = Annotated[float | None, typer.Option("--dt", metavar="SECONDS", help="Time step.")]
+StepS = Annotated[
+    float | None,
+    typer.Option("--dt", metavar="SECONDS", parser=seconds, help="Time step, such as 1/60."),
+]
 StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Engines, Jobs, app, command, guarded
+from reports.cli.application import Engines, Jobs, app, command, guarded, seconds
 from reports.output.console import terminal
 
 
@@ -94,7 +94,10 @@ class AdviseRequest:
     """What `advise` was asked for, as given."""
 
     dt_s: Annotated[
-        float, typer.Option("--dt", metavar="SECONDS", help="Frame time of your program.")
+        float,
+        typer.Option(
+            "--dt", metavar="SECONDS", parser=seconds, help="Frame time of your program, as 1/60."
+        ),
     ]
     speed: Annotated[
         float, typer.Option(metavar="RAD_S", help="Speed of the driver; clockwise is negative.")

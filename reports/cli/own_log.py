@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import command
+from reports.cli.application import command, seconds
 from reports.cli.showing import SceneName
 from reports.output.console import terminal
 
@@ -34,7 +34,8 @@ class JudgeRequest:
         typer.Option(help="scene, fitted (speed and start), or logged (geometry at its angle)."),
     ] = "scene"
     step_s: Annotated[
-        float | None, typer.Option("--step", metavar="SECONDS", help="Step of the solver.")
+        float | None,
+        typer.Option("--step", metavar="SECONDS", parser=seconds, help="Step of the solver."),
     ] = None
     target: Annotated[
         Sequence[str],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -29,7 +29,14 @@ def _told(map_: MapLike) -> Map:
     """What a user says of columns. Raises CrankcheckError with every fault of it."""
     if map_ is None:
         return Map()
-    return map_of(map_, "--map") if isinstance(map_, Mapping) else read_map(path_of(map_, "--map"))
+    if isinstance(map_, Mapping):
+        return map_of(map_, "--map")
+    if not isinstance(map_, str | PathLike):
+        raise CrankcheckError(
+            f"--map: found {kind_of(map_)}; give the path of a TOML file, or a dict of what would "
+            "stand in it"
+        )
+    return read_map(path_of(map_, "--map"))
 
 
 def log_of(scene: Scene, log: object, map_: MapLike = None) -> OwnLog:
@@ -78,6 +85,14 @@ def _refuse_map(map_: MapLike, what: str) -> None:
         raise CrankcheckError(f"--map: {what} has no columns to be told of; leave it out")
 
 
+def _refuse_empty(columns: Collection[object], source: str) -> None:
+    """Refuse a table without columns. Raises CrankcheckError."""
+    if not len(columns):
+        raise CrankcheckError(
+            f"{source}: found no columns; give times and readings, such as time_s and rocker_rad"
+        )
+
+
 def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
     """A frame, its times among its columns, and what it is called. Raises CrankcheckError."""
     import pandas as pd
@@ -85,11 +100,13 @@ def _frame_of(log: object) -> tuple[pd.DataFrame, str]:
     from reports.logs.names import time_of
 
     if isinstance(log, pd.DataFrame):
-        named = log.index.name
-        if named is not None and time_of(str(named)) and named not in log.columns:
-            return log.reset_index(), "the frame"
+        levels = [each for each in log.index.names if each is not None]
+        if any(time_of(str(each)) for each in levels) and not {*levels} & {*log.columns}:
+            log = log.reset_index()
+        _refuse_empty(log.columns, "the frame")
         return log, "the frame"
     if isinstance(log, Mapping):
+        _refuse_empty(log, "the log")
         try:
             return pd.DataFrame(
                 {str(name): list(column) for name, column in log.items()}

@@ -18,7 +18,7 @@ from reports.face.arguments import (
 )
 from reports.face.shown import Shown
 from reports.face.solution import drawn
-from reports.face.told import told_at_the_call
+from reports.face.told import parts_in_python, told_at_the_call
 from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
@@ -134,10 +134,10 @@ def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> Ce
         converge=False,
         settings=dict(run.asked),
     )
-    return _with_facts(check_run(cell, run))
+    return _with_facts(check_run(cell, run), "target")
 
 
-def _with_facts(checked: Checked) -> CellVerdict:
-    """What was checked, now, with these versions."""
+def _with_facts(checked: Checked, tolerance: str = "tolerance") -> CellVerdict:
+    """What was checked, now, with these versions, by tolerances of the argument of that name."""
     engines = {checked.cell.engine: checked.version} if checked.version else {}
-    return CellVerdict(**vars(checked), facts=provenance(engines))
+    return CellVerdict(**parts_in_python(checked, tolerance), facts=provenance(engines))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from models.one_or_more import names_in
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
@@ -13,7 +13,7 @@ from reports.face.cell_verdict import CellVerdict, verdict_of_run
 from reports.face.comparison import LOG_DRIVES, refuse_options
 from reports.face.shown import Shown
 from reports.face.solution import drawn
-from reports.face.told import told_at_the_call
+from reports.face.told import in_python, parts_in_python, told_at_the_call
 from reports.judge.tolerance import DEFAULTS, check_names
 from reports.output.provenance import provenance
 from reports.own_log.drives import chosen_drive
@@ -122,28 +122,28 @@ def judge(
     CrankcheckError
         A log that can not be read, or of which nothing is of the scene; no target and no step.
     """
-    return judged(scene, log, target=target, step_s=step_s, drive=drive, map=map, require=require)
+    options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
+    return judged(scene, log, target_of(target), **options)
 
 
 def judged(
     scene: SceneLike,
     log: Run | LogLike,
+    limits: Mapping[str, float],
     *,
-    target: Target,
     step_s: float | None,
     drive: str,
     map: MapLike,
     require: str | Iterable[str],
 ) -> CellVerdict | LogVerdict:
-    """As `judge`, of either kind."""
+    """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
     scene = scene_of(scene)
     check_names(scene)
-    limits = _target(target)
     required = names_in(require, "--require")
     if isinstance(log, Run):
         refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
         refuse_other_scene(scene, log)
-        every = limits.pop(EVERY, None)
+        every = limits.get(EVERY)
         named = limits if every is None else {name: limits.get(name, every) for name in DEFAULTS}
         return verdict_of_run(scene, log, named)
     request = LogRequest(
@@ -153,10 +153,11 @@ def judged(
         require=required,
     )
     found = judge_log(log_of(scene, log, map), request)
-    return LogVerdict(**vars(found), facts=provenance({}))
+    notes = tuple(in_python(note) for note in found.notes)
+    return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
 
 
-def _target(target: Target) -> dict[str, float]:
+def target_of(target: Target) -> dict[str, float]:
     """The target by quantity, that for all of them under `EVERY`. Raises CrankcheckError."""
     if target is None or isinstance(target, Mapping):
         return tolerances_of(target, "--target")

@@ -34,8 +34,12 @@ TABLE = (
 
 
 def as_text(show: Print) -> str:
-    """What is printed where nobody looks on a terminal, without spaces at the ends of lines."""
-    console = Console(file=io.StringIO(), width=TABLE_WIDTH, color_system=None)
+    """What is printed where nobody looks on a terminal, without spaces at the ends of lines.
+
+    Without ``force_jupyter`` rich would show it in the notebook that this runs in, and write
+    nothing.
+    """
+    console = Console(file=io.StringIO(), width=TABLE_WIDTH, color_system=None, force_jupyter=False)
     show(console)
     assert isinstance(console.file, io.StringIO)
     return "\n".join(line.rstrip() for line in console.file.getvalue().rstrip().split("\n"))
@@ -56,7 +60,7 @@ class Collector(Console):
     """A console that keeps what is printed as HTML."""
 
     def __init__(self) -> None:
-        super().__init__(file=io.StringIO(), width=WIDE)
+        super().__init__(file=io.StringIO(), width=WIDE, force_jupyter=False)
         self.parts: list[str] = []
 
     def print(self, *objects: Any, **options: Any) -> None:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from numbers import Real
 
-from models.errors import CrankcheckError, suggestion
+from models.errors import CrankcheckError, shown, suggestion
 from reports.face.any_log import LogLike, MapLike
 from reports.face.arguments import SceneLike
 from reports.face.cell_verdict import CellVerdict
-from reports.face.log_verdict import LogVerdict, Target, judged
+from reports.face.log_verdict import LogVerdict, Target, judged, target_of
 from reports.face.told import told_at_the_call
 from reports.judge.tolerance import DEFAULTS
 from reports.plan.steps import positive
 from sim.engine import Run
 
-BY_ARGUMENT = {name.replace("-", "_"): name for name in DEFAULTS}
-"""Tolerances as arguments, which have no dashes in their names."""
+BY_ARGUMENT = {name.replace("-", "_"): name for name in DEFAULTS if name != "drive"}
+"""Tolerances as arguments, which have no dashes in their names; ``drive`` is another argument."""
 
 
 @told_at_the_call
@@ -23,8 +24,9 @@ def assert_within(
     scene: SceneLike,
     log: Run | LogLike,
     *,
-    target: float | None = None,
+    target: Target = None,
     step_s: float | None = None,
+    drive: str = "scene",
     map: MapLike = None,
     require: str | Iterable[str] = (),
     **tolerances: float,
@@ -33,12 +35,13 @@ def assert_within(
 
     Parameters
     ----------
-    scene, log, step_s, map, require
+    scene, log, step_s, drive, map, require
         As of `judge`.
-    target : float or None
-        The largest error as a pure number, for the quantities that are not named.
+    target : float, Mapping or None
+        As of `judge`, for the quantities that are not named.
     **tolerances : float
-        The same for one quantity each: ``angle=1e-4``, ``velocity_differenced=1e-3``.
+        The same for one quantity each: ``angle=1e-4``, ``velocity_differenced=1e-3``; that of
+        quantity drive is ``target={"drive": 1e-6}``.
 
     Returns
     -------
@@ -52,14 +55,11 @@ def assert_within(
     CrankcheckError
         As of `judge`; a tolerance of what is no quantity, whose message suggests the near ones.
     """
-    limits = {_quantity(name): number for name, number in tolerances.items()}
-    wanted: Target = limits or None
-    if target is not None:
-        every = positive("--target", target, "pure numbers, such as 1e-3")
-        wanted = {**dict.fromkeys(DEFAULTS, every), **limits} if limits else every
-    found = judged(
-        scene, log, target=wanted, step_s=step_s, drive="scene", map=map, require=require
-    )
+    __tracebackhide__ = True  # the line that asserts is the caller's
+    _refuse_number(drive)
+    named = {_quantity(name): _limit(name, number) for name, number in tolerances.items()}
+    limits = target_of(target) | named
+    found = judged(scene, log, limits, step_s=step_s, drive=drive, map=map, require=require)
     if found.verdict != "within":
         raise AssertionError(f"\n{found}")
     return found
@@ -71,3 +71,17 @@ def _quantity(argument: str) -> str:
         return BY_ARGUMENT[argument]
     hint = suggestion(argument, BY_ARGUMENT, "use one of", 2, 0.6)
     raise CrankcheckError(f"{argument}: it is no quantity; {hint}")
+
+
+def _limit(argument: str, number: float) -> float:
+    """A tolerance, above 0. Raises CrankcheckError."""
+    return positive(argument, number, "pure numbers: rad, lengths over that of the longest link")
+
+
+def _refuse_number(drive: object) -> None:
+    """Refuse a tolerance in the place of what moves the truth. Raises CrankcheckError."""
+    if isinstance(drive, Real):
+        raise CrankcheckError(
+            f"drive: found {shown(drive)}; give scene, fitted or logged; the tolerance of quantity "
+            "drive is target={'drive': 1e-6}"
+        )

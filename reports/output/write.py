@@ -23,14 +23,20 @@ NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 can not hold, escaped or not."""
 
 
-def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
+def check_file(
+    path: Path,
+    option: str,
+    endings: tuple[str, ...] = (),
+    *,
+    inputs: Iterable[Path | None] = (),
+) -> None:
     """Refuse a file that could not be written, before anything is run.
 
     Raises
     ------
     CrankcheckError
         An ending that is not one of ``endings``, a link, a folder in its place, no folder to hold
-        it, or no right to write there.
+        it, no right to write there, or that it is read (``inputs``).
     """
     if endings and path.suffix.lower() not in endings:
         ending = repr(path.suffix) if path.suffix else "no ending"
@@ -38,6 +44,7 @@ def check_file(path: Path, option: str, endings: tuple[str, ...] = ()) -> None:
     with _looking_at(path, option):
         if not _is_stream(path):
             refuse_link(path, option)
+            _refuse_input(path, option, inputs)
     _check_place(path, option)
 
 
@@ -89,9 +96,16 @@ def _write_into(stream: Path, raw: bytes) -> None:
         stream.write_bytes(raw)
 
 
-def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
+def check_folder(
+    path: Path,
+    option: str,
+    files: Iterable[str] = (),
+    *,
+    inputs: Iterable[Path | None] = (),
+) -> None:
     """Refuse a folder that could be neither written nor created, or whose ``files`` could not be
-    replaced. Raises CrankcheckError."""
+    replaced or are read (``inputs``). Raises CrankcheckError."""
+    read = list(inputs)
     with _looking_at(path, option):
         nearest = path
         while not nearest.exists() and nearest != nearest.parent:
@@ -105,6 +119,7 @@ def check_folder(path: Path, option: str, files: Iterable[str] = ()) -> None:
             )
     for name in files if nearest == path else ():
         _check_place(path / name, option)
+        _refuse_input(path / name, option, read)
 
 
 def check_outputs(
@@ -118,10 +133,11 @@ def check_outputs(
     two of all these that are one file, and one that is read (``inputs``). Raises CrankcheckError.
     """
     outputs = [(option, path) for option, path in files.items() if path is not None]
+    read = list(inputs)
     for option, path in outputs:
-        check_file(path, option)
+        check_file(path, option, inputs=read)
     if folder is not None:
-        check_folder(folder, "-o", names)
+        check_folder(folder, "-o", names, inputs=read)
         outputs += [("-o", folder / name) for name in names]
     taken: dict[Path, str] = {}
     for option, path in outputs:
@@ -133,8 +149,6 @@ def check_outputs(
                 f"{taken[real]} and {option}: both name {path}; give each a file of its own"
             )
         taken[real] = option
-        if not several:
-            _refuse_input(path, option, inputs)
 
 
 def _refuse_input(path: Path, option: str, inputs: Iterable[Path | None]) -> None:

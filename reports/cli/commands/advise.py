@@ -17,6 +17,7 @@ from reports.advise.evidence import Evidence, evidence, stored_choices, stored_s
 from reports.advise.prices import prices, timings
 from reports.advise.search import Reached, search_all
 from reports.advise.table import show
+from reports.cli.commands.stored_files import stored_files
 from reports.cli.measuring import AdviseRequest
 from reports.output.console import tell
 from reports.output.provenance import provenance
@@ -35,11 +36,12 @@ def run_advise(request: AdviseRequest, console: Console, progress: Console) -> i
     """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
     where none could be run. Raises CrankcheckError for what can be told of the request before
     anything runs."""
+    read = [*map(find_scene, request.scenes), *stored_files(request.study)]
+    check_outputs({"--json": request.json}, inputs=read)
     stored = _study(request)
     scenes, texts = _scenes(request, stored)
     demand = demanded(scenes, request.speed, request.dt_s, request.target, request.turns)
     engines = chosen_engines(request.engines)
-    check_outputs({"--json": request.json}, inputs=[find_scene(name) for name in request.scenes])
     every = lines(stored) if stored else ()
     wanted = choices(engines, stored_choices(every))
     known = evidence(stored, every, demand, texts, wanted) if stored else Evidence()

@@ -6,6 +6,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.checking import DiffRequest
+from reports.cli.commands.stored_files import stored_files
 from reports.diff.junit import suite
 from reports.diff.markdown import markdown
 from reports.diff.terminal import show
@@ -34,7 +35,8 @@ def run_diff(request: DiffRequest, console: Console) -> int:
     """
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use {' or '.join(FORMATS)}")
-    check_outputs({"-o": request.output, "--junit": request.junit})
+    read = stored_files(request.old, request.new)
+    check_outputs({"-o": request.output, "--junit": request.junit}, inputs=read)
     old = read_run(request.old, request.old_version, "--old-version")
     new = read_run(request.new, request.new_version, "--new-version")
     for run in (old, new) if request.old != request.new else (old,):

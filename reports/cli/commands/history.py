@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
+from models.files import find_scene
 from reports.cli.checking import HistoryRequest, VerifyRequest
 from reports.cli.commands import verify
 from reports.history.cache import alone, cache_folder
@@ -120,10 +121,11 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
     """Refuse outputs that can not be written, before anything is installed."""
     if request.folder is None:
         return
-    check_folder(request.folder, "-o", FILES)
+    read = [find_scene(name) for name in request.scenes]
+    check_folder(request.folder, "-o", FILES, inputs=read)
     for version in versions:
         refuse_link(request.folder / version.name, "-o")
-        check_folder(request.folder / version.name, "-o", verify.IN_FOLDER)
+        check_folder(request.folder / version.name, "-o", verify.IN_FOLDER, inputs=read)
 
 
 def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:

@@ -13,7 +13,7 @@ from rich.text import Text
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import harmless
-from models.files import load_scene, shipped
+from models.files import find_scene, load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
 from reports.describe.law import describe_law
@@ -58,7 +58,7 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
     Loops are closed at the pins of ``close``, the others where `models.tree` says.
     """
     if output is not None:
-        check_file(output, "-o", (".xml",))
+        check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
     scene = load_scene(name)
     start = solve(scene, np.zeros(1)).state()
     text = build(scene, start, replace(exact(scene), close=close))

@@ -11,7 +11,7 @@ from models.files import find_scene
 from reports.cli.showing import RunRequest
 from reports.face.simulation import Simulation, simulated
 from reports.output.frame_file import ENDINGS, write_frame
-from reports.output.write import check_file, check_outputs
+from reports.output.write import check_file
 from sim.registry import FIRST
 
 
@@ -23,8 +23,7 @@ def run_run(request: RunRequest, console: Console) -> int:
     hold.
     """
     if request.output is not None:
-        check_file(request.output, "-o", ENDINGS)
-        check_outputs({"-o": request.output}, inputs=[find_scene(request.scene)])
+        check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
     done = simulated(
         request.scene,
         FIRST if request.engine is None else request.engine,

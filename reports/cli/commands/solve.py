@@ -12,7 +12,7 @@ from analytic.kinematics import solve, solve_driven
 from analytic.mechanism.cycle import Along
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, harmless, suggestion
-from models.files import load_scene
+from models.files import find_scene, load_scene
 from models.motion import Motion
 from models.passing import passing
 from models.scene import Scene
@@ -42,7 +42,7 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     if request.clockwise and request.at_deg is None:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
     if request.output is not None:
-        check_file(request.output, "-o", ENDINGS)
+        check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)

@@ -13,6 +13,7 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files import find_scene
 from reports.cli.checking import VerifyRequest
+from reports.cli.commands.stored_files import stored_files
 from reports.diff.junit import suite as diff_suite
 from reports.diff.terminal import show as show_diff
 from reports.judge.cell import Cell, Checked
@@ -58,6 +59,7 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
     read = [find_scene(name) for name in request.scenes]
     check_outputs(files, request.folder, IN_FOLDER, inputs=read)
+    check_outputs(files, inputs=stored_files(request.baseline))  # which -o may go on from
     kept = request.baseline or request.folder or request.json
     digests = scene_digests(request.scenes) if kept else {}
     for note in passages(cells):

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from analytic.kinematics import solve
 from models.errors import harmless
-from models.files import load_scene
+from models.files import find_scene, load_scene
 from reports.output.write import check_file, write
 from sim.viewing import viewer
 
@@ -20,15 +20,16 @@ ENDINGS = (".gif", ".png")
 
 def run_view(name: str, output: Path | None, console: Console) -> None:
     """Show a scene. Raises CrankcheckError for a scene or a file that can not be used."""
+    read = [find_scene(name)]
     if output is not None:
-        check_file(output, "-o", ENDINGS)
+        check_file(output, "-o", ENDINGS, inputs=read)
     scene = load_scene(name)
     if output is None and has_screen():
         viewer()(scene, solve(scene, np.zeros(1)).state())
         return
     if output is None:
         output = Path(f"{scene.name}.gif")
-        check_file(output, "view", ENDINGS)
+        check_file(output, "view", ENDINGS, inputs=read)
         console.print("no screen here, so into a file:", style="dim")
     from reports.drawing import gif as picture
 

@@ -51,6 +51,29 @@ def test_what_is_not_given_keeps_the_default_of_the_request(
     assert asked(monkeypatch, line, function) == request
 
 
+@pytest.mark.parametrize(
+    ("line", "function"),
+    [
+        ("verify --dt {}", "verify"),
+        ("run a --dt {}", "run_run"),
+        ("judge a b --step {}", "run_judge"),
+        ("advise --dt {} --speed 1 --target 1", "run_advise"),
+    ],
+)
+def test_seconds_may_be_a_fraction(
+    line: str, function: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for text, number in {"1/60": 1 / 60, "1e-3/4": 2.5e-4, "0.02": 0.02}.items():
+        request = asked(monkeypatch, line.format(text), function)
+        (found,) = (getattr(request, name) for name in ("dt_s", "step_s") if hasattr(request, name))
+        assert found == number
+    for wrong in ("1/0", "1/", "/60", "1/60/2", "a", "60 Hz"):
+        command = [wrong if word == "{}" else word for word in line.split()]
+        result = CliRunner().invoke(app, command, catch_exceptions=False)
+        assert result.exit_code == 2
+        assert "no number of seconds" in " ".join(result.output.replace("│", " ").split())
+
+
 def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None:
     line = (
         "verify a b --engine c --engine d --profile e --dt 0.1 --steps-per-turn 2 --turns 3 "

@@ -137,7 +137,7 @@ def test_a_workbook_holds_a_name_that_a_workbook_can_not_hold(
     ringing = replace(fourbar, source="bell \x07")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.cli.commands.solve.load_scene", lambda _: ringing)
-        run_solve(SolveRequest("bell", None, None, None, path), Console())
+        run_solve(SolveRequest(fourbar.name, None, None, None, path), Console())
     assert "bell \ufffd" in pd.read_excel(path, sheet_name="source")["value"].tolist()
 
 

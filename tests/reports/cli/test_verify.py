@@ -179,7 +179,7 @@ MISTAKES = {
     "dt of 0": (["verify", "fourbar-lecture-1", "--dt", "0"], ["--dt 0", "above 0"]),
     "negative dt": (["verify", "fourbar-lecture-1", "--dt", "-1e-3"], ["--dt -0.001", "above 0"]),
     "dt of nan": (["verify", "fourbar-lecture-1", "--dt", "nan"], ["--dt nan", "above 0"]),
-    "dt of words": (["verify", "fourbar-lecture-1", "--dt", "small"], ["--dt", "valid number"]),
+    "dt of words": (["verify", "fourbar-lecture-1", "--dt", "small"], ["--dt", "no number"]),
     "large dt": (
         ["verify", "fourbar-lecture-1", "--dt", "0.1"],
         ["--dt 0.1", "6.28 steps in a turn", "at least 8", "at most 0.07854 s"],

@@ -139,6 +139,10 @@ def error_of(call: Callable[[], object]) -> crankcheck.CrankcheckError | None:
         (lambda: crankcheck.judge(SCENE, LOG, target=1, map={"time": 1}), "^map: time: found 1"),
         (lambda: crankcheck.judge(SCENE, "log.xml", target=1), "log log.xml: found '.xml'; use"),
         (lambda: assert_within(SCENE, LOG, angel=1e-3), "^angel: it is no quantity; did you mean"),
+        (lambda: crankcheck.judge(SCENE, LOG, map=[], target=1), "^map: found a list; .* a dict"),  # type: ignore[call-overload]
+        (lambda: crankcheck.judge(SCENE, {}, target=1), "^the log: found no columns; give times"),
+        (lambda: crankcheck.judge(SCENE, LOG, target={"x": 1}), "^target 'x': it is no quantity"),
+        (lambda: crankcheck.sweep(SCENE, __file__), "^folder .*.py is a file; name a folder"),
         (lambda: crankcheck.sweep(SCENE, "x", jobs=-1), "^jobs: found -1; give a whole number"),
         (lambda: crankcheck.sweep(SCENE, "x", settings={"iterations": 1}), "no engine and setting"),
         (lambda: crankcheck.sweep(SCENE, "x", profiles="tund"), "profile 'tund': mujoco has none"),

@@ -55,8 +55,8 @@ def test_the_log_of_a_run_has_its_errors(
 def test_a_frame_and_columns_by_name_are_judged_as_their_file(ran: crankcheck.Simulation) -> None:
     frame = ran.frame()
     by_name = {name: frame[name].to_numpy() for name in frame.columns}
-    indexed = frame.set_index("time_s")
-    for log in (frame, by_name, indexed):
+    indexed = [frame.set_index(names) for names in ("time_s", ["rocker_theta_rad", "time_s"])]
+    for log in (frame, by_name, *indexed):
         judged = crankcheck.judge(ran.scene, log, step_s=ran.dt_s)
         assert judged.errors is not None
         held_to_the_same(ran, judged.errors)

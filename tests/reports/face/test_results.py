@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 import crankcheck
 from reports.cli import app
 from reports.face.shown import Shown
+from reports.face.told import in_python
 
 SCENE = "fourbar-lecture-1"
 
@@ -76,6 +77,18 @@ def test_a_notebook_gets_a_drawing_and_tables_without_scripts(
     # The colours of the notebook around it: none is set for text, and none behind it.
     assert "background:#" not in page
     assert "currentColor" in page
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_text_in_a_notebook_is_the_text_and_is_not_shown_there_by_itself(
+    results: dict[str, Shown], kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """rich prints into the notebook that it is run in, whatever file it was given."""
+    one = results[kind]
+    text, page = str(one), one._repr_html_()
+    monkeypatch.setattr("rich.console._is_jupyter", lambda: True)
+    assert str(one) == text
+    assert one._repr_html_() == page
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -140,7 +153,33 @@ PAIRS: dict[str, Callable[[], Shown]] = {
 def test_a_result_prints_what_the_command_prints(command: str) -> None:
     printed = CliRunner().invoke(app, command.split(), catch_exceptions=False).stdout
     printed = re.sub("^(All samples|Points, and more digits): -o .*\n", "", printed, flags=re.M)
-    assert without_time(str(PAIRS[command]())) == without_time(printed)
+    own, told = without_time(str(PAIRS[command]())), without_time(printed)
+    if in_python(told) == told:
+        assert own == told
+    else:  # other words, and so other ends of lines
+        assert own.split() == in_python(told).split()
+
+
+def test_what_is_said_names_arguments_and_no_options(
+    ran: crankcheck.Simulation,
+) -> None:
+    log = {"time_s": [0.0, 0.1, 0.2], "rocker_rad": [1.0, 2.0, 3.0]}
+    verdicts: dict[str, crankcheck.CellVerdict | crankcheck.LogVerdict] = {
+        "tolerance": crankcheck.check(
+            SCENE, "pymunk", "as-shipped", dt_s=5e-3, tolerance={"angle": 1e-6}, converge=False
+        ),
+        "target": crankcheck.judge(SCENE, ran, target={"angle": 1e-12}),
+        "target of a log": crankcheck.judge(SCENE, log, target=1e-3),
+    }
+    for given, verdict in verdicts.items():
+        limit = next(each for each in verdict.failures if each.rule == "CC103")
+        assert f"({given.split()[0]})" in limit.text
+        assert verdict.limits["angle"].origin == given.split()[0]
+        assert not any("--" in each.text + each.cure for each in verdict.findings)
+        assert " --" not in str(verdict)
+        assert "(--" not in str(verdict)
+    tried = "Tried at the same step: sweep --set pymunk.iterations=300 leaves 0.1 of its limit."
+    assert in_python(tried).startswith("Tried at the same step: settings pymunk.iterations=300 ")
 
 
 def test_judge_prints_what_the_command_prints(ran: crankcheck.Simulation, tmp_path: Path) -> None:
@@ -163,6 +202,18 @@ def test_a_solution_is_a_motion_of_the_times_asked_for() -> None:
     parts = crankcheck.solve(SCENE, [0.0, 0.1], links="rocker", points=(), sliders=())
     assert "rocker" in str(parts)
     assert "mobility 1" in str(crankcheck.solve(SCENE, 0.0, links=(), points="C"))
+
+
+def test_arrays_are_the_callers_own() -> None:
+    """Nothing that is worked out later looks at them, and they are not those that were given."""
+    time_s = np.array([0.1, 0.2])
+    first = crankcheck.solve(SCENE, time_s)
+    kept = first.links["rocker"].theta.copy()
+    first.links["rocker"].theta[:] = first.points["C"].position[:] = first.time_s[:] = 0.0
+    assert time_s.tolist() == [0.1, 0.2]
+    assert crankcheck.solve(SCENE, time_s).links["rocker"].theta.tolist() == kept.tolist()
+    log = {"time_s": time_s, "rocker_rad": kept}
+    assert crankcheck.judge(SCENE, log, target=1e-12).verdict == "within"
 
 
 def test_names_from_files_are_no_html(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from traceback import walk_tb
 
 import numpy as np
 import pytest
@@ -35,6 +36,8 @@ def test_what_is_within_is_handed_back(
 def test_what_is_out_is_told_as_the_command_tells_it(log: dict[str, np.ndarray]) -> None:
     with pytest.raises(AssertionError) as told:
         assert_within(SCENE, log, angle=1e-3)
+    hidden = [frame.f_locals.get("__tracebackhide__") for frame, _ in walk_tb(told.tb)]
+    assert hidden == [None, True, True]  # pytest shows the line that asserts, and nothing below it
     text = str(told.value)
     assert text.startswith("\nOUT  the log, scene fourbar-lecture-1\n  CC103 angle: link rocker: ")
     assert "OUT rocker_deg   angle of rocker" in text
@@ -48,6 +51,19 @@ def test_of_a_run_it_is_the_table_of_verify(ran: crankcheck.Simulation) -> None:
     with pytest.raises(AssertionError, match="1e-08 rad") as told:
         assert_within(SCENE, ran, target=1e-8, position=1.0)
     assert "CC113" not in str(told.value)
+
+
+def test_what_moves_the_truth_is_said_as_of_judge(log: dict[str, np.ndarray]) -> None:
+    time_s = log["time_s"]
+    truth = crankcheck.solve(SCENE, 1.1 * time_s)
+    quicker = {"time_s": time_s, **{f"{name}_rad": truth.links[name].theta
+                                    for name in ("crank", "rocker")}}  # fmt: skip
+    for drive in ("fitted", "logged"):
+        assert_within(SCENE, quicker, drive=drive, angle=1e-9, target={"drive": 1e-9})
+    with pytest.raises(AssertionError, match="CC102 drive"):
+        assert_within(SCENE, quicker, target=1e-3)
+    with pytest.raises(crankcheck.CrankcheckError, match=r"drive: found 1e-09; give scene, fitted"):
+        assert_within(SCENE, quicker, target=1e-3, drive=1e-9)  # type: ignore[arg-type]
 
 
 def test_a_quantity_without_a_tolerance_is_asked_for(log: dict[str, np.ndarray]) -> None:
