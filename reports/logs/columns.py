@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,24 +13,17 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import pyarrow.parquet as pq  # type: ignore[import-untyped]  # ships no types
 
 from models.array import Array
-from models.errors import CrankcheckError, cut
+from models.errors import CrankcheckError, cut, suggestion
 from models.regular import UnreadableError, regular_bytes
 from models.samples import NO_NUMBERS
 from reports.logs.extent import refuse_columns, refuse_rows
 from reports.logs.text import Layout, text_columns
-from reports.logs.text_fields import COMMA
 from reports.logs.text_lines import row_line
 from reports.logs.workbook import sheet_columns
+from reports.logs.written_number import cure_of, written_number
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
-
-FORTRAN = re.compile(r"[-+]?[\d.]+d[-+]?\d+", re.IGNORECASE)
-"""A double of Fortran: 1.5D-3."""
-CLOCK = re.compile(r"(\d+ days?, )?\d+:\d\d.*|\d{2,4}[-./]\d\d?[-./]\d\d?.*")
-"""An hour, or a date: 00:00:01, 2026-01-01."""
-THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:[ ,.'\u2019]\d{3})+(?:[.,]\d*)?")
-"""Digits in groups of three: 1,000.5."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +69,15 @@ class Columns:
             raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
         return found
 
+    def require(self, asked: Iterable[str], where: str) -> None:
+        """Refuse names that a map has, ``where``, and the log has not. Raises CrankcheckError."""
+        for name in asked:
+            if name not in self.raw:
+                hint = suggestion(name, self.raw, "it has") if len(self.raw) < 40 else ""
+                raise CrankcheckError(
+                    f"{where}: {cut(name)!r} is not in {self.source}; {hint or 'see its header'}"
+                )
+
     def at(self, name: str, row: int) -> str:
         """A cell in words."""
         line = self.first + row_line(self.passed, row)
@@ -99,47 +100,14 @@ class Columns:
             try:
                 if isinstance(cell, bool) or not isinstance(cell, int | float | str):
                     raise ValueError
-                found[row] = self._number(cell) if isinstance(cell, str) else cell
+                found[row] = written_number(cell, self.decimal) if isinstance(cell, str) else cell
             except (ValueError, OverflowError):
+                text = cell if isinstance(cell, str) else ""
                 raise CrankcheckError(
                     f"{self.at(name, row)}: found {cut(repr(cell), 40)}, no number; "
-                    f"{self._cure(cell)}"
+                    f"{cure_of(text, self.decimal)}"
                 ) from None
         return found
-
-    def _number(self, cell: str) -> float:
-        """The number that a text is. Raises ValueError for none."""
-        if self.decimal == ",":
-            if "." in cell:
-                raise ValueError
-            cell = cell.replace(",", ".")
-        if "_" in cell:  # which Python takes for a number
-            raise ValueError
-        return float(cell)
-
-    def _cure(self, cell: object) -> str:
-        """What would make a number of a cell."""
-        text = cell.strip() if isinstance(cell, str) else ""
-        if COMMA.fullmatch(text) and self.decimal == ".":
-            return "write decimal points, or say decimal = ',' in [file] of the map"
-        if THOUSANDS.fullmatch(text):
-            return "write numbers without marks between the thousands"
-        if "." in text and self.decimal == "," and _is_float(text):
-            return "write a decimal comma, as the map says decimal = ','"
-        if FORTRAN.fullmatch(text):
-            return "write e for the d of the exponent"
-        if CLOCK.fullmatch(text):
-            return "write seconds from the start on"
-        return "write numbers alone, or leave the column out ([[channel]] ignore = true)"
-
-
-def _is_float(text: str) -> bool:
-    """Whether a text is a number with a decimal point."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def read_columns(
