@@ -97,7 +97,7 @@ def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
             continue
         line, counted = line + 1, last  # its own quotes are none
         passed.append(line)
-        if last - first > 2:  # arrow passes over lines with nothing in them itself
+        if raw[first:last].strip(b"\r\n"):  # arrow passes over lines with nothing in them itself
             kept.append(view[at:first])
             at = last
     kept.append(view[at:])

@@ -83,6 +83,7 @@ def test_decimal_commas_are_read_where_the_map_says_so(tmp_path: Path) -> None:
     [
         "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done\n",
         "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done",
+        "t,a b\n#\n0,1.5\n#\n0.1,-2.25\n0.2,3e-7\n#",
         "t,a b\r\n0,1.5\r\n0.1,-2.25\r\n0.2,3e-7\r\n\r\n# done\r\n",
         "t,a b\n# go\n0,1.5\n  # half, of it\n0.1,-2.25\n   \n% on\n// and on\n0.2,3e-7\n",
         '# don"t\nt,a b\n# "\n0,1.5\n# don"t\n0.1,-2.25\n# "\n0.2,3e-7\n',
@@ -95,6 +96,31 @@ def test_remarks_are_passed_over_wherever_they_stand(tmp_path: Path, text: str) 
     found = read_columns(written(tmp_path, text))
     assert list(found.raw) == ["t", "a b"]
     assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+
+
+BETWEEN = ("", "  ", "#", "# a", "% b, c", "// d", " # e", '# "', "#1,2", "#1\t2", "\t# t")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_number_is_told_by_its_line_whatever_stands_between(
+    tmp_path: Path, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    separator = str(rng.choice([",", ";", "\t", " "]))
+    end, last = str(rng.choice(["\n", "\r\n"])), separator if rng.random() < 0.3 else ""
+    values = rng.integers(-99, 99, (rng.integers(1, 9), rng.integers(2, 5))) / 8
+    rows = [["n1", "n2", "n3", "n4"][: values.shape[1]], *values.tolist()]
+    lines: list[str] = []
+    at = []
+    for row in rows:
+        lines += rng.choice(BETWEEN, rng.integers(0, 3)).tolist()
+        at.append(len(lines) + 1)
+        lines.append(separator.join(map(str, row)) + last)
+    lines += rng.choice(BETWEEN, rng.integers(0, 3)).tolist()
+    found = read_columns(written(tmp_path, end.join(lines) + end * int(rng.integers(0, 2))))
+    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), values)
+    for row, line in enumerate(at[1:]):
+        assert found.at("n1", row).endswith(f"row {line}, column 'n1'")
 
 
 def test_remarks_among_columns_that_spaces_line_up_are_passed_over(tmp_path: Path) -> None:
