@@ -26,7 +26,7 @@ from analytic.dyads.steps import Step, prepare, stretched
 from analytic.reach import Range, describe_reach, ranges
 from analytic.result import MotionArrays, Selection
 from analytic.structure.mobility import analyse
-from analytic.turns.cells import Look
+from analytic.turns.cells import CellSolver
 from analytic.turns.count import Counter, Turns
 from models.array import Array
 from models.errors import ReachError
@@ -178,7 +178,7 @@ class _Prepared:
     @cached_property
     def turns(self) -> Turns:
         """The whole turns of the links, worked out when they are first asked for."""
-        look = Look(self.scene, self.steps, self.passages)
+        look = CellSolver(self.scene, self.steps, self.passages)
         return Turns.of(look, self.start, self.period)
 
     @property

@@ -85,7 +85,7 @@ class Cells:
 
 
 @dataclass(frozen=True)
-class Look:
+class CellSolver:
     """Looks at a scene at driver angles that are uncertain."""
 
     scene: Scene

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from analytic.turns.cells import Cells, Look
+from analytic.turns.cells import Cells, CellSolver
 from models.array import Array
 
 
@@ -37,7 +37,7 @@ class Turns:
     step_rad: float
 
     @staticmethod
-    def of(look: Look, start: float, period: float) -> Turns:
+    def of(look: CellSolver, start: float, period: float) -> Turns:
         """The turns of a mechanism that repeats after a ``period`` of its driver, which stands at
         ``start`` at time 0 [rad]."""
         turns = _joined(look.divided(start, period), period)

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from reports.advise.demand import Demand
-from reports.advise.evidence import Evidence
+from reports.advise.evidence import MeasuredStudy
 from reports.advise.prices import Price, Prices
-from reports.advise.search import Reached
+from reports.advise.search import SearchResult
 from reports.output.numbers import count, short
 from reports.results.cost import equal
 from sim.registry import engine, offering
@@ -20,7 +20,7 @@ from sim.snippets import Stepping, frame_snippet
 class Offer:
     """A choice with what it reaches, and what that costs."""
 
-    reached: Reached
+    reached: SearchResult
     price: Price | None
 
     @property
@@ -43,7 +43,7 @@ class Advice:
     demand: Demand
     offers: tuple[Offer, ...]
     noise: float
-    known: Evidence
+    known: MeasuredStudy
     facts: Mapping[str, str] = field(default_factory=dict)
     named: bool = True
 
@@ -125,7 +125,7 @@ class Advice:
         return min(level, key=lambda offer: offer.place[2])
 
 
-def offers(found: Sequence[Reached], priced: Prices) -> tuple[Offer, ...]:
+def offers(found: Sequence[SearchResult], priced: Prices) -> tuple[Offer, ...]:
     """What was found and timed, cheapest first."""
     every = [Offer(one, price) for one, price in zip(found, priced.each, strict=True)]
     return tuple(sorted(every, key=lambda offer: offer.place))

@@ -48,7 +48,7 @@ class MeasuredSteps:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class MeasuredStudy:
     """The measured steps of a store, by choice (its engine and settings) and scene; ``turns`` is
     how long its shortest run was, ``refusals`` say what of it does not serve, and why."""
 
@@ -100,7 +100,7 @@ def evidence(
     demand: Demand,
     texts: Mapping[str, str],
     wanted: Iterable[Choice],
-) -> Evidence:
+) -> MeasuredStudy:
     """What the lines of a store say of the scenes demanded, whose texts these are, at their speed.
 
     A line of cells serves where the scene is the same but for the size of the speed, the engine is
@@ -125,7 +125,7 @@ def evidence(
     absent = [name for name in scenes if name not in stored_scenes(stored)]
     told = [f"{', '.join(dict.fromkeys(labels))}: {why}" for why, labels in refusals.items()]
     told += [f"{', '.join(absent)}: not in the study"] if absent else []
-    return Evidence(stored.folder, min(turns), measured, tuple(told))
+    return MeasuredStudy(stored.folder, min(turns), measured, tuple(told))
 
 
 def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choice) -> str:

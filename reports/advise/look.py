@@ -28,7 +28,7 @@ WORDS = {
 
 
 @dataclass(frozen=True)
-class Look:
+class TriedRun:
     """What came of a run. ``error`` is that of place, over all its samples, infinite where it did
     not end well; ``growth`` is that of the second half of the turns over that of the first, NaN
     where nothing tells."""
@@ -44,7 +44,7 @@ class Look:
         return self.growth > GROWS
 
 
-def look(cell: Cell) -> Look:
+def look(cell: Cell) -> TriedRun:
     """Run a cell, and hold its places to the reference."""
     try:
         start = Truth(cell.scene, bound=False).start
@@ -58,26 +58,26 @@ def look(cell: Cell) -> Look:
             settings=cell.settings,
         )
     except EngineError as error:
-        return Look(math.inf, "unsupported", str(error))
+        return TriedRun(math.inf, "unsupported", str(error))
     if done.status == "unsupported" or done.motion is None:
-        return Look(math.inf, done.status, done.reason)
+        return TriedRun(math.inf, done.status, done.reason)
     try:
         return _seen(error_series(cell.scene, done))
     except CrankcheckError as error:
-        return Look(math.inf, "crashed", f"no reference to compare with: {error}")
+        return TriedRun(math.inf, "crashed", f"no reference to compare with: {error}")
 
 
-def _seen(series: ErrorSeries) -> Look:
+def _seen(series: ErrorSeries) -> TriedRun:
     """What the errors of a run say of it."""
     if series.status != "ok":
-        return Look(math.inf, series.status, series.reason)
+        return TriedRun(math.inf, series.status, series.reason)
     if series.departure is not None:
-        return Look(math.inf, "branch-changed", f"{series.departure.link} left its branch")
+        return TriedRun(math.inf, "branch-changed", f"{series.departure.link} left its branch")
     if series.incomplete:
-        return Look(math.inf, "crashed", series.incomplete)
+        return TriedRun(math.inf, "crashed", series.incomplete)
     error, _ = series.worst(series.place)
     turn = series.turn
     late = turn > 0.5 * turn[-1]
     early = float(series.place[~late].max(initial=0.0))
     growth = float(series.place[late].max(initial=0.0)) / early if early > 0.0 else math.nan
-    return Look(error, growth=growth if turn[-1] >= 2.0 else math.nan)
+    return TriedRun(error, growth=growth if turn[-1] >= 2.0 else math.nan)

@@ -7,7 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass
 
 from reports.advise.demand import Demand
-from reports.advise.search import LIMITS, Reached
+from reports.advise.search import LIMITS, SearchResult
 from reports.results.cost import apart, noise_of
 from reports.sweep.measured import Repeats, timed_in_turns
 from reports.workers.isolated import Isolated
@@ -38,7 +38,7 @@ class Prices:
 
 
 def prices(
-    demand: Demand, found: Sequence[Reached], done: Callable[[], None] = lambda: None
+    demand: Demand, found: Sequence[SearchResult], done: Callable[[], None] = lambda: None
 ) -> Prices:
     """Time every promise at its step, alone on this machine; ``done`` is called `timings` times."""
     promised = [(one, one.promise.substeps) for one in found if one.promise]
@@ -54,13 +54,13 @@ def prices(
     return Prices(tuple(each), noise)
 
 
-def timings(demand: Demand, found: Sequence[Reached]) -> int:
+def timings(demand: Demand, found: Sequence[SearchResult]) -> int:
     """How many timings there are."""
     return ROUNDS * len(demand.scenes) * sum(one.promise is not None for one in found)
 
 
 def _price(
-    demand: Demand, one: Reached, timings: Sequence[tuple[Repeats, Repeats] | None]
+    demand: Demand, one: SearchResult, timings: Sequence[tuple[Repeats, Repeats] | None]
 ) -> Price | None:
     """That of the dearest scene."""
     least = [min(*timing[0], *timing[1]) for timing in timings if timing is not None]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from models.errors import few
 from reports.advise.advice import Advice, Offer
-from reports.advise.search import Reached, Worst
+from reports.advise.search import SearchResult, Worst
 
 SHOWN = 3
 """Numbers of sub-steps that a sentence names."""
@@ -31,7 +31,7 @@ def _of(advice: Advice, offer: Offer) -> Iterator[str]:
     yield advice.caution(offer)
 
 
-def _unsteady(reached: Reached) -> str:
+def _unsteady(reached: SearchResult) -> str:
     """That it was luck that some numbers reached the target."""
     if not reached.unsteady:
         return ""

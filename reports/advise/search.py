@@ -11,8 +11,8 @@ from functools import partial
 from models.scene import Scene
 from reports.advise.choices import Choice
 from reports.advise.demand import Demand
-from reports.advise.evidence import Evidence
-from reports.advise.look import LONGER, Look, look
+from reports.advise.evidence import MeasuredStudy
+from reports.advise.look import LONGER, TriedRun, look
 from reports.plan.coarsest import coarsest
 from reports.workers.isolated import Isolated, Limits, Lost
 from reports.workers.scheduler import as_they_end
@@ -29,7 +29,7 @@ class Worst:
 
     substeps: int
     scene: str
-    seen: Look
+    seen: TriedRun
 
     @property
     def error(self) -> float:
@@ -37,7 +37,7 @@ class Worst:
 
 
 @dataclass(frozen=True)
-class Reached:
+class SearchResult:
     """What came of a choice.
 
     ``at_frame`` is the worst with one step to a frame, None where such a step is too long for a
@@ -55,18 +55,18 @@ class Reached:
     held_at: tuple[int, ...] = ()
     unsteady: tuple[int, ...] = ()
     runs: int = 0
-    ended: Look | None = None
+    ended: TriedRun | None = None
 
 
 def search_all(
     demand: Demand,
     wanted: Sequence[Choice],
-    known: Evidence,
+    known: MeasuredStudy,
     jobs: int,
-    done: Callable[[Reached], None] = lambda _: None,
-) -> list[Reached]:
+    done: Callable[[SearchResult], None] = lambda _: None,
+) -> list[SearchResult]:
     """Search for every choice, several at a time, each in a process that it may crash."""
-    results: dict[int, Reached] = {}
+    results: dict[int, SearchResult] = {}
     work = partial(_reached, demand, known)
     with closing(as_they_end(work, wanted, jobs, LIMITS)) as ends:
         for index, reached in ends:
@@ -84,14 +84,14 @@ class EndedError(Exception):
 
 
 @dataclass
-class _Looks:
+class _TriedRuns:
     """The looks at a choice so far, by number of sub-steps and scene."""
 
     demand: Demand
-    known: Evidence
-    child: Isolated[Look]
+    known: MeasuredStudy
+    child: Isolated[TriedRun]
     choice: Choice
-    seen: dict[int, dict[str, Look]] = field(default_factory=dict)
+    seen: dict[int, dict[str, TriedRun]] = field(default_factory=dict)
     runs: int = 0
     _last: dict[str, float] = field(default_factory=dict)
 
@@ -118,7 +118,7 @@ class _Looks:
 
     def forget_the_study(self) -> None:
         """Keep what was run now alone."""
-        self.known = Evidence()
+        self.known = MeasuredStudy()
         run = {
             substeps: {name: seen for name, seen in here.items() if not seen.studied}
             for substeps, here in self.seen.items()
@@ -137,12 +137,12 @@ class _Looks:
         name = max(here, key=lambda name: here[name].error)
         return Worst(substeps, name, here[name])
 
-    def _read(self, scene: Scene, substeps: int) -> Look | None:
+    def _read(self, scene: Scene, substeps: int) -> TriedRun | None:
         """What the study has between its steps; None where it has nothing."""
         error = self.known.error(scene, self.choice, self.demand.steps_per_turn(substeps))
-        return None if error is None else Look(error, studied=True)
+        return None if error is None else TriedRun(error, studied=True)
 
-    def _run(self, scene: Scene, substeps: int) -> Look:
+    def _run(self, scene: Scene, substeps: int) -> TriedRun:
         """A run now; a longer one where the error grows, and is not over the target yet."""
         seen = self._call(scene, substeps)
         if seen.grows and seen.error <= self.demand.target:
@@ -151,16 +151,18 @@ class _Looks:
             raise EndedError(Worst(substeps, scene.name, seen))
         return seen
 
-    def _call(self, scene: Scene, substeps: int, longer: float = 1.0) -> Look:
+    def _call(self, scene: Scene, substeps: int, longer: float = 1.0) -> TriedRun:
         self.runs += 1
         cell = self.demand.cell(scene, self.choice, substeps, longer)
         found = self.child.call(look, cell)
-        return Look(math.inf, found.status, found.reason) if isinstance(found, Lost) else found
+        return TriedRun(math.inf, found.status, found.reason) if isinstance(found, Lost) else found
 
 
-def _reached(demand: Demand, known: Evidence, child: Isolated[Look], choice: Choice) -> Reached:
+def _reached(
+    demand: Demand, known: MeasuredStudy, child: Isolated[TriedRun], choice: Choice
+) -> SearchResult:
     """The search for one choice."""
-    looks = _Looks(demand, known, child, choice)
+    looks = _TriedRuns(demand, known, child, choice)
     at_frame, promise, nearest, last = None, None, None, None
     try:
         first = looks.worst(demand.least, whole=True)
@@ -174,7 +176,7 @@ def _reached(demand: Demand, known: Evidence, child: Isolated[Look], choice: Cho
         last = ended.worst.seen
         at_frame = at_frame or (ended.worst if ended.worst.substeps == 1 else None)
     within = sorted(n for n in looks.seen if looks.reached(n))
-    return Reached(
+    return SearchResult(
         choice=choice,
         at_frame=at_frame,
         promise=promise,
@@ -186,7 +188,7 @@ def _reached(demand: Demand, known: Evidence, child: Isolated[Look], choice: Cho
     )
 
 
-def _fewest(looks: _Looks) -> int | None:
+def _fewest(looks: _TriedRuns) -> int | None:
     """The fewest sub-steps that reach the target, and do so in runs now.
 
     What the study promises is run; where that is over the target, all is looked for by runs.
@@ -206,7 +208,7 @@ def _fewest(looks: _Looks) -> int | None:
     return found(substeps)
 
 
-def _nearest(looks: _Looks) -> Worst | None:
+def _nearest(looks: _TriedRuns) -> Worst | None:
     """The least error over the target of all that were looked at; None where no run came to its
     end."""
     over = [looks.worst_seen(n) for n in looks.seen if not looks.reached(n)]

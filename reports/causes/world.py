@@ -22,7 +22,7 @@ Drive = Callable[[Array], tuple[Array, Array, Array]]
 
 
 @dataclass(frozen=True)
-class Frame:
+class LogFrame:
     """How a log has the plane: all lengths times ``size``; seen from behind where ``mirrored`` (the
     y-axis turned round), then turned by ``turn_rad``, then moved by ``shift_m``."""
 
@@ -65,7 +65,7 @@ class World:
     drive: Drive | None = None
     stamps: tuple[Stamps, ...] = ()
     pace: float = 1.0
-    frames: tuple[Frame, ...] = ()
+    frames: tuple[LogFrame, ...] = ()
 
     @staticmethod
     def of(truth: Truth) -> World:
@@ -103,7 +103,7 @@ class World:
         """The world where the stamps of the log stand for other instants."""
         return replace(self, stamps=(*self.stamps, change))
 
-    def framed(self, frame: Frame) -> World:
+    def framed(self, frame: LogFrame) -> World:
         """The world where the log has the plane in another way."""
         return replace(self, frames=(*self.frames, frame))
 

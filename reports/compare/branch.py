@@ -40,9 +40,7 @@ def departure(beside: Beside) -> Departure | None:
         closed &= np.abs(gap) < CLOSED * beside.scene.longest_m
     left: list[tuple[int, str]] = []
     far = np.zeros_like(closed)
-    for track in beside.places:
-        if track.quantity != "angle":
-            continue
+    for track in beside.tracks(("angle",), beside.reference):
         off = np.abs(track.error)
         away = np.flatnonzero(closed & (off > AWAY_RAD))
         far[away] = True

@@ -91,7 +91,7 @@ def compare(beside: Beside | None) -> Errors | None:
     return Errors(
         rows=(
             *_whole(beside, at, "drive"),
-            *(_row(track, at) for track in beside.places),
+            *_whole(beside, at, "place"),
             *geometric,
             *_whole(beside, at, "closure"),
             *reported,
@@ -123,7 +123,7 @@ def places(beside: Beside | None) -> list[Error]:
     at = _instants(beside, beside.motion.time_s, beside.reference)
     return [
         *_whole(beside, at, "drive"),
-        *(_row(track, at) for track in beside.places),
+        *_whole(beside, at, "place"),
         *_whole(beside, at, "closure"),
     ]
 
@@ -172,8 +172,10 @@ def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
 
 
 def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:
-    """The quantities that play a role, each over the whole run."""
-    return [_row(track, at) for track in beside.tracks(named(role), beside.reference)]
+    """The quantities that play a role, each over the whole run; one after the other, as the tracks
+    of one take enough memory."""
+    every = (beside.tracks((name,), beside.reference) for name in named(role))
+    return [_row(track, at) for tracks in every for track in tracks]
 
 
 def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:

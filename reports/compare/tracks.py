@@ -56,12 +56,24 @@ def tracks(scene: Scene, run: Run, reference: Motion, quantities: Iterable[str])
                     quantity=quantity,
                     body_kind=measure.body_kind,
                     body=body,
-                    error=angle_error(engine, right) if turns else engine - right,
-                    bound=bounds[body] if body in bounds else np.zeros(right.shape[0]),
+                    error=_error(engine, right, turns=turns),
+                    bound=bounds[body] if body in bounds else _one(0.0, right.shape[:1]),
                     truth=right,
                     scale=scale,
                     unit=measure.unit,
                 )
+
+
+def _error(engine: Array, right: Array, *, turns: bool) -> Array:
+    """Engine less reference: where the engine has nothing, one NaN for all."""
+    if np.isnan(engine[:1]).all() and np.isnan(engine).all():
+        return _one(np.nan, right.shape)
+    return angle_error(engine, right) if turns else engine - right
+
+
+def _one(number: float, shape: tuple[int, ...]) -> Array:
+    """A number as a series, which takes no memory: of a long log there are many."""
+    return np.broadcast_to(np.float64(number), shape)
 
 
 def fitting(series: Array | None, like: Array) -> Array:

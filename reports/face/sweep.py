@@ -119,7 +119,7 @@ def sweep(
     )
     from reports.output.console import terminal
     from reports.plan.chosen import chosen_engines
-    from reports.plan.chosen_study import Choice, chosen_study
+    from reports.plan.chosen_study import StudyChoice, chosen_study
     from reports.plan.study import load_study
     from reports.sweep.whole import Manner, swept
     from reports.workers.isolated import checked_limits
@@ -142,7 +142,7 @@ def sweep(
         again=is_true(again, "again"),
     )
     with ExitStack() as kept:
-        choice = Choice(
+        choice = StudyChoice(
             scene_names(scenes, kept),
             named,
             names_in(profiles, "profiles"),

@@ -12,7 +12,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.scene_text import scene_text
 from reports.face.arguments import each_of, kind_of, path_of, scene_of, setting_of
-from reports.plan.chosen_study import Choice, Overrides, refuse_other_engine
+from reports.plan.chosen_study import Overrides, StudyChoice, refuse_other_engine
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
 
@@ -83,7 +83,7 @@ def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
     return found
 
 
-def command_of(choice: Choice, folder: Path, study: object) -> list[str]:
+def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
     """The command that does the same, which a store tells to mend it."""
     several = ",".join(f"{each:g}" for each in choice.steps_per_turn)
     options = [

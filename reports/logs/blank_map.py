@@ -9,7 +9,9 @@ from models.scene import Scene
 from reports.logs.columns import Columns
 from reports.logs.map_file import HEAD, Map, file_lines, told_lines, toml_text
 from reports.logs.meanings import wanted
-from reports.logs.names import Named, meaning, time_of
+from reports.logs.names import meaning
+from reports.logs.scene_names import SceneNames
+from reports.logs.time_columns import time_of
 
 
 def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | None:
@@ -32,7 +34,7 @@ def blank_map(columns: Columns, scene: Scene, map_: Map) -> tuple[str, str] | No
         *([] if times else ["the column of the times, in [time]"]),
         *([] if bodies else ["of at least one column what it is of, in a [[channel]]"]),
     ]
-    named = Named(scene)
+    named = SceneNames(scene)
     lines = [
         *HEAD,
         f"# Still to be filled in: {'; '.join(lacks)}.",
@@ -85,7 +87,7 @@ def _bodies(scene: Scene) -> Sequence[str]:
     return list(dict.fromkeys([*scene.links, *points, *scene.sliders]))
 
 
-def _why_not(name: str, named: Named) -> str:
+def _why_not(name: str, named: SceneNames) -> str:
     """Why nothing is made of a column, in a line."""
     try:
         found = meaning(name, named)

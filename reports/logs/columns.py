@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import io
-import re
-import warnings
-import zipfile
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +17,13 @@ from models.errors import CrankcheckError, cut, suggestion
 from models.regular import UnreadableError, regular_bytes
 from models.samples import NO_NUMBERS
 from reports.logs.extent import refuse_columns, refuse_rows
-from reports.logs.text import COMMA, Layout, text_columns
+from reports.logs.text import Layout, text_columns
+from reports.logs.text_lines import row_line
+from reports.logs.workbook import sheet_columns
+from reports.logs.written_number import cure_of, written_number
 
 ENDINGS = (".csv", ".tsv", ".txt", ".parquet", ".xlsx")
 MOST_BYTES = 600_000_000
-MOST_SHEET_BYTES = 400_000_000
-"""Of a workbook when it is unpacked."""
-MOST_CELLS = 20_000_000
-"""Of a sheet, from the first to the last."""
-
-FORTRAN = re.compile(r"[-+]?[\d.]+d[-+]?\d+", re.IGNORECASE)
-"""A double of Fortran: 1.5D-3."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +31,16 @@ class Columns:
     """A log as it stands in its file: columns by name, of whatever they hold.
 
     ``first`` is what a reader would call the first row of numbers: its line in a file of text,
-    its row in a sheet, 0 in a frame.
+    its row in a sheet, 0 in a frame; ``passed`` are the lines from there on, by number, that are no
+    rows. ``decimal`` is what stands before the decimals of numbers that are text.
     """
 
     source: str
     raw: Mapping[str, Any]
     first: int = 0
     rows: int = 0
-    notes: tuple[str, ...] = ()
+    passed: Array = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    decimal: str = "."
 
     def numbers(self, name: str) -> Array:
         """A column as numbers, all of them finite.
@@ -75,9 +69,19 @@ class Columns:
             raise CrankcheckError(f"{self.at(name, row)}: {what}{more}; {cure}")
         return found
 
+    def require(self, asked: Iterable[str], where: str) -> None:
+        """Refuse names that a map has, ``where``, and the log has not. Raises CrankcheckError."""
+        for name in asked:
+            if name not in self.raw:
+                hint = suggestion(name, self.raw, "it has") if len(self.raw) < 40 else ""
+                raise CrankcheckError(
+                    f"{where}: {cut(name)!r} is not in {self.source}; {hint or 'see its header'}"
+                )
+
     def at(self, name: str, row: int) -> str:
         """A cell in words."""
-        return f"{self.source}, row {self.first + row}, column {cut(name)!r}"
+        line = self.first + row_line(self.passed, row)
+        return f"{self.source}, row {line}, column {cut(name)!r}"
 
     def cell(self, name: str, row: int) -> str:
         """What stands in a cell that is no finite number."""
@@ -96,23 +100,14 @@ class Columns:
             try:
                 if isinstance(cell, bool) or not isinstance(cell, int | float | str):
                     raise ValueError
-                if "_" in str(cell):  # which Python takes for a number
-                    raise ValueError
-                found[row] = float(cell)
+                found[row] = written_number(cell, self.decimal) if isinstance(cell, str) else cell
             except (ValueError, OverflowError):
+                text = cell if isinstance(cell, str) else ""
                 raise CrankcheckError(
-                    f"{self.at(name, row)}: found {cut(repr(cell), 40)}, no number; {_cure(cell)}"
+                    f"{self.at(name, row)}: found {cut(repr(cell), 40)}, no number; "
+                    f"{cure_of(text, self.decimal)}"
                 ) from None
         return found
-
-
-def _cure(cell: object) -> str:
-    """What would make a number of a cell."""
-    if isinstance(cell, str) and COMMA.fullmatch(cell.strip()):
-        return "write decimal points, or say decimal = ',' in [file] of the map"
-    if isinstance(cell, str) and FORTRAN.fullmatch(cell.strip()):
-        return "write e for the d of the exponent"
-    return "write numbers alone, or leave the column out ([[channel]] ignore = true)"
 
 
 def read_columns(
@@ -148,11 +143,16 @@ def read_columns(
             table, every = _parquet(raw, wanted)
             return _named(_of_table(str(path), [table]), every, path)
         if ending == ".xlsx":
-            return _sheet(str(path), raw, layout)
+            sheet = sheet_columns(raw, layout.sheet)
+            _refuse_twins(sheet.names, f"log {path}")
+            cells = dict(zip(sheet.names, sheet.columns, strict=True))
+            rows = len(sheet.columns[0])
+            return Columns(str(path), cells, sheet.first, rows, decimal=layout.decimal)
         text = text_columns(raw, layout, wanted)
-        first, names, tables = text.first, text.names, [text.table]
+        first, passed, names, tables = text.first, text.passed, text.names, [text.table]
         del raw, text
-        return _named(_of_table(str(path), tables, first), names, path)
+        columns = _named(_of_table(str(path), tables, first), names, path)
+        return replace(columns, passed=passed, decimal=layout.decimal)
     except UnreadableError as error:
         raise CrankcheckError(f"log {path}: {error}") from None
 
@@ -223,76 +223,3 @@ def _parquet(raw: bytes, wanted: Callable[[str], bool]) -> tuple[pa.Table, list[
         raise UnreadableError(
             f"no Parquet that can be read: {cut(str(error).splitlines()[0], 200)}"
         ) from None
-
-
-def _sheet(source: str, raw: bytes, layout: Layout) -> Columns:
-    """A sheet of a workbook: the one that the map names, or the first."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(raw)) as packed:
-            unpacked = sum(each.file_size for each in packed.infolist())
-        if unpacked > MOST_SHEET_BYTES:
-            raise UnreadableError(
-                f"{unpacked} bytes when it is unpacked; at most {MOST_SHEET_BYTES} are read: "
-                "save it as CSV"
-            )
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of styles and the like, which are not read
-            book = pd.ExcelFile(io.BytesIO(raw), engine="openpyxl")
-            names = [str(name) for name in book.sheet_names]
-            if layout.sheet and layout.sheet not in names:
-                hint = suggestion(layout.sheet, names, "the sheets are")
-                raise UnreadableError(f"no sheet {layout.sheet!r}; {hint}")
-            name = layout.sheet or names[0]
-            frame = _cells(book.book[name])
-    except UnreadableError:
-        raise
-    except Exception as error:  # whatever a damaged archive makes of its reader
-        why = cut(f"{type(error).__name__}: {error}".splitlines()[0], 200)
-        raise UnreadableError(f"no workbook that can be read: {why}") from None
-    return _of_cells(source, frame, name, len(names))
-
-
-def _cells(sheet: Any) -> pd.DataFrame:
-    """The cells of a sheet. Raises UnreadableError where they are far apart: a frame is as long and
-    wide as the last of them, whatever the file says of its size."""
-    sheet.reset_dimensions()
-    rows: list[Sequence[object]] = []
-    for row in sheet.iter_rows(values_only=True):
-        last = max((at for at, cell in enumerate(row) if cell is not None), default=-1)
-        rows.append(row[: last + 1])
-    while rows and not rows[-1]:
-        rows.pop()
-    wide = max(map(len, rows), default=0)
-    refuse_columns(wide)
-    refuse_rows(len(rows), 1)
-    if len(rows) * wide > MOST_CELLS:
-        raise UnreadableError(
-            f"cells up to row {len(rows)} and column {wide}; at most {MOST_CELLS} are read: clear "
-            "those that are far away, or save the sheet as CSV"
-        )
-    return pd.DataFrame(rows)
-
-
-def _of_cells(source: str, frame: pd.DataFrame, sheet: str, sheets: int) -> Columns:
-    """The columns of a sheet whose first row is the header."""
-    if frame.empty:
-        raise UnreadableError(f"sheet {sheet!r} is empty; a log has a header and rows of numbers")
-    head = ["" if pd.isna(cell) else str(cell).strip() for cell in frame.iloc[0]]
-    blank = [at + 1 for at, name in enumerate(head) if not name]
-    if blank:
-        raise UnreadableError(
-            f"sheet {sheet!r}: column {blank[0]} has no name in row 1; the first row holds the "
-            "names of the columns"
-        )
-    _refuse_twins(head, f"log {source}")
-    body = frame.iloc[1:]
-    if body.empty:
-        raise UnreadableError(f"sheet {sheet!r}: a header and no rows; a log has rows of numbers")
-    refuse_columns(len(head))
-    refuse_rows(len(body), len(head))
-    raw = {}
-    for at, name in enumerate(head):
-        cells = [None if pd.isna(cell) else _plain(cell) for cell in body.iloc[:, at]]
-        raw[name] = np.array(cells, dtype=object)
-    notes = (f"sheet {sheet!r}, the first of {sheets}",) if sheets > 1 else ()
-    return Columns(source, raw, 2, len(body), notes)

@@ -53,13 +53,13 @@ HEAD = (
 """What stands on top of a map that is written."""
 
 
-class Table(BaseModel):
+class MapTable(BaseModel):
     """A table of the map: unknown keys are faults."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class FileTable(Table):
+class FileTable(MapTable):
     """How the file is written; ``holes = "meant"`` lets an even log have some."""
 
     separator: Literal["", ",", ";", "\t", " "] = ""
@@ -68,7 +68,7 @@ class FileTable(Table):
     holes: Literal["", "meant"] = ""
 
 
-class TimeTable(Table):
+class TimeTable(MapTable):
     """The column of times, and its unit; with ``zero = "first"`` they are counted from the first
     row, where the scene's law begins."""
 
@@ -77,7 +77,7 @@ class TimeTable(Table):
     zero: Literal["", "first"] = ""
 
 
-class ChannelTable(Table):
+class ChannelTable(MapTable):
     """What a column means; what is left out is taken from its name."""
 
     column: Name
@@ -94,7 +94,7 @@ class ChannelTable(Table):
     time: Name | None = None
 
 
-class Map(Table):
+class Map(MapTable):
     """A whole map."""
 
     file: FileTable = FileTable()
@@ -232,7 +232,7 @@ def _fault(loc: tuple[int | str, ...], kind: str, message: str, found: object) -
     if kind == "missing":
         return f"{key}: missing; add it"
     if kind == "extra_forbidden":
-        models: dict[str, type[Table]] = {
+        models: dict[str, type[MapTable]] = {
             "file": FileTable,
             "time": TimeTable,
             "channel": ChannelTable,

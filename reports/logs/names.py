@@ -1,47 +1,26 @@
-"""What the name of a column says: of which body it is, of which kind, in which unit."""
+"""What the name of a column says: of which body it is, of which kind, in which unit.
+
+Our own grammar comes first, whatever bodies are called; then that of strangers' names.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import replace
 
-from models.errors import CrankcheckError, cut
-from models.scene import GROUND, Scene
-from reports.logs.kinds import KINDS, Kind
-from reports.logs.spelling import DIMENSION, spelled_unit
+from models.scene import GROUND
+from reports.logs.name_units import (
+    one_unit,
+    refuse_other_dimension,
+    trailing_unit,
+    without_unit,
+)
+from reports.logs.own_columns import Meaning
+from reports.logs.reading_words import kind_of_words
+from reports.logs.scene_names import SceneNames
 from reports.logs.units import si
-from reports.quantities.moving import MovingKind
 
-TIMES = {"time", "t", "timestamp", "time stamp", "times", "sim time", "simtime", "simulation time",
-         "elapsed", "elapsed time"}  # fmt: skip
-PLACES = {"pos", "position", "place", "coordinate", "coord"}
-SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
-ACCELERATIONS = {"a", "acc", "accel", "acceleration"}
-OWN: Mapping[tuple[MovingKind, str], str] = {
-    ("link", "angle"): "theta_rad",
-    ("link", "angular velocity"): "omega_rad_s",
-    ("link", "angular acceleration"): "alpha_rad_s2",
-    ("slider", "displacement"): "slider_displacement_m",
-    ("slider", "speed"): "slider_speed_m_s",
-    ("slider", "acceleration"): "slider_acceleration_m_s2",
-    **{("point", f"{rate}{axis}"): f"{rate}{axis}_{unit}"
-       for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for axis in "xy"},
-}  # fmt: skip
-"""What we call columns ourselves, after the name of the body (`reports.describe.frame`)."""
-TURNING: Sequence[set[str]] = (
-    {"theta", "angle", "ang", "phi", "rot", "rotation", "orientation", "q", *PLACES},
-    {"omega", "w", "angvel", "thetadot", "dtheta", "qd", *SPEEDS},
-    {"alpha", "angacc", "thetaddot", "qdd", *ACCELERATIONS},
-)
-SLIDING: Sequence[set[str]] = (
-    {"displacement", "disp", "s", "stroke", "travel", *PLACES},
-    {"sdot", *SPEEDS},
-    {"sddot", *ACCELERATIONS},
-)
-AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order, prefix in
-        enumerate(("", "v", "a"))} | {"px": (0, 0), "py": (0, 1)}  # fmt: skip
 FILLERS = {"angular", "linear", "of", "the", "link", "body", "point", "joint", "pin", "slider",
            "block", "log", "sensor", "at", "on", "in", "signal", "value"}  # fmt: skip
 AFTER = {"on", "of", "at"}
@@ -49,125 +28,9 @@ AFTER = {"on", "of", "at"}
 MODEL = re.compile(r"^[./]?model_?\d*(?=[./])", re.IGNORECASE)
 """What Adams begins all names with, and Gazebo."""
 RELATIVE = {"rel", "relative", "wrt", "to", "less", "minus"}
-DRIVERS = {"driver", "input", "motor"}
-LENGTH = "it is the length of a vector, whose components are judged"
-SHORT = 2
-"""Names of bodies up to this length are told apart by case: `a` is an acceleration, `A` a point."""
 
 
-@dataclass(frozen=True)
-class Meaning:
-    """What the name of a column says; "" and None for what it leaves open."""
-
-    of: str
-    kind: Kind | None
-    gap: bool
-    unit: str
-    relative_to: str = ""
-    on: str = ""
-
-
-@dataclass(frozen=True)
-class Named:
-    """The bodies of a scene, as the names of columns may have them."""
-
-    scene: Scene
-    _kinds: dict[str, tuple[str, ...]] = field(default_factory=dict)
-
-    @cached_property
-    def points(self) -> frozenset[str]:
-        return frozenset([*self.scene.pins, *(each.point for each in self.scene.sliders.values())])
-
-    @cached_property
-    def bodies(self) -> Sequence[str]:
-        """All names, longest first."""
-        every = {*self.scene.links, *self.points, *self.scene.sliders, GROUND}
-        return sorted(every, key=lambda name: (-len(name), name))
-
-    @cached_property
-    def own(self) -> Mapping[str, Meaning | str]:
-        """What the columns say that we write ourselves, whatever bodies are called: by name."""
-        found: dict[str, Meaning | str] = {}
-        for body in self.bodies:
-            kinds = self.kinds_of(body)
-            said: dict[str, Meaning | str] = {
-                name: Meaning(body, KINDS[key], False, si(KINDS[key].dimension))
-                for key, name in OWN.items()
-                if key[0] in kinds
-            }
-            if "point" in kinds:
-                said |= dict.fromkeys(("v_m_s", "a_m_s2"), LENGTH)
-            if "point" in kinds or "slider" in kinds:
-                said["gap_m"] = Meaning(body, None, True, "m")
-            found |= {f"{body}{mark}{name}": each for name, each in said.items() for mark in "_."}
-        return found
-
-    def kinds_of(self, name: str) -> tuple[MovingKind, ...]:
-        """What has that name: often a slider and its point have the same."""
-        there: Iterable[tuple[MovingKind, bool]] = (
-            ("link", name in self.scene.links),
-            ("point", name in self.points),
-            ("slider", name in self.scene.sliders),
-        )
-        return tuple(kind for kind, holds in there if holds)
-
-    def found(self, text: str) -> tuple[list[str], list[str]]:
-        """The bodies that a text names, in its order, and the words left, in lower case: `xC` and
-        `rockerAngle` too."""
-        bodies, words = self._apart(text)
-        if not bodies:
-            bodies, words = self._apart(self._parted(text))
-        if not bodies and not DRIVERS.isdisjoint(words):
-            bodies = [self.scene.driver.link]
-            words = [word for word in words if word not in DRIVERS]
-        return bodies, words
-
-    def _in_its_case(self, text: str) -> str:
-        """The body that is spelled so, or else the only one in other letters; "" for several."""
-        alike = [name for name in self.bodies if name.lower() == text.lower()]
-        return text if text in alike else alike[0] if len(alike) == 1 else ""
-
-    def _parted(self, text: str) -> str:
-        """A text with a space before each capital in a word, and between a point and its axis."""
-        text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
-        points = "|".join(re.escape(name) for name in self.bodies if name in self.points)
-        text = re.sub(rf"(?<![A-Za-z0-9])({points})([va]?[xy])(?![A-Za-z0-9])", r"\1 \2", text)
-        return re.sub(rf"(?<![A-Za-z0-9])([va]?[xy])({points})(?![A-Za-z0-9])", r"\1 \2", text)
-
-    def _apart(self, text: str) -> tuple[list[str], list[str]]:
-        """The bodies of a text, and its other words."""
-        places: list[tuple[int, str]] = []
-        for name in self.bodies:
-            flags = 0 if len(name) <= SHORT else re.IGNORECASE
-            pattern = rf"(?<![A-Za-z0-9]){re.escape(name)}(?![A-Za-z0-9])"
-            while hit := re.search(pattern, text, flags):
-                body = self._in_its_case(hit[0])
-                if not body:
-                    break
-                places.append((hit.start(), body))
-                text = text[: hit.start()] + " " * len(name) + text[hit.end() :]
-        words = [word.strip("/").lower() for word in re.split(r"[^A-Za-z0-9°µμ²/^*']+", text)]
-        return [name for _, name in sorted(places)], [word for word in words if word]
-
-
-def time_of(column: str, told: str = "") -> tuple[str, str] | None:
-    """Of a column of times: whose (``time``, ``velocity time``, ``acceleration time``), and the
-    unit, which may be ``told``; None for another column. Raises CrankcheckError for two units."""
-    text = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", _without_unit(column)[0])
-    words = [word.lower() for word in re.split(r"[^A-Za-z0-9µμ]+", text) if word]
-    unit = ""
-    if len(words) > 1 and DIMENSION.get(spelled_unit(words[-1])) == "time":
-        unit = spelled_unit(words.pop())
-        if words[-1] == "in":
-            words.pop()
-    name = " ".join(words)
-    if name not in TIMES and name not in ("velocity time", "acceleration time"):
-        return None
-    unit = told or _one_unit(column, unit) or si("time")
-    return ("time" if name in TIMES else name, unit) if DIMENSION[unit] == "time" else None
-
-
-def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
+def meaning(column: str, named: SceneNames, told: str = "") -> Meaning | str:
     """What a column's name says, or why nothing is made of it. A unit that is ``told`` takes the
     place of that in the name.
 
@@ -176,13 +39,13 @@ def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
     if own := named.own.get(column):
         if isinstance(own, str) or not told:
             return own
-        _held(column, told, own.kind.dimension if own.kind else "length")
+        refuse_other_dimension(column, told, own.kind.dimension if own.kind else "length")
         return replace(own, unit=told)
-    bodies, words = named.found(re.sub(MODEL, " ", _without_unit(column)[0]))
+    bodies, words = named.found(re.sub(MODEL, " ", without_unit(column)[0]))
     while words and words[-1] in AFTER:
         words.pop()
-    unit, words = _trailing_unit(words)
-    unit = told or _one_unit(column, unit)
+    unit, words = trailing_unit(words)
+    unit = told or one_unit(column, unit)
     if not bodies:
         return "it names no link, point or slider of the scene"
     relative = not RELATIVE.isdisjoint(words)
@@ -193,60 +56,17 @@ def meaning(column: str, named: Named, told: str = "") -> Meaning | str:
     if not of:
         return f"it names {' and '.join(bodies)}; a map says of which it is"
     if words == ["gap"]:
-        _held(column, unit, "length")
+        refuse_other_dimension(column, unit, "length")
         return Meaning(of, None, True, unit or "m")
     slider = "slider" in re.split(r"[^a-z]+", column.lower())
-    kind = _kind(named.kinds_of(of), words, unit, slider=slider)
+    kind = kind_of_words(named.kinds_of(of), words, unit, slider=slider)
     if isinstance(kind, str):
         return kind
-    _held(column, unit, kind.dimension)
+    refuse_other_dimension(column, unit, kind.dimension)
     return Meaning(of, kind, False, unit or si(kind.dimension), relative_to, on)
 
 
-def _without_unit(column: str) -> tuple[str, str]:
-    """A name without the unit in brackets at its end, and that unit."""
-    hit = re.search(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", column)
-    if hit and (unit := spelled_unit(hit[1])):
-        return column[: hit.start()], unit
-    return column, ""
-
-
-def _trailing_unit(words: list[str]) -> tuple[str, list[str]]:
-    """The unit that the last words spell, and the words before it. A lone `s` is a displacement."""
-    if words and not spelled_unit(words[-1]):
-        word, _, unit = words[-1].partition("/")
-        if word and spelled_unit(unit):
-            words = [*words[:-1], word, unit]
-    for count in (3, 2, 1):
-        if len(words) < count:
-            continue
-        unit = spelled_unit("_".join(words[-count:]))
-        if unit and DIMENSION[unit] != "time":
-            return unit, words[:-count]
-    return "", words
-
-
-def _one_unit(column: str, unit: str) -> str:
-    """The unit of a name that may tell it twice. Raises CrankcheckError where they differ."""
-    bracket = _without_unit(column)[1]
-    if unit and bracket and unit != bracket:
-        raise CrankcheckError(
-            f"column {cut(column)!r}: units that contradict each other, {unit} and {bracket}; "
-            "rename it, or say unit in the map"
-        )
-    return unit or bracket
-
-
-def _held(column: str, unit: str, dimension: str) -> None:
-    """Refuse a unit of something else. Raises CrankcheckError."""
-    if unit and DIMENSION[unit] != dimension:
-        raise CrankcheckError(
-            f"column {cut(column)!r}: {unit} is a unit of {DIMENSION[unit]}, and its name says "
-            f"{dimension}; rename it, or say kind and unit in the map"
-        )
-
-
-def _roles(bodies: Sequence[str], named: Named, *, relative: bool) -> tuple[str, str, str]:
+def _roles(bodies: Sequence[str], named: SceneNames, *, relative: bool) -> tuple[str, str, str]:
     """Of which body a column is, relative to which link, and on which body; "" for nothing told."""
     bodies = list(dict.fromkeys(bodies))
     if len(bodies) == 1:
@@ -260,74 +80,3 @@ def _roles(bodies: Sequence[str], named: Named, *, relative: bool) -> tuple[str,
     if len(links) == 1 and len(points) == 1 and links != points:
         return points[0], "", links[0]
     return "", "", ""
-
-
-def _kind(
-    kinds: Sequence[MovingKind], words: Sequence[str], unit: str, *, slider: bool
-) -> Kind | str:
-    """The kind of reading that words and a unit name, or why none."""
-    dimension = DIMENSION.get(unit)
-    if "link" in kinds:
-        if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
-            words = words[:-1]
-        order = _order(words, TURNING)
-        chosen = [k for k in KINDS.values() if k.body_kind == "link" and k.order == order]
-        if not words:
-            chosen = [k for k in KINDS.values() if k.body_kind == "link"]
-            chosen = [k for k in chosen if k.dimension == (dimension or "angle")]
-        return chosen[0] if chosen else _unknown(words, "link", unit)
-    axis = None if slider else _axis(words)
-    if "point" in kinds and axis:
-        order, at = axis
-        of = [k for k in KINDS.values() if k.body_kind == "point"]
-        return next(k for k in of if (k.order, k.axis) == (order, at))
-    if "slider" in kinds:
-        order = _order(words, SLIDING)
-        chosen = [k for k in KINDS.values() if k.body_kind == "slider" and k.order == order]
-        if not words:
-            chosen = [k for k in KINDS.values() if k.body_kind == "slider"]
-            chosen = [k for k in chosen if k.dimension == (dimension or "length")]
-        return chosen[0] if chosen else _unknown(words, "slider", unit)
-    if list(words) in (["v"], ["a"]):
-        return LENGTH
-    return _unknown(words, "point", unit)
-
-
-def _order(words: Sequence[str], names: Sequence[set[str]]) -> int | None:
-    """Which derivative some words name; None where they name none, or several."""
-    orders = {n for word in words for n, known in enumerate(names) if word in known}
-    known = set().union(*names)
-    if len(orders) == 2 and 0 in orders and not PLACES.isdisjoint(names[0]):
-        orders -= {0}  # angle velocity
-    return orders.pop() if len(orders) == 1 and known.issuperset(words) else None
-
-
-def _axis(words: Sequence[str]) -> tuple[int, int] | None:
-    """Derivative and axis of a point's component; None where the words name none."""
-    axes = [word for word in words if word in AXES]
-    if len(axes) != 1:
-        return None
-    order, axis = AXES[axes[0]]
-    for word in words:
-        if word == axes[0] or word in PLACES | {"p"}:
-            continue
-        if word in SPEEDS and order == 0:
-            order = 1
-        elif word in ACCELERATIONS and order == 0:
-            order = 2
-        else:
-            return None
-    return order, axis
-
-
-def _unknown(words: Sequence[str], kind: str, unit: str) -> str:
-    """Why nothing is made of a column of a body."""
-    told: Mapping[str, str] = {
-        "link": "angle, angular velocity or angular acceleration",
-        "point": "x, y, vx, vy, ax or ay",
-        "slider": "displacement, speed or acceleration",
-    }
-    if words:
-        return f"{cut(' '.join(words))!r} is no kind of reading of a {kind}: {told[kind]}"
-    of = f"{unit} is a unit of {DIMENSION[unit]}, and" if unit else "it tells no kind:"
-    return f"{of} a {kind} has {told[kind]}"

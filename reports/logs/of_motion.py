@@ -16,7 +16,7 @@ from reports.logs.columns import Columns
 from reports.logs.kinds import KINDS, Kind
 from reports.logs.map_file import ChannelTable, Map, TimeTable
 from reports.logs.meanings import understood
-from reports.logs.names import OWN
+from reports.logs.own_columns import OWN
 from reports.logs.units import si
 
 TIME = "time_s"

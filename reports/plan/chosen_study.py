@@ -16,7 +16,7 @@ Overrides = Mapping[str, Mapping[str, StudyValue | list[StudyValue]]]
 
 
 @dataclass(frozen=True)
-class Choice:
+class StudyChoice:
     """What is said in place of a study's own; what is empty, or None, leaves that."""
 
     scenes: Sequence[str] = ()
@@ -27,7 +27,7 @@ class Choice:
     overrides: Overrides = field(default_factory=dict)
 
 
-def chosen_study(study: Study, choice: Choice, *, is_shipped: bool) -> Study:
+def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
     """The study with a choice in place of what it says itself.
 
     Settings are varied in every variant of their engine; of the shipped study, in profile tuned

@@ -6,6 +6,7 @@ import io
 import zipfile
 import zlib
 from collections.abc import Callable
+from datetime import time
 from functools import partial
 from pathlib import Path
 
@@ -82,6 +83,16 @@ def book(path: Path, *, merged: str = "", first: str = "", **cells: object) -> N
     made.save(path)
 
 
+def notes_first(path: Path) -> None:
+    """The log behind a sheet of remarks."""
+    made = openpyxl.Workbook()
+    sheet = made.active
+    assert sheet is not None
+    sheet.append(["made today"])
+    made.create_sheet("log").append(HEADER.split(","))
+    made.save(path)
+
+
 def empty_book(path: Path) -> None:
     openpyxl.Workbook().save(path)
 
@@ -150,6 +161,13 @@ WORKBOOKS: dict[str, tuple[Made, str]] = {
         partial(book, merged="B1:C1"),
         "column 3 has no name",
     ),
+    "a sheet of remarks": (
+        notes_first, "sheet 'Sheet': a header and no rows; .*say sheet in .file. of the map: log",
+    ),
+    "numbers for names": (
+        partial(book, A1=0.5, B1=1.5, C1=2.5, D1=3.5), "sheet 'Sheet': row 1 holds numbers and no",
+    ),
+    "hours": (partial(book, A2=time(0, 0, 1)), "row 2, column 'time_s': found '00:00:01'.*seconds"),
     "an empty sheet": (
         partial(book, first="first"),
         "sheet 'first' is empty",

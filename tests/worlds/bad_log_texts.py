@@ -81,13 +81,35 @@ TEXTS: dict[str, tuple[bytes, str]] = {
     "a truth": (cell(7, 2, "true"), "row 9, column 'rocker_deg': found 'true', no number"),
     "a column of truths": (
         text(*(f"{row.split(',')[0]},{row.split(',')[1]},true,1" for row in ROWS)),
-        "row 2, column 'rocker_deg': found .*rue, no number",
+        "row 2, column 'rocker_deg': found 'true', no number",
     ),
+    "hexadecimal, whole": (cell(7, 2, "0x10"), "row 9, column 'rocker_deg': found '0x10', no numb"),
+    "digits in threes": (
+        cell(7, 2, '"1,000.5"'), "row 9, .*found '1,000.5', no number; write numbers without marks",
+    ),
+    "a word below remarks and blank lines": (
+        text("# a", *ROWS[:3], "", "  ", "# b", *ROWS[3:7], "0.1,x,2,3"),
+        "row 13, column 'crank_deg': found 'x', no number",
+    ),
+    "a short row below remarks and blank lines": (
+        text("# a", *ROWS[:3], "", "  ", "# b", *ROWS[3:7], "0.1"), "row 13: 1 fields, the header",
+    ),
+    "two lines of names": (
+        text("t,theta,theta,x", *ROWS, header="time,crank,rocker,C"),
+        "line 2 holds words and no numbers, below the names in line 1: .*join them, or put #",
+    ),
+    "a title": (
+        text(HEADER, *ROWS, header="Results of today"), "line 2 holds words.*put # before a title",
+    ),
+    "tabs that line columns up": (
+        text(*ROWS).replace(b",", b"\t\t"), "line 1: column 2 has no name; .*separator = ' '",
+    ),
+    "remarks of 300 kB": (b"# a solver\n" * 30_000 + text(*ROWS), "within the first .* leave out"),
     "hexadecimal": (cell(7, 2, "0x1p3"), "row 9, column 'rocker_deg': found '0x1p3', no number"),
     "digits in groups": (cell(7, 2, "1_000"), "row 9, column 'rocker_deg': found '1_000', no num"),
     "times of a clock on the wall": (
         text(*(f"2026-01-01 00:00:{n:02}.5,1,2,3" for n in range(50))),
-        "row 2, column 'time_s': found '2026-01-01 00:00:00.50*', no number",
+        "row 2, column 'time_s': found '2026-01-01 00:00:00.5', no number; write sec",
     ),
     "decimal commas": (
         text(*(row.replace(",", ";").replace(".", ",") for row in ROWS),

@@ -13,7 +13,7 @@ from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.causes.words import change, number
-from reports.causes.world import Frame
+from reports.causes.world import LogFrame
 from reports.logs.channel import Channel
 from reports.logs.units import UNITS
 
@@ -26,7 +26,7 @@ NEAR_UNIT = 1e-3
 def mirrored(inquiry: Inquiry) -> Iterator[Account]:
     """The plane seen from behind, so that one axis and all angles count the other way."""
     for turn, axis in ((0.0, "y"), (math.pi, "x")):
-        world = inquiry.world.framed(Frame(mirrored=True, turn_rad=turn))
+        world = inquiry.world.framed(LogFrame(mirrored=True, turn_rad=turn))
         phrase = (
             f"the plane is seen from behind: the {axis}-axis and all angles count the other way"
         )
@@ -73,16 +73,16 @@ def _of(inquiry: Inquiry, *body_kinds: str) -> list[str]:
     return needy if len(needy) > 1 else found
 
 
-def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> Frame | None:
+def _frame(inquiry: Inquiry, columns: Sequence[str], count: int) -> LogFrame | None:
     """The frame that tells some columns best: turned, and moved where ``count`` is 3."""
     if len(columns) < 2:
         return None
     thin, longest = inquiry.thin, inquiry.world.scene.longest_m
     sizes = {column: thin.excerpts[column].size.rms for column in columns}
 
-    def frame(numbers: Array) -> Frame:
+    def frame(numbers: Array) -> LogFrame:
         turn, x, y = (*(float(each) for each in numbers), 0.0, 0.0)[:3]
-        return Frame(turn_rad=turn, shift_m=(x, y))
+        return LogFrame(turn_rad=turn, shift_m=(x, y))
 
     def residual(numbers: Array) -> Array:
         errors = thin.errors(thin.world.framed(frame(numbers)), columns)
@@ -103,7 +103,7 @@ def moved(inquiry: Inquiry) -> Iterator[Account]:
         x, y = (shifts[axis] if axis in axes else 0.0 for axis in (0, 1))
         if not all(shifts[axis] for axis in axes):
             continue
-        frame = Frame(shift_m=(x, y))
+        frame = LogFrame(shift_m=(x, y))
         cost = CAUSE + NUMBER * len(axes)
         world = inquiry.world.framed(frame)
         told = inquiry.account_of_world("moved", cost, world, _origin(frame))
@@ -121,7 +121,7 @@ def _shift(inquiry: Inquiry, axis: int) -> float:
     return float(np.median([error.mean() for error in coordinates])) if coordinates else 0.0
 
 
-def _origin(frame: Frame) -> str:
+def _origin(frame: LogFrame) -> str:
     """Where the origin of the log is."""
     cos, sin = math.cos(frame.turn_rad), math.sin(frame.turn_rad)
     x, y = frame.shift_m
@@ -145,7 +145,7 @@ def sized(inquiry: Inquiry) -> Iterator[Account]:
     units = [one / other for one in lengths for other in lengths]
     if not size > 0.0 or any(abs(size / unit - 1.0) < NEAR_UNIT for unit in units if unit != 1.0):
         return
-    world = inquiry.world.framed(Frame(size=size))
+    world = inquiry.world.framed(LogFrame(size=size))
     phrase = f"every length is {number(size, 6)} times the scene's ({change(size, 1.0)})"
     told = inquiry.account_of_world("size", CAUSE + NUMBER, world, phrase, missing=0.0)
     if told is not None and len(told.columns) > 1:

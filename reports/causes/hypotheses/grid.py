@@ -28,7 +28,7 @@ EVEN_RMS = 12.0**-0.5
 
 
 @dataclass(frozen=True)
-class Grid:
+class RoundingGrid:
     """What the readings are rounded to: steps (n,) [SI], and what is said of them."""
 
     name: str
@@ -52,7 +52,7 @@ def resolution(excerpt: Excerpt) -> float:
     return max([DOUBLE * float(np.max(np.abs(excerpt.values), initial=0.0)), *steps])
 
 
-def _grids(excerpt: Excerpt) -> Iterator[Grid]:
+def _grids(excerpt: Excerpt) -> Iterator[RoundingGrid]:
     """The grids that all readings lie on, the coarsest of each kind."""
     channel = excerpt.channel
     size = UNITS[channel.kind.dimension][channel.unit]
@@ -64,17 +64,19 @@ def _grids(excerpt: Excerpt) -> Iterator[Grid]:
         step = np.full(numbers.shape, 10.0**-decimals)
         if _on(numbers, step, lost):
             words = f"{decimals} decimals" if decimals > 0 else f"{10**-decimals:.0f}"
-            yield Grid("rounded", step * size, f"{words} ({channel.unit})")
+            yield RoundingGrid("rounded", step * size, f"{words} ({channel.unit})")
             break
     exponent = np.floor(np.log10(np.maximum(np.abs(numbers), 1e-300)))
     for digits in DIGITS:
         step = 10.0 ** (exponent - digits + 1)
         if _on(numbers, step, lost):
-            yield Grid("rounded", step * size, f"{digits} significant digits ({channel.unit})")
+            yield RoundingGrid(
+                "rounded", step * size, f"{digits} significant digits ({channel.unit})"
+            )
             break
     step = np.spacing(np.abs(numbers).astype(np.float32)).astype(float)
     if np.all(np.abs(numbers - numbers.astype(np.float32)) <= lost):
-        yield Grid("float32", step * size, "single precision (float32)")
+        yield RoundingGrid("float32", step * size, "single precision (float32)")
 
 
 def _on(numbers: Array, step: Array, lost: Array) -> bool:
@@ -84,7 +86,7 @@ def _on(numbers: Array, step: Array, lost: Array) -> bool:
     return bool(steps and np.all(off <= ON_GRID * step + lost) and np.all(step > 1e3 * lost))
 
 
-def _told(inquiry: Inquiry, excerpt: Excerpt, grid: Grid) -> Account | None:
+def _told(inquiry: Inquiry, excerpt: Excerpt, grid: RoundingGrid) -> Account | None:
     """The account of a grid, rounded to or cut off at, where the error is of that size."""
     sign = np.sign(excerpt.values)
     for verb, error in (
@@ -101,7 +103,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, grid: Grid) -> Account | None:
     return None
 
 
-def _predicted(excerpt: Excerpt, grid: Grid) -> bool:
+def _predicted(excerpt: Excerpt, grid: RoundingGrid) -> bool:
     """Whether most readings are what is expected, rounded to the grid; of a sequence of steps, of
     which the errors may be few numbers, that tells more than their size."""
     zero = excerpt.channel.offset * UNITS[excerpt.channel.kind.dimension][excerpt.channel.unit]

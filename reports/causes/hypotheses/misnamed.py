@@ -22,7 +22,7 @@ from reports.logs.units import UNITS
 
 
 @dataclass(frozen=True)
-class Meaning:
+class OtherMeaning:
     """What a column may be instead; ``free`` where its zero is anywhere."""
 
     name: str
@@ -65,7 +65,7 @@ def _all(inquiry: Inquiry, channel: Channel) -> Iterator[Channel]:
         yield from (replace(channel, kind=kind, of=name, relative_to="") for name in names)
 
 
-def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[Meaning]:
+def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[OtherMeaning]:
     """What a channel may be: the same of other bodies, against other links, and other kinds."""
     bodies = _bodies(inquiry)
     if channel.kind.body_kind == "link":
@@ -80,10 +80,10 @@ def _meanings(inquiry: Inquiry, channel: Channel) -> Iterator[Meaning]:
                 continue
             cost = CAUSE + CHOICE * (1 if same else 2)
             other = replace(channel, of=body, kind=kind, relative_to="", unit=unit)
-            yield Meaning("misnamed" if same else "kind", cost, other)
+            yield OtherMeaning("misnamed" if same else "kind", cost, other)
 
 
-def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[Meaning]:
+def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[OtherMeaning]:
     """The same link against other ones, its sign either way and its zero free or not."""
     for link in ("", *links):
         if link in (channel.of, channel.relative_to):
@@ -91,12 +91,14 @@ def _relative(channel: Channel, links: tuple[str, ...]) -> Iterator[Meaning]:
         for sign in (channel.sign, -channel.sign):
             other = replace(channel, relative_to=link, sign=sign)
             cost = CAUSE + CHOICE * (1 if sign == channel.sign else 2)
-            yield Meaning("relative", cost, other)
+            yield OtherMeaning("relative", cost, other)
             if channel.kind.turns:
-                yield Meaning("relative", cost + NUMBER, other, free=True)
+                yield OtherMeaning("relative", cost + NUMBER, other, free=True)
 
 
-def _told(inquiry: Inquiry, excerpt: Excerpt, other: Meaning, motion: Motion) -> Account | None:
+def _told(
+    inquiry: Inquiry, excerpt: Excerpt, other: OtherMeaning, motion: Motion
+) -> Account | None:
     """The account of a meaning."""
     own, channel = excerpt.channel, other.channel
     expected = channel.expected(motion)
@@ -130,7 +132,7 @@ def _moves(expected: Array) -> bool:
     return bool(np.ptp(expected) > 1e-9 * np.max(np.abs(expected)))
 
 
-def _phrase(own: Channel, other: Meaning, zero: float) -> str:
+def _phrase(own: Channel, other: OtherMeaning, zero: float) -> str:
     """What the column is instead."""
     channel = other.channel
     if other.name != "relative":

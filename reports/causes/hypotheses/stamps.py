@@ -16,7 +16,7 @@ from reports.output.numbers import duration
 
 FARTHEST = 0.55
 """In intervals, the most that a time is off the even ones."""
-EVEN = 1e-9
+EVEN_STAMPS = 1e-9
 """In intervals, times that are even as they are."""
 DECIMALS = range(10)
 ON_GRID = 1e-3
@@ -32,7 +32,7 @@ def stamps(inquiry: Inquiry) -> Iterator[Account]:
     interval = float(row @ (time_s - time_s.mean()) / (row @ row))
     middle = float(time_s.mean())
     off = time_s - (middle + interval * row)
-    if not EVEN * interval < np.max(np.abs(off)) < FARTHEST * interval:
+    if not EVEN_STAMPS * interval < np.max(np.abs(off)) < FARTHEST * interval:
         return
     half = 0.5 * ((time_s.size - 1) % 2)  # rows are whole numbers from the middle, or halves
 

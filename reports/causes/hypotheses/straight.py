@@ -19,7 +19,7 @@ TURNS = (0, 1, -1, 2, -2)
 """Whole turns that a scaled angle may count from elsewhere."""
 LEAST_GAIN = 1e-3
 """A signal that is weaker is none, and its gain is of noise."""
-EVEN = 1e-3
+STRAIGHT = 1e-3
 """A signal that leaves a straight line by less than this part of an error is even."""
 TIGHT = 0.02
 """What a gain and a zero may leave together: much the same leaves any curve of another height."""
@@ -28,7 +28,7 @@ NO_GAIN = 1e-5
 
 
 @dataclass(frozen=True)
-class Line:
+class StraightLine:
     """Readings as ``gain`` times what is expected, plus ``zero``; ``unit`` is another one of which
     the gain is made, and ``cost`` what it takes to believe."""
 
@@ -44,7 +44,9 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
     for column in inquiry.open:
         excerpt = inquiry.excerpts[column]
         if excerpt.nought:
-            yield from _each(inquiry, excerpt, [Line("offset", CAUSE + NUMBER, 1.0, shifted=True)])
+            yield from _each(
+                inquiry, excerpt, [StraightLine("offset", CAUSE + NUMBER, 1.0, shifted=True)]
+            )
         elif np.ptp(excerpt.expected) <= excerpt.nothing:
             # A channel that stays: a zero explains whatever is there, and is the last thing to be.
             plain = [line for line in _known(excerpt.channel) if not line.shifted]
@@ -55,7 +57,7 @@ def straight(inquiry: Inquiry) -> Iterator[Account]:
             yield from _each(inquiry, excerpt, [*_known(excerpt.channel), *_fitted(excerpt)])
 
 
-def _each(inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[Line]) -> Iterator[Account]:
+def _each(inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[StraightLine]) -> Iterator[Account]:
     """The accounts of those lines that explain a channel."""
     for line in lines:
         told = _told(inquiry, excerpt, line)
@@ -63,27 +65,27 @@ def _each(inquiry: Inquiry, excerpt: Excerpt, lines: Iterable[Line]) -> Iterator
             yield told
 
 
-def _known(channel: Channel) -> Iterator[Line]:
+def _known(channel: Channel) -> Iterator[StraightLine]:
     """The lines whose gain is a sign or a ratio of units."""
-    yield Line("sign", CAUSE, -1.0)
-    yield Line("offset", CAUSE + NUMBER, 1.0, shifted=True)
-    yield Line("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
+    yield StraightLine("sign", CAUSE, -1.0)
+    yield StraightLine("offset", CAUSE + NUMBER, 1.0, shifted=True)
+    yield StraightLine("sign", CAUSE + CHOICE + NUMBER, -1.0, shifted=True)
     units = UNITS[channel.kind.dimension]
     for unit, size in units.items():
         gain = units[channel.unit] / size
         if gain != 1.0:
-            yield Line("unit", CAUSE + CHOICE, gain, unit=unit)
-            yield Line("unit", CAUSE + 2 * CHOICE, -gain, unit=unit)
-            yield Line("unit", CAUSE + CHOICE + NUMBER, gain, shifted=True, unit=unit)
+            yield StraightLine("unit", CAUSE + CHOICE, gain, unit=unit)
+            yield StraightLine("unit", CAUSE + 2 * CHOICE, -gain, unit=unit)
+            yield StraightLine("unit", CAUSE + CHOICE + NUMBER, gain, shifted=True, unit=unit)
 
 
-def _fitted(excerpt: Excerpt) -> Iterator[Line]:
+def _fitted(excerpt: Excerpt) -> Iterator[StraightLine]:
     """The lines whose gain is fitted, with a zero and without."""
     even = CHOICE if _steady_rate(excerpt) else 0.0  # more likely the driver has another speed
     for gain, shifted in _gains(excerpt):
         if abs(gain) > LEAST_GAIN and abs(gain - 1.0) > NO_GAIN:
             cost = CAUSE + NUMBER * (2 if shifted else 1) + even
-            yield Line("scaled", cost, gain, shifted=shifted)
+            yield StraightLine("scaled", cost, gain, shifted=shifted)
 
 
 def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
@@ -106,7 +108,7 @@ def _gains(excerpt: Excerpt) -> Iterable[tuple[float, bool]]:
     return [(min(through)[1], False), (free, True)]
 
 
-def _told(inquiry: Inquiry, excerpt: Excerpt, line: Line) -> Account | None:
+def _told(inquiry: Inquiry, excerpt: Excerpt, line: StraightLine) -> Account | None:
     """The account of a line, its zero fitted where it has one."""
     channel = excerpt.channel
     values = excerpt.values
@@ -124,7 +126,7 @@ def _told(inquiry: Inquiry, excerpt: Excerpt, line: Line) -> Account | None:
     return inquiry.account(line.name, line.cost, errors, phrase, corrections=corrections)
 
 
-def _correction(line: Line, channel: Channel, zero: float) -> dict[str, object]:
+def _correction(line: StraightLine, channel: Channel, zero: float) -> dict[str, object]:
     """What mends it in the map: a reading in SI is ``sign * (number + offset) * unit``."""
     if line.name == "scaled":
         return {}
@@ -141,7 +143,9 @@ def _correction(line: Line, channel: Channel, zero: float) -> dict[str, object]:
     return found
 
 
-def _phrase(line: Line, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt) -> str:
+def _phrase(
+    line: StraightLine, channel: Channel, zero: float, inquiry: Inquiry, excerpt: Excerpt
+) -> str:
     """What is wrong, in words."""
     unit = line.unit or channel.unit
     said = {
@@ -170,7 +174,7 @@ def _steady_rate(excerpt: Excerpt) -> float:
     times, signal = times - times.mean(), signal - signal.mean()
     rate = float(times @ signal / (times @ times)) if np.any(times) else 0.0
     rest = float(np.max(np.abs(signal - rate * times), initial=0.0))
-    return rate if rest < EVEN * excerpt.size.largest else 0.0
+    return rate if rest < STRAIGHT * excerpt.size.largest else 0.0
 
 
 def _amount(value: float, unit: str, channel: Channel) -> str:

@@ -38,7 +38,7 @@ def swapped(inquiry: Inquiry) -> Iterator[Account]:
 
 
 @dataclass(frozen=True)
-class Held:
+class ColumnContent:
     """What a column holds: its channel as it is in truth, and the error that is left then."""
 
     channel: Channel
@@ -76,7 +76,7 @@ def unit_of(channel: Channel, kind: Kind) -> str | None:
 
 
 def _rings(
-    holds: Mapping[str, Mapping[str, Held]], path: tuple[str, ...]
+    holds: Mapping[str, Mapping[str, ColumnContent]], path: tuple[str, ...]
 ) -> Iterator[tuple[str, ...]]:
     """The rings of columns each of which holds what the next one should, the least column first."""
     for column in holds[path[-1]]:
@@ -86,7 +86,7 @@ def _rings(
             yield from _rings(holds, (*path, column))
 
 
-def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, Held]]:
+def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, ColumnContent]]:
     """The other open columns whose readings a column holds."""
     own = inquiry.excerpts[column]
     for other in inquiry.open:
@@ -99,7 +99,7 @@ def _held(inquiry: Inquiry, column: str) -> Iterator[tuple[str, Held]]:
         for channel, values in _read_as(own.values, own.channel, excerpt.channel):
             error = channel.error(values, excerpt.expected)
             if Size.of(error).largest <= enough:
-                yield other, Held(channel, error)
+                yield other, ColumnContent(channel, error)
                 break
 
 

@@ -13,9 +13,9 @@ from reports.advise.advice import Advice, offers
 from reports.advise.choices import choices
 from reports.advise.demand import demanded
 from reports.advise.document import document
-from reports.advise.evidence import Evidence, evidence, stored_choices, stored_scenes
+from reports.advise.evidence import MeasuredStudy, evidence, stored_choices, stored_scenes
 from reports.advise.prices import prices, timings
-from reports.advise.search import Reached, search_all
+from reports.advise.search import SearchResult, search_all
 from reports.advise.table import show
 from reports.cli.commands.stored_files import stored_files
 from reports.cli.measuring import AdviseRequest
@@ -44,7 +44,7 @@ def run_advise(request: AdviseRequest, console: Console, progress: Console) -> i
     engines = chosen_engines(request.engines)
     every = lines(stored) if stored else ()
     wanted = choices(engines, stored_choices(every))
-    known = evidence(stored, every, demand, texts, wanted) if stored else Evidence()
+    known = evidence(stored, every, demand, texts, wanted) if stored else MeasuredStudy()
     with progress_bar(progress, "settings", len(wanted)) as advance:
         found = search_all(demand, wanted, known, request.jobs, lambda _: advance())
     _refuse_unrun(found)
@@ -81,7 +81,7 @@ def _scenes(
     return chosen_scenes(names), scene_texts(names)
 
 
-def _refuse_unrun(found: Sequence[Reached]) -> None:
+def _refuse_unrun(found: Sequence[SearchResult]) -> None:
     """Raise CrankcheckError where no engine can hold a scene."""
     if all(one.ended is not None and one.ended.status == "unsupported" for one in found):
         ends = {one.ended.reason: one.choice.label for one in found if one.ended}

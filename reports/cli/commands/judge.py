@@ -11,7 +11,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from models.scene import Scene
-from reports.cli.own_log import JudgeRequest
+from reports.cli.judging import JudgeRequest
 from reports.judge.tolerance import check_names, parse
 from reports.logs.blank_map import blank_map
 from reports.logs.columns import read_columns

@@ -11,7 +11,7 @@ from models.errors import CrankcheckError, shown
 from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
 from reports.plan.chosen import chosen_engines
-from reports.plan.chosen_study import Choice, chosen_study, refuse_other_engine
+from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine
 from reports.plan.study import Study, StudyValue, load_study
 from reports.sweep.whole import Manner, swept
 from reports.workers.isolated import checked_limits
@@ -43,7 +43,7 @@ def asked(request: SweepRequest) -> Study:
     """The study of the file, or the shipped one, with what the command line says in its place."""
     study = load_study(request.study)
     engines = chosen_engines(request.engines)
-    choice = Choice(
+    choice = StudyChoice(
         request.scenes,
         request.engines,
         request.profiles,

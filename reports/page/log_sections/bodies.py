@@ -20,7 +20,7 @@ from reports.drawing.packed import packed
 from reports.logs.channel import Reading
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import log_rows
-from reports.page.log_sections.placing import Piece, Placing
+from reports.page.log_sections.placing import PlacedBodies, Placing
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class LoggedBodies:
     the angles of links (T,) [rad], and in words, of each body that is drawn, from what."""
 
     scene: Scene
-    pieces: tuple[Piece, ...]
+    pieces: tuple[PlacedBodies, ...]
     turned: Mapping[str, Array]
     origins: Mapping[str, str]
 
@@ -51,7 +51,7 @@ class LoggedBodies:
             for piece in self.pieces
         ]
 
-    def _rows(self, piece: Piece, samples: int) -> Array:
+    def _rows(self, piece: PlacedBodies, samples: int) -> Array:
         nowhere = np.full((samples, 2), np.nan)
         places = [piece.off.get(name, nowhere).T for name in moving_points(self.scene)]
         angles = [[self.turned.get(name, np.zeros(samples))] for name in drawn_links(self.scene)]

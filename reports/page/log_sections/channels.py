@@ -11,7 +11,7 @@ from reports.output.numbers import count, readable
 from reports.own_log.judged import JudgedLog
 from reports.own_log.rows import share_of
 from reports.own_log.table import taken_text
-from reports.page.log_sections.curves import Curve, Samples
+from reports.page.log_sections.curves import DrawnChannel, Samples
 from reports.page.log_sections.foreign_text import name_text
 from reports.page.sections.section import Section
 
@@ -19,7 +19,7 @@ TITLE = 24
 """Characters of a column that stand along its axis, on a phone as well."""
 
 
-def build(judged: JudgedLog, drawn: Sequence[Curve], has_places: bool) -> Section:
+def build(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) -> Section:
     """The section; the first channel is the worst."""
     axes: dict[str, int] = {}
     channels = [_embedded(judged, curve, axes) for curve in drawn]
@@ -46,13 +46,13 @@ def build(judged: JudgedLog, drawn: Sequence[Curve], has_places: bool) -> Sectio
     )
 
 
-def _option(curve: Curve) -> str:
+def _option(curve: DrawnChannel) -> str:
     """A channel in the list: how it stands, its column, and what that was read as."""
     head = f"{standing(curve)}: {name_text(curve.column, 40)}"
     return head if curve.column == curve.name else f"{head} ({curve.name})"
 
 
-def standing(curve: Curve) -> str:
+def standing(curve: DrawnChannel) -> str:
     """How a channel stands against its limit, in a word or two."""
     if curve.taken < 0.0:
         return "not judged"
@@ -60,7 +60,7 @@ def standing(curve: Curve) -> str:
     return f"{verdict} {taken_text(curve.taken)}"
 
 
-def _embedded(judged: JudgedLog, curve: Curve, axes: dict[str, int]) -> dict[str, object]:
+def _embedded(judged: JudgedLog, curve: DrawnChannel, axes: dict[str, int]) -> dict[str, object]:
     """A channel as the script reads it."""
     near = None if curve.near is None else _samples(curve.near, axes)
     return {
@@ -95,7 +95,7 @@ def _samples(samples: Samples, axes: dict[str, int]) -> dict[str, object]:
     }
 
 
-def _told(judged: JudgedLog, curve: Curve) -> Iterator[str]:
+def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
     """A channel in sentences: what it was read as, how far it is off, and what that may be."""
     yield f"{name_text(curve.column)}: {curve.name}, in {curve.unit}."
     largest = f"{readable(abs(curve.largest), 4)} {curve.unit}"

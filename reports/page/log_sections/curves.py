@@ -51,7 +51,7 @@ class Both(TypedDict):
 
 
 @dataclass(frozen=True)
-class Curve:
+class DrawnChannel:
     """A channel as it is drawn, in ``unit``: ``whole``, and ``near`` its largest error, None where
     nothing of it is left out.
 
@@ -89,7 +89,7 @@ class Curve:
         return float(self.whole.time_s[self.whole.worst])
 
 
-def curves(judged: JudgedLog, room: int) -> list[Curve]:
+def curves(judged: JudgedLog, room: int) -> list[DrawnChannel]:
     """What is drawn of each channel, in ``room`` characters, the worst first."""
     number = len(judged.log.readings) + len(judged.beside.run.gaps)
     most = round(room / (BYTES * max(number, 1) * (1.0 + NEAR)))
@@ -109,7 +109,7 @@ def turn_s(judged: JudgedLog) -> float:
     return math.tau * float(time_s[-1] - time_s[0]) / turned if turned > 0.0 else math.inf
 
 
-def _share(curve: Curve) -> float:
+def _share(curve: DrawnChannel) -> float:
     """The part of its limit that a channel takes by itself; of two of a point, one is worse."""
     if curve.limit is None:
         return 0.0
@@ -126,7 +126,7 @@ class _Drawing:
     most: int
     turn_s: float
 
-    def of_readings(self) -> Iterator[Curve]:
+    def of_readings(self) -> Iterator[DrawnChannel]:
         """The channels, those of the same instants one after the other: the truth is solved for
         them once."""
         own = self.judged.log.time_s
@@ -139,7 +139,7 @@ class _Drawing:
         for reading in sorted(apart, key=lambda each: each.instants.tobytes()):
             yield self._of_reading(reading, self.judged.beside.truth.at(reading.instants))
 
-    def _of_reading(self, reading: Reading, truth: Motion) -> Curve:
+    def _of_reading(self, reading: Reading, truth: Motion) -> DrawnChannel:
         channel = reading.channel
         units = UNITS[channel.kind.dimension]
         of_one = channel.sign * units[channel.unit]
@@ -149,7 +149,7 @@ class _Drawing:
         logged = reading.values / of_one - channel.offset
         own = tuple(row for row in self.table if channel.column in row.columns)
         total = next((row for row in own if row.error.kind == "total"), None)
-        return Curve(
+        return DrawnChannel(
             column=channel.column,
             name=channel.name,
             unit=channel.unit,
@@ -162,13 +162,13 @@ class _Drawing:
             **self._samples(truth, logged, error / of_one),
         )
 
-    def of_gaps(self) -> Iterator[Curve]:
+    def of_gaps(self) -> Iterator[DrawnChannel]:
         """The gaps that are judged: each is its own error."""
         for row in self.table:
             if (row.error.quantity, row.error.kind) != ("gap", "total"):
                 continue
             gap = self.judged.beside.run.gaps[row.error.body]
-            yield Curve(
+            yield DrawnChannel(
                 column=f"gap of {row.error.body}",
                 name=f"gap of {row.error.body}",
                 unit="m",

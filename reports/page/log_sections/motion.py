@@ -12,7 +12,7 @@ from models.motion import Motion
 from reports.drawing.moving import INSTANTS, drawing
 from reports.own_log.judged import JudgedLog
 from reports.page.log_sections.bodies import LoggedBodies, logged_bodies, truth_of_all
-from reports.page.log_sections.curves import Curve, turn_s
+from reports.page.log_sections.curves import DrawnChannel, turn_s
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
 
@@ -33,7 +33,7 @@ class Stretch:
     end_s: float
 
 
-def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section | None:
+def build(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | None:
     """The section; None where the log has no place of a body. Raises CrankcheckError."""
     if not has_places(judged):
         return None
@@ -91,7 +91,7 @@ def _instants(stretch: Stretch) -> Array:
     return np.linspace(stretch.start_s, stretch.end_s, INSTANTS)
 
 
-def stretches(judged: JudgedLog, drawn: Sequence[Curve]) -> list[Stretch]:
+def stretches(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> list[Stretch]:
     """The whole of a short log; of a longer one the turn of the largest error of a place, the first
     and the last."""
     first, last = float(judged.log.time_s[0]), float(judged.log.time_s[-1])
@@ -110,7 +110,7 @@ def stretches(judged: JudgedLog, drawn: Sequence[Curve]) -> list[Stretch]:
     return [Stretch(", ".join(told), start, start + turn) for start, told in names.items()]
 
 
-def _worst_start(drawn: Sequence[Curve], first: float, last: float, turn: float) -> float:
+def _worst_start(drawn: Sequence[DrawnChannel], first: float, last: float, turn: float) -> float:
     """Where the turn begins in whose middle the worst place is, as far as the log goes."""
     worst = next(
         (x for x in drawn if x.reading is not None and x.reading.channel.kind.order == 0), None

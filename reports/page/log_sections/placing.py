@@ -31,7 +31,7 @@ Off = dict[str, Array]
 
 
 @dataclass(frozen=True)
-class Piece:
+class PlacedBodies:
     """Links, blocks (by their points) and lone points that are drawn with the same places: how far
     points are ``off`` the truth (T, 2) [m]. ``apart`` is a link that has ends of its own."""
 
@@ -168,16 +168,16 @@ class Placing:
             if name not in self.scene.ground
         }
 
-    def pieces(self) -> Iterator[Piece]:
+    def pieces(self) -> Iterator[PlacedBodies]:
         """What goes together first, then the links with ends of their own."""
         joined = tuple(self.joined)
         blocks = tuple(s.point for s in self.scene.sliders.values() if s.point in self.off)
         drawn = {*blocks, *(point for name in joined for point in self.scene.links[name].points)}
         marks = tuple(name for name in self.marks if name not in drawn)
         if joined or blocks or marks:
-            yield Piece("the log", joined, blocks, marks, False, self.off)
+            yield PlacedBodies("the log", joined, blocks, marks, False, self.off)
         for name, ends in self.ends.items():
-            yield Piece(f"{name} by its angle", (name,), (), (), True, ends)
+            yield PlacedBodies(f"{name} by its angle", (name,), (), (), True, ends)
 
 
 def _swung(arm: Array, angle: Array) -> Array:

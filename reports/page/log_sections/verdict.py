@@ -18,7 +18,7 @@ from reports.own_log.table import (
     unexplained,
     verdict_line,
 )
-from reports.page.log_sections.curves import Curve
+from reports.page.log_sections.curves import DrawnChannel
 from reports.page.log_sections.foreign_text import name_text, sentence_text, toml_text
 from reports.page.sections.section import Section
 
@@ -26,7 +26,7 @@ MOST = 300
 """Columns that are listed as not used."""
 
 
-def build(judged: JudgedLog, drawn: Sequence[Curve]) -> Section:
+def build(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
     """The section; its columns lead to their curves, by their numbers among those ``drawn``."""
     numbers = {curve.column: number for number, curve in enumerate(drawn)}
     rows = sorted(shown_rows(judged), key=lambda row: (row.verdict == "within", -row.taken))

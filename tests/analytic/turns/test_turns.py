@@ -14,7 +14,7 @@ from mpmath import mp, mpf
 
 from analytic import kinematics
 from analytic.kinematics import reach, solve, solve_driven
-from analytic.turns.cells import Look
+from analytic.turns.cells import CellSolver
 from models.array import Array
 from models.files import load_scene, parse_scene, shipped
 from models.laws import ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
@@ -175,7 +175,7 @@ def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: i
     and one that is said to be open all over does not close anywhere."""
     scene = designed.scene
     ready = kinematics._prepared(kinematics.Same(scene))
-    look = Look(scene, ready.steps, ready.passages)
+    look = CellSolver(scene, ready.steps, ready.passages)
     rng = np.random.default_rng(seed)
     middle, half = rng.uniform(-math.pi, math.pi, 200), 10.0 ** rng.uniform(-4.0, 0.0, 200)
     cells, inside = look.at(middle, half), look.at(middle + rng.uniform(-1.0, 1.0, 200) * half)

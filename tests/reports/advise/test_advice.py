@@ -15,10 +15,10 @@ from reports.advise.advice import Advice, offers
 from reports.advise.choices import choices
 from reports.advise.demand import demanded
 from reports.advise.document import document
-from reports.advise.evidence import Evidence, MeasuredSteps
-from reports.advise.look import Look
+from reports.advise.evidence import MeasuredSteps, MeasuredStudy
+from reports.advise.look import TriedRun
 from reports.advise.prices import Price, Prices
-from reports.advise.search import Reached, Worst
+from reports.advise.search import SearchResult, Worst
 from reports.advise.table import show, word
 
 DEMAND = demanded(
@@ -29,12 +29,12 @@ EVERY = {choice.label: choice for choice in choices(["mujoco", "pymunk"], ())}
 
 
 def worst(substeps: int, error: float, **seen: object) -> Worst:
-    return Worst(substeps, NAME, replace(Look(error), **seen))  # type: ignore[arg-type]
+    return Worst(substeps, NAME, replace(TriedRun(error), **seen))  # type: ignore[arg-type]
 
 
-def reached(label: str, substeps: int, error: float, **seen: object) -> Reached:
+def reached(label: str, substeps: int, error: float, **seen: object) -> SearchResult:
     promise = worst(substeps, error, **seen)
-    return Reached(EVERY[label], worst(1, 2e-2), promise, None, held_at=(2 * substeps,))
+    return SearchResult(EVERY[label], worst(1, 2e-2), promise, None, held_at=(2 * substeps,))
 
 
 FOUND = (
@@ -43,22 +43,29 @@ FOUND = (
     (reached("pymunk no bias", 4, 7.9e-4), 3.00e-4),
     (reached("pymunk no bias, 50 iterations", 4, 7.8e-4), 3.05e-4),
     (reached("mujoco stiff", 8, 9e-4), 1.3e-3),
-    (Reached(EVERY["mujoco RK4"], worst(1, 4e-3), None, worst(8, 1.8e-3)), None),
-    (Reached(EVERY["mujoco as-shipped"], worst(1, math.inf, status="diverged"), None, None), None),
+    (SearchResult(EVERY["mujoco RK4"], worst(1, 4e-3), None, worst(8, 1.8e-3)), None),
     (
-        Reached(
-            EVERY["pymunk as-shipped"], None, None, None, ended=Look(math.inf, "timeout", "no end")
+        SearchResult(EVERY["mujoco as-shipped"], worst(1, math.inf, status="diverged"), None, None),
+        None,
+    ),
+    (
+        SearchResult(
+            EVERY["pymunk as-shipped"],
+            None,
+            None,
+            None,
+            ended=TriedRun(math.inf, "timeout", "no end"),
         ),
         None,
     ),
 )
 
 
-def advice(*changed: tuple[Reached, float | None], noise: float = 0.05) -> Advice:
+def advice(*changed: tuple[SearchResult, float | None], noise: float = 0.05) -> Advice:
     found = changed or FOUND
     prices = tuple(s_per_s and Price(NAME, 1e6 * s_per_s / 240, s_per_s) for _, s_per_s in found)
     made = offers([one for one, _ in found], Prices(prices, noise))
-    return Advice(DEMAND, made, noise, Evidence(), {"mujoco": "4.0.0", "processor": "abacus"})
+    return Advice(DEMAND, made, noise, MeasuredStudy(), {"mujoco": "4.0.0", "processor": "abacus"})
 
 
 def labels(every: Advice) -> list[str]:
@@ -104,7 +111,7 @@ def test_a_promise_whose_error_grows_is_best_only_where_no_other_is() -> None:
 def test_so_is_one_that_a_study_has_over_the_target_at_finer_steps() -> None:
     one = reached("pymunk no bias, 50 iterations", 4, 7e-4)
     steps = MeasuredSteps(((90.0, 1e-2), (360.0, 1e-4), (5760.0, math.inf)))
-    known = Evidence(measured={(NAME, one.choice.key): steps})
+    known = MeasuredStudy(measured={(NAME, one.choice.key): steps})
     every = replace(advice((one, 1e-4), FOUND[0]), known=known)
     assert [offer.reached.choice.name for offer in every.best] == ["tuned"]
     only = replace(advice((one, 1e-4)), known=known)
@@ -193,7 +200,7 @@ def test_the_frame_itself_gets_a_word(seen: Worst | None, words: str) -> None:
 
 
 def test_the_file_has_the_same_facts_and_all_settings() -> None:
-    every = replace(advice(noise=0.001), known=Evidence())
+    every = replace(advice(noise=0.001), known=MeasuredStudy())
     content = json.loads(document(every))
     assert content["asked"]["frames_per_turn"] == pytest.approx(37.699, rel=1e-4)
     assert content["best"] == ["pymunk no bias", "mujoco tuned"]

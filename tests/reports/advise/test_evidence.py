@@ -13,7 +13,13 @@ from models.files import load_scene, scene_texts
 from models.scene import Scene
 from reports.advise.choices import Choice, choices
 from reports.advise.demand import Demand, demanded
-from reports.advise.evidence import Evidence, MeasuredSteps, evidence, stored_choices, stored_scenes
+from reports.advise.evidence import (
+    MeasuredSteps,
+    MeasuredStudy,
+    evidence,
+    stored_choices,
+    stored_scenes,
+)
 from reports.results.lines import Line, lines
 from reports.store.reader import Stored, read_store
 from sim.registry import engine
@@ -48,7 +54,7 @@ def told(
     every: tuple[Line, ...],
     demand: Demand,
     texts: Mapping[str, str] = TEXTS,
-) -> Evidence:
+) -> MeasuredStudy:
     return evidence(stored, every, demand, texts, EVERY.values())
 
 

@@ -12,7 +12,7 @@ import pytest
 from models.files import load_scene
 from reports.advise.choices import Choice, choices
 from reports.advise.demand import demanded
-from reports.advise.look import WORDS, Look, _seen, look
+from reports.advise.look import WORDS, TriedRun, _seen, look
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
@@ -90,4 +90,4 @@ def test_what_an_engine_can_not_hold_is_told_and_not_raised() -> None:
 
 def test_every_way_to_end_has_a_word() -> None:
     assert {*WORDS, "ok"} == set(get_args(Status))
-    assert Look(1.0).status == "ok"
+    assert TriedRun(1.0).status == "ok"

@@ -10,9 +10,9 @@ import pytest
 from models.files import load_scene
 from reports.advise.choices import Choice
 from reports.advise.demand import demanded
-from reports.advise.look import Look
+from reports.advise.look import TriedRun
 from reports.advise.prices import ROUNDS, prices, timings
-from reports.advise.search import Reached, Worst
+from reports.advise.search import SearchResult, Worst
 from reports.judge.cell import Cell
 from reports.sweep.measured import Repeats
 
@@ -23,9 +23,9 @@ FIRST, SECOND = (scene.name for scene in DEMAND.scenes)
 Timed = Sequence[tuple[Repeats, Repeats] | None]
 
 
-def found(name: str, substeps: int | None) -> Reached:
-    promise = Worst(substeps, FIRST, Look(5e-4)) if substeps else None
-    return Reached(Choice("fake", name, "tuned", {}), None, promise, None)
+def found(name: str, substeps: int | None) -> SearchResult:
+    promise = Worst(substeps, FIRST, TriedRun(5e-4)) if substeps else None
+    return SearchResult(Choice("fake", name, "tuned", {}), None, promise, None)
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ import pytest
 from models.files import load_scene
 from reports.advise.choices import Choice
 from reports.advise.demand import demanded
-from reports.advise.evidence import Evidence, MeasuredSteps
-from reports.advise.look import Look
-from reports.advise.search import Reached, _reached
+from reports.advise.evidence import MeasuredSteps, MeasuredStudy
+from reports.advise.look import TriedRun
+from reports.advise.search import SearchResult, _reached
 from reports.judge.cell import Cell
 from reports.workers.isolated import Isolated, Lost
 
@@ -23,7 +23,7 @@ DEMAND = demanded(
 )
 FIRST, SECOND = (scene.name for scene in DEMAND.scenes)
 CHOICE = Choice("fake", "tuned", "tuned", {})
-Law = Callable[[str, int], Look | Lost | float]
+Law = Callable[[str, int], TriedRun | Lost | float]
 """From scene and sub-steps to what a run gives."""
 
 
@@ -35,28 +35,30 @@ class Child:
     frame_s: float = DEMAND.frame_s
     asked: list[tuple[str, int, float]] = field(default_factory=list)
 
-    def call(self, function: object, cell: Cell) -> Look | Lost:
+    def call(self, function: object, cell: Cell) -> TriedRun | Lost:
         substeps = round(self.frame_s / cell.dt_s)
         self.asked.append((cell.scene.name, substeps, cell.turns))
         found = self.law(cell.scene.name, substeps)
-        return Look(found) if isinstance(found, float) else found
+        return TriedRun(found) if isinstance(found, float) else found
 
 
-def searched(law: Law, known: Evidence | None = None, **changes: Any) -> tuple[Reached, Child]:
+def searched(
+    law: Law, known: MeasuredStudy | None = None, **changes: Any
+) -> tuple[SearchResult, Child]:
     demand = replace(DEMAND, **changes)
     child = Child(law, demand.frame_s)
-    isolated = cast("Isolated[Look]", child)
-    return _reached(demand, known or Evidence(), isolated, CHOICE), child
+    isolated = cast("Isolated[TriedRun]", child)
+    return _reached(demand, known or MeasuredStudy(), isolated, CHOICE), child
 
 
-def studied(law: Callable[[str, float], float], low: float, high: float) -> Evidence:
+def studied(law: Callable[[str, float], float], low: float, high: float) -> MeasuredStudy:
     """A study of both scenes, from so many steps in a turn to so many."""
     steps = [low * (high / low) ** (k / 8) for k in range(9)]
     measured = {
         (name, CHOICE.key): MeasuredSteps(tuple((n, law(name, n)) for n in steps))
         for name in (FIRST, SECOND)
     }
-    return Evidence(measured=measured)
+    return MeasuredStudy(measured=measured)
 
 
 def second_order(exact: float) -> Callable[[str, float], float]:
@@ -100,7 +102,9 @@ def test_luck_is_no_promise() -> None:
 
 
 def test_settings_that_break_with_more_sub_steps_promise_nothing() -> None:
-    found, _ = searched(lambda _, n: Look(math.inf, "diverged", "") if n > 9 else 1e-3 * 7.0 / n)
+    found, _ = searched(
+        lambda _, n: TriedRun(math.inf, "diverged", "") if n > 9 else 1e-3 * 7.0 / n
+    )
     assert found.promise is None
     assert found.unsteady
     assert max(found.unsteady) <= 9
@@ -127,16 +131,16 @@ def test_too_coarse_a_frame_is_not_run_and_sub_steps_mend_it() -> None:
 def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
     """With 2 and 3 it does over ten turns, and not over eighty."""
 
-    def law(name: str, n: int) -> Look:
+    def law(name: str, n: int) -> TriedRun:
         long = child_turns() > 11.0
-        return Look((3e-3 if long else 1e-3) * 2.0 / n, growth=1.0 if long else 1.3)
+        return TriedRun((3e-3 if long else 1e-3) * 2.0 / n, growth=1.0 if long else 1.3)
 
     child = Child(law)
 
     def child_turns() -> float:
         return child.asked[-1][2]
 
-    found = _reached(DEMAND, Evidence(), cast("Isolated[Look]", child), CHOICE)
+    found = _reached(DEMAND, MeasuredStudy(), cast("Isolated[TriedRun]", child), CHOICE)
     assert found.promise is not None
     assert found.promise.substeps == 6
     assert any(turns == pytest.approx(80.0, rel=0.01) for _, _, turns in child.asked)
@@ -147,10 +151,10 @@ def test_an_error_that_grows_has_to_stay_under_the_target_for_longer() -> None:
     [
         (Lost("timeout", "no end within 30 s"), "timeout"),
         (Lost("crashed", "the engine ended its process"), "crashed"),
-        (Look(math.inf, "unsupported", "no such pin"), "unsupported"),
+        (TriedRun(math.inf, "unsupported", "no such pin"), "unsupported"),
     ],
 )
-def test_a_run_that_no_step_mends_is_the_last(end: Look | Lost, status: str) -> None:
+def test_a_run_that_no_step_mends_is_the_last(end: TriedRun | Lost, status: str) -> None:
     found, child = searched(lambda _, n: end)
     assert len(child.asked) == 1
     assert found.ended is not None
@@ -162,7 +166,9 @@ def test_a_run_that_no_step_mends_is_the_last(end: Look | Lost, status: str) -> 
 
 def test_a_run_that_comes_apart_at_the_frame_is_not() -> None:
     found, _ = searched(
-        lambda _, n: Look(math.inf, "diverged", "came apart") if n < 5 else 1e-3 * (6.0 / n) ** 2
+        lambda _, n: (
+            TriedRun(math.inf, "diverged", "came apart") if n < 5 else 1e-3 * (6.0 / n) ** 2
+        )
     )
     assert found.at_frame is not None
     assert found.at_frame.seen.status == "diverged"

@@ -35,6 +35,9 @@ def written(tmp_path: Path, text: str | bytes, name: str = "log.csv") -> Path:
         "# t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
         "% a solver, of today, in s\n%t;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
         "sep=;\nt;a b\n0;1.5\n0.1;-2.25\n0.2;3e-7\n",
+        "'t','a b'\n0,1.5\n0.1,-2.25\n0.2,3e-7\n",
+        't "a b"\n0 1.5\n0.1  -2.25\n0.2 3e-7\n',
+        '"t"\t"a b"\n"0"\t"1.5"\n0.1\t-2.25\n0.2\t3e-7\n',
     ],
 )
 def test_the_separator_is_found(tmp_path: Path, text: str) -> None:
@@ -75,6 +78,114 @@ def test_decimal_commas_are_read_where_the_map_says_so(tmp_path: Path) -> None:
     assert found.numbers("a").tolist() == [1.25]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done\n",
+        "t,a b\n0,1.5\n0.1,-2.25\n0.2,3e-7\n# done",
+        "t,a b\n#\n0,1.5\n#\n0.1,-2.25\n0.2,3e-7\n#",
+        "t,a b\r\n0,1.5\r\n0.1,-2.25\r\n0.2,3e-7\r\n\r\n# done\r\n",
+        "t,a b\n# go\n0,1.5\n  # half, of it\n0.1,-2.25\n   \n% on\n// and on\n0.2,3e-7\n",
+        '# don"t\nt,a b\n# "\n0,1.5\n# don"t\n0.1,-2.25\n# "\n0.2,3e-7\n',
+        "t,a b\n#0,9\n0,1.5\n#0.05,9\n0.1,-2.25\n0.2,3e-7\n",
+        "t,a b,\n0,1.5,\n# half, of it,\n0.1,-2.25,\n0.2,3e-7,\n",
+        "# t,a b\n#\n# made today\n0,1.5\n0.1,-2.25\n# on\n0.2,3e-7\n",
+    ],
+)
+def test_remarks_are_passed_over_wherever_they_stand(tmp_path: Path, text: str) -> None:
+    found = read_columns(written(tmp_path, text))
+    assert list(found.raw) == ["t", "a b"]
+    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), ROWS)
+
+
+BETWEEN = ("", "  ", "#", "# a", "% b, c", "// d", " # e", '# "', "#1,2", "#1\t2", "\t# t")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_number_is_told_by_its_line_whatever_stands_between(
+    tmp_path: Path, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    separator = str(rng.choice([",", ";", "\t", " "]))
+    end, last = str(rng.choice(["\n", "\r\n"])), separator if rng.random() < 0.3 else ""
+    values = rng.integers(-99, 99, (rng.integers(1, 9), rng.integers(2, 5))) / 8
+    rows = [["n1", "n2", "n3", "n4"][: values.shape[1]], *values.tolist()]
+    lines: list[str] = []
+    at = []
+    for row in rows:
+        lines += rng.choice(BETWEEN, rng.integers(0, 3)).tolist()
+        at.append(len(lines) + 1)
+        lines.append(separator.join(map(str, row)) + last)
+    lines += rng.choice(BETWEEN, rng.integers(0, 3)).tolist()
+    found = read_columns(written(tmp_path, end.join(lines) + end * int(rng.integers(0, 2))))
+    assert np.array_equal(np.column_stack([found.numbers(n) for n in found.raw]), values)
+    for row, line in enumerate(at[1:]):
+        assert found.at("n1", row).endswith(f"row {line}, column 'n1'")
+
+
+def test_remarks_among_columns_that_spaces_line_up_are_passed_over(tmp_path: Path) -> None:
+    text = "# t ab\n 0.0  1.5\n # half way\n 0.1  -2.25\n# done\n"
+    assert read_columns(written(tmp_path, text)).numbers("ab").tolist() == [1.5, -2.25]
+
+
+@pytest.mark.parametrize("first", ["#1", "a1"])
+def test_a_row_whose_first_name_begins_as_a_remark_is_a_row(tmp_path: Path, first: str) -> None:
+    text = f"id,t,a\n{first},0,1.5\n# half\n#2,1,2.5\n#3,2,3.5\n# all, done\n"
+    found = read_columns(written(tmp_path, text), wanted=lambda name: name != "id")
+    assert found.numbers("a").tolist() == [1.5, 2.5, 3.5]
+
+
+def test_a_line_within_quotes_is_no_remark(tmp_path: Path) -> None:
+    text = 't,a,note\n0,1,"on\n# going"\n1,2,"off"\n'
+    found = read_columns(written(tmp_path, text))
+    assert found.numbers("a").tolist() == [1, 2]
+    assert found.raw["note"].tolist() == ["on\n# going", "off"]
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_a_cell_is_told_by_its_line_whatever_stands_above(tmp_path: Path, row: int) -> None:
+    lines = ["# a", "t,a", "", "0,1", "# b", "  ", "1,1", "2,1", "", "", "# c", "3,1", "# d"]
+    at = [n for n, line in enumerate(lines) if line[:1].isdigit()][row]
+    lines[at] = f"{row},x"
+    found = read_columns(written(tmp_path, "\n".join(lines)))
+    with pytest.raises(CrankcheckError, match=f"row {at + 1}, column 'a': found 'x'"):
+        found.numbers("a")
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("t,rocker,M\ns,deg,Nm\n0,1,2\n", ["t [s]", "rocker [deg]", "M [Nm]"]),
+        ("t\tx\trocker\ns\t\tdeg\n0\t\t2\n", ["t [s]", "x", "rocker [deg]"]),
+        ("t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"]),
+        ("# t,rocker\n# s,deg\n0,1\n", ["t [s]", "rocker [deg]"]),
+        ("t [s] rocker [deg]\n0 1\n", ["t [s]", "rocker [deg]"]),
+        ("# t s\n0 1\n", ["t", "s"]),
+    ],
+)
+def test_units_are_found_also_where_some_are_not_known(
+    tmp_path: Path, text: str, names: list[str]
+) -> None:
+    assert list(read_columns(written(tmp_path, text)).raw) == names
+
+
+def test_decimal_commas_in_text_cells_of_a_sheet_are_read_where_the_map_says_so(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "log.xlsx"
+    rows = [["t", "a"], ["s", "deg"], ["0,5", "1,25"], [1.5, 2.5]]
+    pd.DataFrame(rows).to_excel(path, index=False, header=False, startrow=2)
+    found = read_columns(path, Layout(decimal=","))
+    assert found.numbers("a [deg]").tolist() == [1.25, 2.5]
+    assert found.at("a [deg]", 0).endswith("row 5, column 'a [deg]'")
+
+
+def test_a_decimal_point_is_refused_where_the_map_says_comma(tmp_path: Path) -> None:
+    found = read_columns(written(tmp_path, "t;a\n0,5;1.25\n"), Layout(decimal=","))
+    with pytest.raises(CrankcheckError, match=r"row 2, column 'a': found '1\.25', .* comma"):
+        found.numbers("a")
+
+
 @pytest.mark.parametrize("ending", ["parquet", "xlsx"])
 def test_other_kinds_of_files_hold_the_same(tmp_path: Path, ending: str) -> None:
     frame = pd.DataFrame(ROWS, columns=["t", "a b"])
@@ -102,6 +213,11 @@ def test_every_digit_is_kept(tmp_path: Path) -> None:
         ("t,a,a\n0,1,2\n", "two columns are called 'a'"),
         ("t,a\n0,1,2\n", "line 2 has 3 fields, the header 2"),
         ("t,a\n0,1\n1\n", "row 3: 1 fields, the header 2"),
+        ("t,a\n0,1\n# b\n1\n", "row 4: 1 fields, the header 2"),
+        ("t,a,\n0,1,\n# b\n1,2,3\n", "row 4: found '3' in column 3, which has no name"),
+        ("t,a b\n0 1\n", "line 2 has 2 numbers between spaces, and line 1 not as many names"),
+        ("t\t\ta\n0\t\t1\n", "column 2 has no name; .*separator = ' ' in .file. of the map"),
+        ("t,x,x\n,x,y\n0,1,2\n", "line 2 holds words and no numbers, below the names in line 1"),
         ("t;a\n0,5;1,25\n", "row 2, column 't': found '0,5', a decimal comma"),
         ("t,a,b\n0,5,1,25,3,5\n", "decimal commas between commas"),
         ("t,a,b\n0,1,25,3,5e-3\n", "decimal commas between commas"),
@@ -130,6 +246,10 @@ def test_what_is_no_log_is_told(tmp_path: Path, text: str | bytes, words: str) -
         ("inf", "row 3, column 'a': found inf"),
         ("n/a", "row 3, column 'a': found 'n/a', no number"),
         ("1;5", "row 3, column 'a': found '1;5', no number"),
+        ("0x10", "row 3, column 'a': found '0x10', no number"),
+        ('"1,000"', "row 3, column 'a': found '1,000', no number; write decimal points, or say"),
+        ("1'000.5", "row 3, column 'a': found .*no number; write numbers without marks"),
+        ("00:01", "row 3, column 'a': found '00:01', no number; write seconds"),
     ],
 )
 def test_a_cell_that_is_no_number_is_told_by_row_and_column(

@@ -12,10 +12,13 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.scene import Scene
 from reports.describe.frame import motion_frame
-from reports.logs.names import LENGTH, Meaning, Named, meaning, time_of
+from reports.logs.names import meaning
+from reports.logs.own_columns import LENGTH, Meaning
+from reports.logs.scene_names import SceneNames
+from reports.logs.time_columns import time_of
 
-FOURBAR = Named(load_scene("fourbar-lecture-1"))
-SLIDER_CRANK = Named(load_scene("slider-crank-central"))
+FOURBAR = SceneNames(load_scene("fourbar-lecture-1"))
+SLIDER_CRANK = SceneNames(load_scene("slider-crank-central"))
 
 
 @pytest.mark.parametrize(
@@ -185,7 +188,7 @@ def test_our_own_names_are_understood_whatever_bodies_are_called(
     names: tuple[str, str, str],
 ) -> None:
     scene = of_links(names)
-    named = Named(scene)
+    named = SceneNames(scene)
     motion = solve(scene, np.linspace(0.0, 0.1, 3))
     alone = replace(motion, links={}, points={}, sliders={}, bound=None)
     parts = [(body, replace(alone, links={body: one})) for body, one in motion.links.items()]
@@ -196,7 +199,7 @@ def test_our_own_names_are_understood_whatever_bodies_are_called(
             _is_of(body, f"{body}.{column[len(body) + 1 :]}", named)
 
 
-def _is_of(body: str, column: str, named: Named) -> None:
+def _is_of(body: str, column: str, named: SceneNames) -> None:
     """Fail where a column of ours is not understood to be of that body."""
     assert time_of(column) is None
     found = meaning(column, named)
@@ -208,7 +211,7 @@ def _is_of(body: str, column: str, named: Named) -> None:
 
 
 def test_the_case_of_a_name_tells_bodies_apart() -> None:
-    named = Named(of_links(("Rocker", "rocker", "ROCKER")))
+    named = SceneNames(of_links(("Rocker", "rocker", "ROCKER")))
     for body in ("Rocker", "rocker", "ROCKER"):
         found = meaning(f"{body} angle [deg]", named)
         assert isinstance(found, Meaning)

@@ -9,7 +9,7 @@ import pytest
 
 from models.files import load_scene
 from reports.logs.map_file import ChannelTable, Map
-from reports.page.log_sections.curves import Curve, curves, turn_s
+from reports.page.log_sections.curves import DrawnChannel, curves, turn_s
 from tests.reports.page.judged_logs import TURN_S, angles, judged, motion_of, points
 
 MOTION = motion_of()
@@ -18,7 +18,7 @@ ROCKER = angles(MOTION)["rocker_deg"]
 ROOM = 2_000_000
 
 
-def only(columns: dict[str, object], **asked: object) -> Curve:
+def only(columns: dict[str, object], **asked: object) -> DrawnChannel:
     (curve,) = curves(judged(TIME_S, columns, **asked), ROOM)  # type: ignore[arg-type]
     return curve
 

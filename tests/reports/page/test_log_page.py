@@ -16,7 +16,7 @@ from rich.console import Console
 from models.files import load_scene
 from reports.causes.cause import Cause
 from reports.cli.commands.judge import run_judge
-from reports.cli.own_log import JudgeRequest
+from reports.cli.judging import JudgeRequest
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.build import _plotly

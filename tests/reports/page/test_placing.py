@@ -12,7 +12,7 @@ from models.files import load_scene
 from reports.logs.map_file import ChannelTable, Map
 from reports.own_log.judged import JudgedLog
 from reports.page.log_sections.bodies import LoggedBodies, logged_bodies, truth_of_all
-from reports.page.log_sections.placing import Piece
+from reports.page.log_sections.placing import PlacedBodies
 from tests.reports.page.judged_logs import angles, judged, motion_of, points
 
 MOTION = motion_of()
@@ -30,7 +30,7 @@ def log_of(columns: Mapping[str, object]) -> LoggedBodies:
     return drawn(judged(TIME_S, columns))
 
 
-def far(piece: Piece, point: str) -> Array:
+def far(piece: PlacedBodies, point: str) -> Array:
     return np.linalg.norm(piece.off[point], axis=1)
 
 

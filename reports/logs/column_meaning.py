@@ -1,0 +1,120 @@
+"""What a column is: what its name says, as the map corrects it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from models.errors import CrankcheckError, suggestion
+from models.scene import Scene
+from reports.logs.channel import Channel
+from reports.logs.kinds import KINDS
+from reports.logs.map_file import LEFT_OUT, ChannelTable
+from reports.logs.names import meaning
+from reports.logs.own_columns import Meaning
+from reports.logs.scene_names import SceneNames
+from reports.logs.spelling import DIMENSION
+from reports.logs.units import UNITS, si
+
+
+@dataclass(frozen=True)
+class GapColumn:
+    """A column that says how far the bodies at a pin or slider are apart."""
+
+    column: str
+    of: str
+    unit: str
+
+
+def column_meaning(
+    column: str, told: ChannelTable | None, named: SceneNames, times: Mapping[str, str]
+) -> Channel | GapColumn | str:
+    """What a column is, or why nothing is made of it. Raises CrankcheckError."""
+    if told and told.ignore:
+        return LEFT_OUT
+    if told is None or told.of is None or told.kind is None:
+        found = meaning(column, named, told.unit or "" if told else "")
+        if isinstance(found, str):
+            if told is None:
+                return found
+            if told.of is None or told.kind is None:
+                raise CrankcheckError(
+                    f"[[channel]] {column!r}: add of, kind and unit, as the name does not say "
+                    f"them: {found}"
+                )
+            found = Meaning("", None, False, "")
+    else:
+        found = Meaning(told.of, None, told.kind == "gap", "")
+    return _channel(column, told, found, named, times)
+
+
+def _channel(
+    column: str,
+    told: ChannelTable | None,
+    found: Meaning,
+    named: SceneNames,
+    times: Mapping[str, str],
+) -> Channel | GapColumn:
+    """A channel of what the name says and the map corrects. Raises CrankcheckError."""
+    told = told or ChannelTable.model_construct(column=column)
+    where = f"[[channel]] {column!r}"
+    of = told.of or found.of
+    kinds = named.kinds_of(of)
+    if not kinds:
+        hint = suggestion(of, [n for n in named.bodies if n != "ground"], "the scene has")
+        raise CrankcheckError(f"{where}, of: {of!r} is not in scene {named.scene.name}; {hint}")
+    if (told.kind or ("gap" if found.gap else "")) == "gap":
+        return GapColumn(column, of, told.unit or found.unit or "m")
+    if told.kind is not None:
+        kind = next((KINDS[k, told.kind] for k in kinds if (k, told.kind) in KINDS), None)
+    else:
+        kind = found.kind
+    if kind is None or kind.body_kind not in kinds:
+        have = ", ".join(name for k, name in KINDS if k in kinds)
+        asked = f"{told.kind!r} is no kind of reading of" if told.kind else "none for"
+        raise CrankcheckError(f"{where}, kind: {asked} {' and '.join(kinds)} {of}; use {have}")
+    unit = told.unit or found.unit or si(kind.dimension)
+    if DIMENSION[unit] != kind.dimension:
+        raise CrankcheckError(
+            f"{where}, unit: {unit} is a unit of {DIMENSION[unit]}, and {kind.name} is "
+            f"{kind.dimension}; use one of {', '.join(UNITS[kind.dimension])}"
+        )
+    relative_to = found.relative_to if told.relative_to is None else told.relative_to
+    relative_to = "" if relative_to == "ground" else relative_to
+    on = found.on if told.on is None else told.on
+    _check_roles(where, named.scene, kind.body_kind, of, relative_to, on)
+    whose = ("", "velocity time", "acceleration time")[kind.order]
+    time = told.time or times.get(whose, "")
+    if told.time is not None and told.time not in times.values():
+        hint = suggestion(told.time, times.values(), "columns of times are")
+        raise CrankcheckError(f"{where}, time: {told.time!r} is no column of times; {hint}")
+    return Channel(
+        column,
+        kind,
+        of,
+        unit,
+        told.sign,
+        told.offset,
+        relative_to=relative_to,
+        on=on,
+        delay_s=told.delay_s,
+        time=time if time != times["time"] else "",
+    )
+
+
+def _check_roles(
+    where: str, scene: Scene, body_kind: str, of: str, relative_to: str, on: str
+) -> None:
+    """Refuse another link, or a body of a point, that is not there. Raises CrankcheckError."""
+    if relative_to and (body_kind != "link" or relative_to not in scene.links or relative_to == of):
+        others = [name for name in scene.links if name != of]
+        hint = suggestion(relative_to, others, "use one of")
+        raise CrankcheckError(
+            f"{where}, relative_to: {relative_to!r}; an angle, or a rate of it, of a link is "
+            f"relative to another link: {hint}"
+        )
+    bodies = scene.pins.get(of, ())
+    if on and on not in bodies:
+        raise CrankcheckError(
+            f"{where}, on: {on!r} does not carry {of}; {of} is on {', '.join(bodies) or 'no link'}"
+        )

@@ -1,0 +1,106 @@
+"""The lines of a text: what of it begins where, and which lines are blank or remarks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.array import Array
+from models.regular import UnreadableError
+
+LOOK = 200_000
+"""Bytes at the beginning in which the header, and the first row, must stand."""
+REMARKS = ("#", "%", "//")
+PASSED = re.compile(rb"\n[ \t]*(?:\r*(?=\n|\Z)|(?:#|%|//)[^\n]*)")
+"""A line that is blank or a remark, with the line end before it."""
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """The first lines of a text, the byte that each begins at, and whether they are all of it."""
+
+    lines: Sequence[str]
+    offsets: Sequence[int]
+    whole: bool
+
+
+@dataclass(frozen=True)
+class Body:
+    """The text of the rows, and of the lines between them, by number from the first row on, those
+    that were passed over."""
+
+    text: memoryview
+    passed: Array
+
+    def line(self, row: int) -> int:
+        """The number of the line that a row stands in, both from the first row on."""
+        return row_line(self.passed, row)
+
+
+def row_line(passed: Array, row: int) -> int:
+    """The line of a row, both counted from the first row on, where some lines are ``passed``."""
+    rows_before = passed - np.arange(passed.size)
+    return row + int(np.searchsorted(rows_before, row, side="right"))
+
+
+def is_remark(line: str) -> bool:
+    """Whether a line is a remark."""
+    return line.lstrip().startswith(REMARKS)
+
+
+def beginning(raw: bytes) -> Beginning:
+    """The first lines of a text. Raises UnreadableError for no text."""
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise UnreadableError("UTF-16 text; save the file as UTF-8")
+    mark = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
+    look = raw[mark : mark + LOOK]
+    if b"\0" in look:
+        raise UnreadableError("no text: it holds null bytes; the ending says what a file is")
+    if b"\n" not in look and b"\r" in look:
+        raise UnreadableError("lines end in \\r alone; save the file with \\n or \\r\\n")
+    parts = look.split(b"\n")
+    whole = len(raw) <= mark + LOOK
+    if not whole:
+        parts.pop()  # cut somewhere in it
+        if not parts:
+            raise UnreadableError(f"its first line is longer than {LOOK} bytes")
+    offsets, place = [], mark
+    for part in parts:
+        offsets.append(place)
+        place += len(part) + 1
+    try:
+        lines = [part.decode("utf-8").rstrip("\r") for part in parts]
+    except UnicodeDecodeError:
+        raise UnreadableError("not UTF-8 text; save the file as UTF-8") from None
+    return Beginning(lines, offsets, whole)
+
+
+def body(raw: bytes, start: int, is_row: Callable[[str], bool]) -> Body:
+    """The rows of a text from a byte on, without lines that are blank or remarks.
+
+    A line within a quoted field is no remark, and none that ``is_row`` takes for a row.
+    """
+    passed: list[int] = []
+    kept: list[memoryview] = []
+    view = memoryview(raw)
+    at, counted, line, quotes = start, start, 0, 0
+    for hit in PASSED.finditer(raw, start):
+        first, last = hit.span()
+        line += raw.count(b"\n", counted, first)
+        quotes += raw.count(b'"', counted, first)
+        counted = first
+        words = raw[first:last].strip()
+        if quotes % 2 or (words and is_row(words.decode("utf-8", "replace"))):
+            continue
+        line, counted = line + 1, last  # its own quotes are none
+        passed.append(line)
+        if raw[first:last].strip(b"\r\n"):  # arrow passes over lines with nothing in them itself
+            kept.append(view[at:first])
+            at = last
+    kept.append(view[at:])
+    parts = [part for part in kept if len(part)]
+    text = parts[0] if len(parts) == 1 else memoryview(b"".join(parts))
+    return Body(text, np.asarray(passed, dtype=np.int64))

@@ -1,0 +1,155 @@
+"""The rows of a text below its header: what stands in them is read as numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
+import pyarrow.csv as pc  # type: ignore[import-untyped]  # ships no types
+
+from models.errors import cut
+from models.regular import UnreadableError
+from reports.logs.extent import refuse_rows
+from reports.logs.text_fields import COMMA, SEPARATORS, is_number
+from reports.logs.text_header import TITLE, Header
+from reports.logs.text_lines import Body
+
+DIGITS = re.compile(r"[-+]?\d+(e[-+]?\d+)?", re.IGNORECASE)
+"""What is left of a number on either side of its decimal comma."""
+HEXADECIMAL = re.compile(rb"0[xX]")
+"""What arrow takes for a whole number."""
+
+
+@dataclass(frozen=True)
+class RowReader:
+    """What reads the rows of a text: those ``below`` its header, of which ``fields`` are the
+    first, with decimals behind a point or comma."""
+
+    header: Header
+    below: Body
+    decimal: str
+
+    def table(self, fields: Sequence[str], wanted: Callable[[str], bool]) -> pa.Table:
+        """The columns that are wanted, as numbers where all of their cells are, as text else.
+
+        Raises UnreadableError for rows that do not fit the header, and for too many.
+        """
+        self._check_first(fields)
+        names = self.header.names
+        types = {
+            name: pa.float64() if is_number(field) else pa.string()
+            for name, field in zip(names, fields, strict=True)
+            if wanted(name) or not name
+        }
+        table = self._read(types)
+        return self._without_last(table) if self.header.ends else table
+
+    def _check_first(self, fields: Sequence[str]) -> None:
+        """Refuse a first row that does not fit the header. Raises UnreadableError."""
+        names, separator, at = self.header.names, self.header.separator, self.header.first
+        pairs = len(fields) >= 2 * len(names) - 1 and separator == "," and len(names) > 1
+        if pairs and all(DIGITS.fullmatch(field) for field in fields):
+            raise UnreadableError(
+                f"line {at + 1} has {len(fields)} fields, the header {len(names)}: decimal commas "
+                "between commas; write decimal points, or separate the columns by semicolons"
+            )
+        if len(fields) != len(names):
+            _refuse_first(len(fields), len(names), at, separator, ends=not fields[-1])
+        if self.decimal == ".":
+            for name, field in zip(names, fields, strict=True):
+                if COMMA.fullmatch(field):
+                    raise UnreadableError(
+                        f"row {at + 1}, column {cut(name)!r}: found {cut(field)!r}, a decimal "
+                        "comma; write decimal points, or say decimal = ',' in [file] of the map"
+                    )
+
+    def _read(self, types: Mapping[str, pa.DataType]) -> pa.Table:
+        """The rows of the columns that have ``types``. Raises UnreadableError."""
+        text = self.below.text
+        if self.header.separator == " ":
+            clean = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", bytes(text)))
+            text = memoryview(clean)
+        refuse_rows(_count(text), len(types))
+        misfits: list[str] = []
+
+        def misfit(row: pc.InvalidRow) -> str:
+            misfits.append(
+                f"row {self._line((row.number or 1) - 1)}: {row.actual_columns} fields, the header "
+                f"{row.expected_columns}: {cut(row.text, 60)!r}"
+            )
+            return "error"
+
+        def table(told: Mapping[str, pa.DataType]) -> pa.Table:
+            return pc.read_csv(
+                pa.BufferReader(pa.py_buffer(text)),
+                read_options=pc.ReadOptions(
+                    column_names=list(self.header.names), use_threads=False, block_size=1 << 24
+                ),
+                parse_options=pc.ParseOptions(
+                    delimiter=self.header.separator, invalid_row_handler=misfit
+                ),
+                convert_options=pc.ConvertOptions(
+                    column_types=told,
+                    include_columns=list(types),
+                    null_values=[""],
+                    strings_can_be_null=True,
+                    decimal_point=self.decimal,
+                    timestamp_parsers=[],
+                ),
+                memory_pool=pa.system_memory_pool(),
+            )
+
+        try:
+            try:  # where a type is told, the text is let go block by block
+                return table(types)
+            except pa.ArrowInvalid:
+                if misfits:
+                    raise
+                return table(dict.fromkeys(types, pa.string()) if HEXADECIMAL.search(text) else {})
+        except (pa.ArrowException, OSError, ValueError) as error:
+            why = misfits[0] if misfits else cut(str(error).splitlines()[0], 200)
+            raise UnreadableError(f"{why}; every row has as many fields as the header") from None
+
+    def _without_last(self, table: pa.Table) -> pa.Table:
+        """The table without the column behind the separator that ends all lines. Raises
+        UnreadableError where something stands in it."""
+        last = table.column("")
+        if last.null_count < table.num_rows:
+            cells = last.to_pylist()
+            row = next((n for n, cell in enumerate(cells) if str(cell or "").strip()), None)
+            if row is not None:
+                raise UnreadableError(
+                    f"row {self._line(row)}: found {cut(str(cells[row]), 40)!r} in column "
+                    f"{len(self.header.names)}, which has no name; give it one"
+                )
+        return table.drop_columns([""])
+
+    def _line(self, row: int) -> int:
+        """What a reader would call a row: its line in the file."""
+        return self.header.first + 1 + self.below.line(row)
+
+
+def _refuse_first(found: int, names: int, at: int, separator: str, *, ends: bool) -> None:
+    """Raise UnreadableError for a first row of another number of fields."""
+    mark = SEPARATORS.get(separator, repr(separator))
+    counts = f"line {at + 1} has {found} fields, the header {names}"
+    if found == names + 1 and ends:
+        raise UnreadableError(
+            f"{counts}: it ends in a separator, {mark}, and the header does not; end both so, or "
+            "neither"
+        )
+    title = f", and {TITLE}" if names == 1 else ""
+    raise UnreadableError(
+        f"{counts}, separated by {mark}; say separator in [file] of the map if that is another"
+        f"{title}"
+    )
+
+
+def _count(body: memoryview) -> int:
+    """The number of lines."""
+    count, step = 0, 1 << 24
+    for first in range(0, len(body), step):
+        count += bytes(body[first : first + step]).count(b"\n")
+    return count + (len(body) > 0 and body[-1] != 10)
