@@ -90,7 +90,7 @@ def healthy(scene: str, engine: str, steps: int = STEPS) -> Checked:
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
     """The scenes and engines that the faults are planted in."""
-    there = [name for name in ENGINES if name in engines]
+    there = [name for name in dict.fromkeys((*ENGINES, *engines)) if name in engines]
     pairs = {(s, e): None for f in faults for s in f.scenes for e in there if f.possible(e)}
     return list(pairs)
 

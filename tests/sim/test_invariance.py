@@ -9,14 +9,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from analytic.check.moved_scene import moved, rotated, scaled
+from analytic.check.moved_scene import mirrored, moved, rotated, scaled
 from analytic.kinematics import solve
 from models.files import load_scene
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from sim.registry import ENGINES
 from sim.run import run
-from tests.worlds.other_way import mirrored
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper")
 STEPS_PER_TURN = 400

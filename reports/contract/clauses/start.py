@@ -1,0 +1,75 @@
+"""How a session begins: with the scene that was asked for, at its state, at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.errors import EngineError
+from reports.contract.clause import Clause
+from reports.contract.subject import Subject
+from sim.check import refuse_other_model
+from sim.measure import motion
+
+PLACE = 1e-12
+"""How far a point may be from where it is, over the longest link or coordinate."""
+LATER = 0.3
+"""Of a period."""
+
+
+def _the_scene(subject: Subject) -> Iterator[str]:
+    for profile in subject.engine.profiles:
+        facts = subject.opened(profile).facts()
+        try:
+            refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
+        except EngineError as error:
+            yield f"profile {profile}: {error}"
+            continue
+        held = motion(subject.scene, facts.start).state(0)
+        for point, place in subject.start.position.items():
+            scale = max(subject.scene.longest_m, *map(abs, place))
+            off = float(np.hypot(*np.subtract(held.position[point], place)))
+            if not off <= PLACE * scale:
+                yield f"profile {profile}: point {point} is off by {off:.2g} m at the start"
+
+
+def _at_any_time(subject: Subject) -> Iterator[str]:
+    later = subject.at(LATER * subject.scene.driver.law.period_s)
+    session = subject.opened(start=later)
+    try:
+        refuse_other_model(subject.scene, later, session.facts(), subject.dt_s(), "prescribed")
+    except EngineError as error:
+        yield f"from {later.time_s:.3g} s on: {error}"
+    times = session.record(4, 2).poses.time_s
+    wanted = later.time_s + subject.dt_s() * np.array([0.0, 2.0, 4.0])
+    if not np.allclose(times, wanted, rtol=1e-12, atol=0.0):
+        yield f"from {later.time_s:.6g} s on the samples are at {times}, not {wanted} s"
+    elif (off := _crank_off(subject, session.read().bodies, times[-1])) > PLACE**0.5:
+        yield f"a start at {later.time_s:.3g} s: the crank is off by {off:.2g} rad 4 steps later"
+
+
+def _crank_off(subject: Subject, bodies: object, time_s: float) -> float:
+    crank = bodies[subject.scene.driver.link]  # type: ignore[index]  # poses by name
+    angle = subject.scene.driver.law.at(np.array([time_s]))[0][0]
+    return float(abs(np.remainder(crank.theta[0] - angle + np.pi, 2 * np.pi) - np.pi))
+
+
+CLAUSES = (
+    Clause(
+        "EC21",
+        "a session opens as the scene, at the state, with closed joints",
+        "Another mass, place or speed at the start is another mechanism, whatever comes after it.",
+        "Take masses from mass_of, centres from centre_of, places and velocities from "
+        "frames(scene, state, velocity_shift * dt_s), and read all of them back from the engine.",
+        _the_scene,
+    ),
+    Clause(
+        "EC22",
+        "a session may start at any time of the driver's law",
+        "A run that goes on from another, or from a later state, is driven by the time of its "
+        "state.",
+        "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
+        _at_any_time,
+    ),
+)
