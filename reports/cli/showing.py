@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -125,26 +126,31 @@ def engines(
             listing.engines(terminal(), settings)
 
 
-@engines_app.command("check")
-def check_engine(
+@dataclass(frozen=True)
+class EngineCheckRequest:
+    """What `engines check` was asked for, as given."""
+
     name: Annotated[
         str,
-        typer.Argument(
-            metavar="ENGINE", help="An engine, or one of your own, package.module:ATTRIBUTE."
-        ),
-    ],
-    limit_s: Annotated[float, typer.Option(help="Longest time for a clause, in seconds.")] = 60.0,
-    jobs: Jobs = 0,
-) -> None:
+        typer.Argument(metavar="ENGINE", help="A name, or one of your own, package.module:ENGINE."),
+    ]
+    clauses: Annotated[
+        Sequence[str],
+        typer.Option("--clause", metavar="ID", help="Clause; may be repeated; all if none."),
+    ] = ()
+    limit_s: Annotated[float, typer.Option(help="Longest time for a clause, in seconds.")] = 60.0
+    jobs: Jobs = 0
+
+
+@partial(command, of=engines_app)
+def check(request: EngineCheckRequest) -> int:
     """Say what of the contract of engines one holds, and how to mend what it does not.
 
     The exit code is 0 where it holds all of it, 1 where it does not.
     """
-    with guarded():
-        from reports.cli.commands import contract
+    from reports.cli.commands import contract as verb
 
-        code = contract.run_check(name, limit_s, jobs, terminal(), terminal(stderr=True))
-    raise typer.Exit(code)
+    return verb.run_check(request, terminal(), terminal(stderr=True))
 
 
 @app.command()

@@ -29,7 +29,6 @@ SCENES = (
     "scotch-yoke",
 )
 """One of each kind of joint; the first is what every engine is held to."""
-LIMITS = Limits(60.0, 4.0)
 Answer = Literal["held", "broken", "not tried"]
 
 
@@ -82,16 +81,19 @@ def _raised(error: Exception) -> str:
 
 
 def put_to_all(
-    name: str, jobs: int, limits: Limits, done: Callable[[Ruling], None]
+    name: str,
+    clauses: Sequence[str],
+    jobs: int,
+    limits: Limits,
+    done: Callable[[Ruling], None] = lambda _: None,
 ) -> list[Ruling]:
-    """What comes of every clause, in their order; ``done`` hears of each as it ends."""
+    """What comes of clauses, by their ids, in that order; ``done`` hears of each as it ends."""
     results: dict[int, Ruling] = {}
-    ends = as_they_end(partial(_apart, name), list(CLAUSES), jobs, limits)
-    with closing(ends):
+    with closing(as_they_end(partial(_apart, name), clauses, jobs, limits)) as ends:
         for index, result in ends:
             results[index] = result
             done(result)
-    return [results[index] for index in range(len(CLAUSES))]
+    return [results[index] for index in range(len(clauses))]
 
 
 def by_name(name: str, clause: str) -> Ruling:

@@ -78,15 +78,20 @@ class Subject:
 
     def ran(self, steps_per_turn: int, turns: float, profile: str = "tuned", every: int = 1) -> Run:
         """A run from time 0. Raises NotTriedError."""
-        done = run(
-            self.scene,
-            self.start,
-            self.engine,
-            profile,
-            dt_s=self.dt_s(steps_per_turn),
-            steps=round(turns * steps_per_turn),
-            every=every,
-        )
+        try:
+            done = run(
+                self.scene,
+                self.start,
+                self.engine,
+                profile,
+                dt_s=self.dt_s(steps_per_turn),
+                steps=round(turns * steps_per_turn),
+                every=every,
+            )
+        except (BrokenContractError, SettingError):
+            raise
+        except EngineError as error:  # EC21 says more of it
+            raise NotTriedError(str(error)) from None
         if done.status == "unsupported":
             raise NotTriedError(done.reason)
         return done

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Generator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
@@ -56,8 +57,8 @@ def on_cluster(
     from distributed import as_completed
 
     try:
-        options = {"limits": limits, "keep_run": keep_run, "own_engines": spellings()}
-        futures = client.map(_there, cells, pure=False, **options)
+        there = partial(_there, limits=limits, keep_run=keep_run, own_engines=spellings())
+        futures = client.map(there, cells, pure=False)
         indices = {future.key: index for index, future in enumerate(futures)}
         ended = as_completed(futures, with_results=True)  # type: ignore[no-untyped-call]
         del futures  # a cluster keeps a result as long as somebody has its future

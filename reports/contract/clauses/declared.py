@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 
@@ -94,9 +95,15 @@ def _told_back(subject: Subject) -> Iterator[str]:
         facts = subject.opened(name).facts()
         for setting, value in subject.engine.holds(given, subject.dt_s(), "prescribed").items():
             held = facts.settings.get(setting)
-            close = isinstance(value, float) and isinstance(held, float)
-            if not (abs(held - value) <= 1e-9 * abs(value) if close else held == value):  # type: ignore[operator]  # floats
+            if not _same(held, value):
                 yield f"profile {name}: {setting} is asked to be {shown(value)}, held {shown(held)}"
+
+
+def _same(held: object, asked: SettingValue) -> bool:
+    """Whether a setting is what was asked for, but for what a number loses on its way."""
+    if isinstance(asked, float) and isinstance(held, float):
+        return math.isclose(held, asked, rel_tol=1e-9)
+    return held == asked
 
 
 CLAUSES = (

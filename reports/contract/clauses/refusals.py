@@ -47,7 +47,7 @@ def _opened(subject: Subject, session: object, drive: Drive, at: str) -> Iterato
 
 def _massless(scene: Scene) -> Scene:
     """The scene with a link that nothing but its joints could move."""
-    link = next(name for name in reversed(scene.links) if name != scene.driver.link)
+    link = next(name for name in reversed(list(scene.links)) if name != scene.driver.link)
     bare = replace(scene.links[link], mass_kg=0.0, inertia_kg_m2=0.0)
     return replace(scene, links={**scene.links, link: bare})
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from models.errors import EngineError
 from reports.contract.clause import Clause
-from reports.contract.subject import Subject
+from reports.contract.subject import NotTriedError, Subject
 from sim.check import refuse_other_model
 from sim.measure import motion
 
@@ -35,6 +35,8 @@ def _the_scene(subject: Subject) -> Iterator[str]:
 
 
 def _at_any_time(subject: Subject) -> Iterator[str]:
+    if next(_the_scene(subject), ""):
+        raise NotTriedError("it does not open as the scene at time 0 (EC21)")
     later = subject.at(LATER * subject.scene.driver.law.period_s)
     session = subject.opened(start=later)
     try:
