@@ -96,7 +96,7 @@ def run(
     )
     try:
         session = chosen.open(scene, state, told.asked, dt_s, drive)
-    except SettingError:
+    except (SettingError, BrokenContractError):
         raise
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
