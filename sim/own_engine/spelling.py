@@ -13,11 +13,14 @@ import sys
 import traceback
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from importlib.metadata import EntryPoint
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from models.errors import EngineError, cut, suggestion
 from sim.engine import Engine
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "crankcheck.engines"
 """The group of entry points."""
@@ -28,7 +31,7 @@ WRITTEN = "package.module:ATTRIBUTE"
 
 def installed() -> list[EntryPoint]:
     """The entry points that engines are named by, of all packages that are installed here."""
-    from importlib.metadata import entry_points  # it takes longer than all else here
+    from importlib.metadata import entry_points  # whose import takes longer than all else here
 
     here = entry_points(group=GROUP)
     return sorted(set(here), key=lambda point: (point.name, point.value))

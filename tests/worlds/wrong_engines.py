@@ -328,7 +328,7 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
     "velocities late": (
         "EC41",
         "is that of -0.50 steps, and velocity_shift says +0.50",
-        lambda e: meddled(e, record_=of_log(_late_rates, 1000)),
+        lambda e: meddled(e, record_=of_log(_late_rates, 700)),
         set(),
     ),
     "lag unsaid": (
@@ -360,4 +360,4 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
 
 def late_accelerations(sound: Engine) -> Engine:
     """Of an engine that reports them, those of links a step late."""
-    return meddled(sound, record_=of_log(_late_accelerations, 1000))
+    return meddled(sound, record_=of_log(_late_accelerations, 700))

@@ -25,7 +25,7 @@ from sim.engine import Poses
 
 DRIVE_RAD = 1e-9
 """A crank that is off by more is not prescribed."""
-STEPS = (360, 720, 1440)
+STEPS = (180, 360, 720)
 SLACK = 0.5
 """How far a slope over three steps may be from the order that it tends to."""
 SOLVED = 1e-9

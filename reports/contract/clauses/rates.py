@@ -17,7 +17,7 @@ from reports.contract.clause import Clause
 from reports.contract.subject import Subject
 from sim.engine import Run
 
-STEPS, TURNS = 1600, 1.0
+STEPS, TURNS = 800, 1.0
 LATE = 0.25
 """Steps that a rate may be from the instant that it is said to be of."""
 OFF = 0.05
