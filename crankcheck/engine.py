@@ -2,9 +2,9 @@
 
 ::
 
-    from crankcheck.engine import Engine, Facts, Log, Poses, Profile, Setting
+    import crankcheck.engine as cc
 
-    ENGINE = Engine("mine", profiles, version, check, open)
+    ENGINE = cc.Engine("mine", profiles, version, check, open)
 
 An adapter opens a session at a state, steps it, and says what it holds and what has moved, as
 `Poses`; everything after that is crankcheck's. docs/own-engine.md shows one from top to bottom;
