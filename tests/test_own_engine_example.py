@@ -75,9 +75,9 @@ def test_installed_it_is_listed_checked_swept_and_shown(
 
 
 def test_three_faults_are_each_named_with_their_cure(crank: Crank) -> None:
-    Path("faulty_engine.py").write_text(with_faults(THREE_FAULTS))
+    Path("faulty_penalty.py").write_text(with_faults(THREE_FAULTS))
     clauses = [word for each in ("EC11", "EC13", "EC32", "EC41") for word in ("--clause", each)]
-    done = crank("engines", "check", "faulty_engine:ENGINE", *clauses, "--jobs", "1")
+    done = crank("engines", "check", "faulty_penalty:ENGINE", *clauses, "--jobs", "1")
     assert done.exit_code == 1, done.output
     words = " ".join(done.output.split())
     assert "ok EC11" in words

@@ -65,12 +65,17 @@ class Subject:
         return resolved(profile_of(self.engine, profile), None)
 
     def opened(
-        self, profile: str = "tuned", drive: Drive = "prescribed", start: State | None = None
+        self,
+        profile: str = "tuned",
+        drive: Drive = "prescribed",
+        start: State | None = None,
+        steps: int = STEPS,
     ) -> Session:
-        """A new session at a state, that of time 0 if none. Raises NotTriedError."""
+        """A new session at a state, that of time 0 if none, with so many steps in a period. Raises
+        NotTriedError."""
         state, settings = start or self.start, self.settings(profile)
         try:
-            return self.engine.open(self.scene, state, settings, self.dt_s(), drive)
+            return self.engine.open(self.scene, state, settings, self.dt_s(steps), drive)
         except (BrokenContractError, SettingError):
             raise
         except EngineError as error:

@@ -9,7 +9,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from models.errors import few, harmless
-from reports.contract.checking import Ruling
+from reports.contract.ruling import Ruling
 from reports.output.numbers import count
 
 MARKS = {"held": ("ok ", "green"), "broken": ("OUT", "bold red"), "not tried": ("-  ", "dim")}

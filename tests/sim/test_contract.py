@@ -11,8 +11,8 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
-from reports.contract.checking import SCENES, put_to
 from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import SCENES, put_to
 from reports.contract.subject import Subject, numbers
 from sim.check import refuse_other_model
 from sim.engine import BodyPose, Engine

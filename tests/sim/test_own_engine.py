@@ -38,8 +38,8 @@ def ran(name: str) -> Run:
 
 def wrong(folder: Path, old: str, new: str) -> str:
     """The example with a fault, as a module of its own."""
-    (folder / "wrong_engine.py").write_text(with_faults({old: new}))
-    return "wrong_engine:ENGINE"
+    (folder / "faulty_penalty.py").write_text(with_faults({old: new}))
+    return "faulty_penalty:ENGINE"
 
 
 def test_one_in_the_working_folder_is_known_by_its_own_name(folder: Path) -> None:
@@ -194,7 +194,7 @@ def test_what_breaks_the_contract_at_run_is_told_with_its_place(
     spelled = wrong(folder, old, new)
     with pytest.raises(BrokenContractError, match=words) as raised:
         ran(spelled)
-    assert "`crankcheck engines check wrong_engine:ENGINE` says" in str(raised.value)
+    assert "`crankcheck engines check faulty_penalty:ENGINE` says" in str(raised.value)
 
 
 def test_what_is_raised_while_it_runs_is_a_row(folder: Path) -> None:

@@ -6,8 +6,8 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, suggestion
 from reports.cli.showing import EngineCheckRequest
-from reports.contract.checking import SCENES, put_to_all
 from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import SCENES, put_to_all
 from reports.contract.table import show
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar

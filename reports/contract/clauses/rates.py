@@ -15,9 +15,11 @@ from analytic.kinematics import solve
 from models.array import Array
 from reports.contract.clause import Clause
 from reports.contract.subject import Subject
-from sim.engine import Run
+from sim.engine import Session
+from sim.measure import motion
 
-STEPS, TURNS = 800, 1.0
+STEPS = 800
+"""Of one turn."""
 LATE = 0.25
 """Steps that a rate may be from the instant that it is said to be of."""
 OFF = 0.05
@@ -44,14 +46,12 @@ class _Rate:
 
 
 def _velocities(subject: Subject) -> Iterator[str]:
-    done = subject.ran(STEPS, TURNS)
-    if done.motion is None or done.velocity_time_s is None or done.status != "ok":
-        yield f"the run ended {done.status}: {done.reason}"
-        return
-    said = float(done.velocity_time_s[0] - done.motion.time_s[0]) / done.dt_s
-    yield from _faults(_of_run(subject, done, 1), said, done.dt_s, "velocity", "velocity_shift")
-    lag = subject.opened().facts().start.lag_s / subject.dt_s()
-    if abs(lag - said) > 1e-6:
+    session = subject.opened(steps=STEPS)
+    said, lag_s = session.facts().velocity_shift, session.facts().start.lag_s
+    rates = _of_log(subject, session, 1)
+    yield from _faults(rates, said, subject.dt_s(STEPS), "velocity", "velocity_shift")
+    if abs(lag_s / subject.dt_s(STEPS) - said) > 1e-6:
+        lag = lag_s / subject.dt_s(STEPS)
         yield f"Poses.lag_s is {lag:.3g} steps, and Facts.velocity_shift {said:.3g}"
 
 
@@ -65,28 +65,24 @@ def _accelerations(subject: Subject) -> Iterator[str]:
             return
     if not reports:
         return
-    done = subject.ran(STEPS, TURNS)
-    if done.motion is None or done.acceleration_time_s is None or done.status != "ok":
-        yield f"the run ended {done.status}: {done.reason}"
-        return
-    said = float(done.acceleration_time_s[0] - done.motion.time_s[0]) / done.dt_s
-    rates = _of_run(subject, done, 2)
-    yield from _faults(rates, said, done.dt_s, "acceleration", "acceleration_shift")
+    session = subject.opened(steps=STEPS)
+    said, rates = session.facts().acceleration_shift, _of_log(subject, session, 2)
+    yield from _faults(rates, said, subject.dt_s(STEPS), "acceleration", "acceleration_shift")
 
 
-def _of_run(subject: Subject, done: Run, order: int) -> list[_Rate]:
-    """The rates of links and points: velocities for 1, accelerations for 2."""
-    assert done.motion is not None
-    truth = solve(subject.scene, done.motion.time_s, bound=False)
-    rates = []
-    for name, link in done.motion.links.items():
+def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
+    """The rates of links and points over a turn: velocities for 1, accelerations for 2."""
+    held = motion(subject.scene, session.record(STEPS, 1).poses)
+    truth = solve(subject.scene, held.time_s, bound=False)
+    dt_s, rates = subject.dt_s(STEPS), []
+    for name, link in held.links.items():
         true = truth.links[name].alpha
         reported = link.omega if order == 1 else link.alpha
-        rates.append(_rate(f"link {name}", link.theta, reported, true, done.dt_s, order))
-    for name, point in done.motion.points.items():
+        rates.append(_rate(f"link {name}", link.theta, reported, true, dt_s, order))
+    for name, point in held.points.items():
         true = truth.points[name].acceleration
         reported = point.velocity if order == 1 else point.acceleration
-        rates.append(_rate(f"point {name}", point.position, reported, true, done.dt_s, order))
+        rates.append(_rate(f"point {name}", point.position, reported, true, dt_s, order))
     return rates
 
 

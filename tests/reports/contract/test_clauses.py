@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from reports.contract.checking import put_to
 from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import put_to
 from sim.registry import engine
 from tests.worlds.wrong_engines import FAULTS, late_accelerations
 

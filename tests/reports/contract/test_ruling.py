@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.contract.checking import SCENES, Ruling, put_to_all
+from reports.contract.ruling import SCENES, Ruling, put_to_all
 from reports.contract.table import show
 from reports.workers.isolated import Limits
 from sim.registry import engine
@@ -28,15 +28,15 @@ def test_an_engine_that_crashes_hangs_or_raises_costs_its_clauses_alone(
         ),
         "        return self._poses([self._row()])": "        raise KeyError('no reading')",
     }
-    (tmp_path / "wrong_engine.py").write_text(with_faults(faults))
+    (tmp_path / "faulty_penalty.py").write_text(with_faults(faults))
     with fresh(tmp_path, monkeypatch):
-        assert engine("wrong_engine:ENGINE").name == "penalty"
+        assert engine("faulty_penalty:ENGINE").name == "penalty"
         hung, ended, raised, sound = put_to_all(
             "penalty", ["EC31", "EC32", "EC34", "EC11"], 2, Limits(2.0, 4.0)
         )
     assert hung.breaches == ("no end within 2 s",)
     assert ended.breaches == ("the engine ended its process (signal SIGABRT)",)
-    assert raised.breaches[0].startswith("read raised KeyError: 'no reading' (wrong_engine.py, ")
+    assert raised.breaches[0].startswith("read raised KeyError: 'no reading' (faulty_penalty.py, ")
     assert sound.answer == "held"
 
 
