@@ -13,6 +13,9 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from reports.cli import app
+from reports.selftest.all_faults import FAULTS
+from reports.selftest.trial import sites
+from sim.registry import engine
 from tests.test_architecture import ROOT
 from tests.worlds.own_engines import CODE, EXAMPLE, fresh, installed, with_faults
 
@@ -118,6 +121,12 @@ def test_what_it_has_not_is_said(crank: Crank, command: str, words: str) -> None
     assert done.exit_code == 2, done.output
     assert words in " ".join(done.output.split())
     assert not Path("log.csv").exists()
+
+
+def test_faults_are_planted_where_it_holds_the_scene(crank: Crank) -> None:
+    Path("penalty_engine.py").write_text(CODE)
+    engine("penalty_engine:ENGINE")
+    assert sites([FAULTS["row-lost"]], ["penalty"]) == [("fourbar-lecture-1", "penalty")]
 
 
 @pytest.mark.slow

@@ -95,8 +95,8 @@ class Subject:
             )
         except (BrokenContractError, SettingError):
             raise
-        except EngineError as error:  # EC21 says more of it
-            raise NotTriedError(str(error)) from None
+        except EngineError:
+            raise NotTriedError("the session is not the scene (EC21)") from None
         if done.status == "unsupported":
             raise NotTriedError(done.reason)
         return done

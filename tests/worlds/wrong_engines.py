@@ -274,7 +274,7 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         lambda e: meddled(e, facts_=_another_setting),
         set(),
     ),
-    "heavier": ("EC21", "has mass_kg", lambda e: meddled(e, facts_=_heavier), {"EC71"}),
+    "heavier": ("EC21", "has mass_kg", lambda e: meddled(e, facts_=_heavier), set()),
     "from zero": ("EC22", "the samples are at", lambda e: opening(e, _from_zero), set()),
     "one step more": (
         "EC31",

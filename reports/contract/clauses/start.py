@@ -19,23 +19,35 @@ LATER = 0.3
 
 
 def _the_scene(subject: Subject) -> Iterator[str]:
-    for profile in subject.engine.profiles:
-        facts = subject.opened(profile).facts()
-        try:
-            refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
-        except EngineError as error:
-            yield f"profile {profile}: {error}"
-            continue
-        held = motion(subject.scene, facts.start).state(0)
-        for point, place in subject.start.position.items():
-            scale = max(subject.scene.longest_m, *map(abs, place))
-            off = float(np.hypot(*np.subtract(held.position[point], place)))
-            if not off <= PLACE * scale:
-                yield f"profile {profile}: point {point} is off by {off:.2g} m at the start"
+    by_profile = {name: _other_scene(subject, name) for name in subject.engine.profiles}
+    for text in dict.fromkeys(filter(None, by_profile.values())):
+        profiles = [name for name, own in by_profile.items() if own == text]
+        yield text if len(profiles) == len(by_profile) else f"profile {profiles[0]}: {text}"
+
+
+def is_other(subject: Subject) -> bool:
+    """Whether a session is not the scene to begin with, of which one clause is enough."""
+    return any(_the_scene(subject))
+
+
+def _other_scene(subject: Subject, profile: str) -> str:
+    """What is not as it should be at the start."""
+    facts = subject.opened(profile).facts()
+    try:
+        refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
+    except EngineError as error:
+        return str(error)
+    held = motion(subject.scene, facts.start).state(0)
+    for point, place in subject.start.position.items():
+        scale = max(subject.scene.longest_m, *map(abs, place))
+        off = float(np.hypot(*np.subtract(held.position[point], place)))
+        if not off <= PLACE * scale:
+            return f"point {point} is off by {off:.2g} m at the start"
+    return ""
 
 
 def _at_any_time(subject: Subject) -> Iterator[str]:
-    if next(_the_scene(subject), ""):
+    if is_other(subject):
         raise NotTriedError("it does not open as the scene at time 0 (EC21)")
     later = subject.at(LATER * subject.scene.driver.law.period_s)
     session = subject.opened(start=later)
