@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Literal, cast
 
-from models.errors import EngineError, suggestion
+from models.errors import EngineError
 from sim.engine import Engine
+from sim.own_engine.known import own_engine
+from sim.own_engine.spelling import installed
 
 ENGINES: Mapping[str, str] = {
     "mujoco": ".mujoco",
@@ -44,6 +46,10 @@ class Declaration:
     extra: bool = False
 
 
+OWN = Declaration("", "", extra=True)
+"""What is declared of an engine that is not ours."""
+
+
 @dataclass(frozen=True)
 class Availability:
     """Whether an engine can be used here: its version, or the command that installs it; why not,
@@ -56,9 +62,11 @@ class Availability:
 
 
 def declaration(name: str) -> Declaration:
-    """What an engine's folder holds. Raises EngineError, with near names, for an unknown one."""
+    """What an engine's folder holds; one that is not ours has its adapter alone. Raises
+    EngineError, with near names, for an unknown one."""
     if name not in ENGINES:
-        raise EngineError(f"engine {name!r}: unknown; {suggestion(name, ENGINES, 'there are')}")
+        own_engine(name, ENGINES)
+        return OWN
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
 
 
@@ -68,14 +76,17 @@ def usual() -> list[str]:
 
 
 def engine(name: str) -> Engine:
-    """The engine of that name.
+    """The engine of that name: one of ours, or of an installed package that has it in its entry
+    points; or of the spelling `package.module:ATTRIBUTE`, by whose name it is known from then on.
 
     Raises
     ------
     EngineError
         No such engine (the message suggests near names), or its package is not installed, or can
-        not be imported here.
+        not be imported here; or what is there is no engine, or has the name of another.
     """
+    if name not in ENGINES:
+        return own_engine(name, ENGINES)
     return cast(Engine, _loaded(name, "engine"))
 
 
@@ -147,7 +158,7 @@ def install_command(name: str) -> str:
 
 
 def available() -> tuple[Availability, ...]:
-    """All engines, installed or not."""
+    """All engines of ours, installed or not."""
     engines = []
     for name in ENGINES:
         version, broken = None, ""
@@ -156,4 +167,18 @@ def available() -> tuple[Availability, ...]:
         except EngineError as error:
             broken = str(error) if isinstance(error, BrokenEngineError) else ""
         engines.append(Availability(name, version, install_command(name), broken))
+    return tuple(engines)
+
+
+def brought() -> tuple[Availability, ...]:
+    """The engines that other installed packages bring, by their entry points; what is wrong with
+    one that can not be used is said."""
+    engines = []
+    for name in dict.fromkeys(point.name for point in installed()):
+        version, broken = None, ""
+        try:
+            version = engine(name).version()
+        except EngineError as error:
+            broken = str(error)
+        engines.append(Availability(name, version, "", broken))
     return tuple(engines)

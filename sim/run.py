@@ -34,6 +34,7 @@ from sim.engine import (
     Status,
 )
 from sim.measure import gaps, motion
+from sim.own_engine.watched import BrokenContractError
 from sim.registry import engine as engine_of
 from sim.settings import SettingError, profile_of, resolved
 
@@ -72,7 +73,7 @@ def run(
     EngineError
         An unknown engine, profile or setting, a missing package, a step that is not positive or
         leaves under 8 steps in a period (`sim.drive.period`), or a model in the engine that is
-        not the scene.
+        not the scene; an engine of the user's own that breaks its contract.
     """
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     told = setup(
@@ -95,7 +96,7 @@ def run(
     )
     try:
         session = chosen.open(scene, state, told.asked, dt_s, drive)
-    except SettingError:
+    except (SettingError, BrokenContractError):
         raise
     except EngineError as error:
         return replace(blank, status="unsupported", reason=str(error))
@@ -238,6 +239,8 @@ def _recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway:
     for count in _chunks(blank.steps, every):
         try:
             log = session.record(count, every)
+        except BrokenContractError:
+            raise
         except Exception as error:  # whatever an engine throws is a row of the result
             status, reason = "crashed", f"{type(error).__name__}: {error}"
             break

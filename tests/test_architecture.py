@@ -29,7 +29,7 @@ FLOORS: Mapping[str, str] = {
         cli
         face
         page figures diff tune advise history verify selftest
-        sweep stability own_log
+        sweep stability own_log contract
         results
         store
         plan
@@ -52,7 +52,7 @@ FLOORS: Mapping[str, str] = {
         spoil
         remedies run snippets tuning viewing
         check energy registry
-        measure drive tree_poses settings
+        measure drive tree_poses settings own_engine
         engine
     """,
 }

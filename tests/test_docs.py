@@ -7,12 +7,14 @@ import re
 from pathlib import Path
 
 import crankcheck
-from crankcheck import testing
+from crankcheck import engine, testing
 from tests.worlds.command import PYTHON
 from tests.worlds.documents import blocks, commands, follows, ran, scripts, words
 
-PAGE = (Path(__file__).parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
-OWN_LOG = (Path(__file__).parents[1] / "docs" / "own-log.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
+OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
+OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
@@ -35,14 +37,34 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
+    faults = untrue(OWN_LOG, tmp_path)
+    assert not faults, "\n\n".join(faults)
+
+
+def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:
+    """In the folder of the example: some 10 s, most of them for the whole contract."""
+    for path in (DOCS.parent / "examples" / "engine").glob("*.*"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    faults = untrue(OWN_ENGINE, tmp_path)
+    assert not faults, "\n\n".join(faults)
+
+
+def untrue(page: str, folder: Path) -> list[str]:
+    """The commands of a page that do not print what stands below them, or end otherwise."""
     faults = []
-    for command, shown, code in commands(OWN_LOG):
-        done = ran(words(command), tmp_path)
+    for command, shown, code in commands(page):
+        done = ran(words(command), folder)
         printed = [line.rstrip() for line in done.stdout.splitlines()]
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:
             faults.append(f"$ {command}\nexit {done.returncode}\n{fault}\n{done.stderr}")
-    assert not faults, "\n\n".join(faults)
+    return faults
+
+
+def test_every_name_for_engines_stands_on_its_page() -> None:
+    prose = re.sub(r"```.*?```", "", OWN_ENGINE, flags=re.DOTALL)
+    told = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", prose))))
+    assert not set(engine.__all__) - told
 
 
 def test_every_name_of_the_face_stands_on_the_page() -> None:

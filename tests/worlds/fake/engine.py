@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ class FakeEngine:
 
     ``exact(scene, time_s)`` gives the true motion; ``disturb`` puts the error into the poses;
     velocities are sampled ``velocity_shift`` steps away from the positions, as engines do.
+    It follows the driver's law under any drive, of which ``drives`` are not refused.
     ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged.
     """
 
@@ -37,6 +39,7 @@ class FakeEngine:
     diverges_after: int | None = None
     warns: tuple[str, ...] = ()
     refuses: str = ""
+    drives: tuple[Drive, ...] = get_args(Drive)
     changes: Callable[[Facts], Facts] = lambda facts: facts
     name: str = "fake"
     reports_accelerations: bool = True
@@ -70,6 +73,8 @@ class FakeEngine:
     ) -> FakeSession:
         if self.refuses:
             raise EngineError(self.refuses)
+        if drive not in self.drives:
+            raise EngineError(f"the fake engine was told to refuse drive {drive}")
         return FakeSession(self, scene, state.time_s, settings, dt_s)
 
 
@@ -139,7 +144,8 @@ def exact_poses(scene: Scene, engine: FakeEngine, time_s: Array, dt_s: float) ->
         other = there.bodies[name]
         return replace(body, velocity=other.velocity, omega=other.omega)
 
-    return Poses(time_s, {name: mixed(name, body) for name, body in here.bodies.items()})
+    bodies = {name: mixed(name, body) for name, body in here.bodies.items()}
+    return Poses(time_s, bodies, engine.velocity_shift * dt_s)
 
 
 def _poses(scene: Scene, motion: Motion) -> Poses:
