@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from models.array import Array
@@ -154,13 +155,20 @@ class SteppedModel(ABC):
 
     @contextmanager
     def _quiet(self) -> Iterator[None]:
-        """Collect MuJoCo's warnings instead of printing them and writing MUJOCO_LOG.TXT."""
-        before = mujoco.get_mju_user_warning()
-        mujoco.set_mju_user_warning(self._warnings.append)
-        try:
+        """Collect MuJoCo's warnings."""
+        with heard(self._warnings.append):
             yield
-        finally:
-            mujoco.set_mju_user_warning(before)
+
+
+@contextmanager
+def heard(hear: Callable[[str], object]) -> Iterator[None]:
+    """Hear MuJoCo's warnings, instead of having them printed and written to MUJOCO_LOG.TXT."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(hear)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def compiled(xml: str) -> Any:
@@ -169,3 +177,12 @@ def compiled(xml: str) -> Any:
         return mujoco.MjModel.from_xml_string(xml)
     except ValueError as error:
         raise EngineError(f"MuJoCo refuses the model: {error}") from error
+
+
+def compiled_file(path: Path) -> Any:
+    """The compiled model of a file. Raises EngineError with MuJoCo's own words."""
+    with heard(lambda _: None):
+        try:
+            return mujoco.MjModel.from_xml_path(str(path))
+        except ValueError as error:
+            raise EngineError(f"MuJoCo refuses the model: {error}") from error
