@@ -28,7 +28,9 @@ FLOORS: Mapping[str, str] = {
     "reports": """
         cli
         face
-        page figures diff tune advise history verify selftest
+        page figures
+        own_model
+        diff tune advise history verify selftest
         sweep stability own_log
         results
         store
@@ -50,7 +52,7 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        remedies run snippets tuning viewing
+        remedies run snippets tuning viewing own_models
         check energy registry
         measure drive tree_poses settings
         engine

@@ -19,7 +19,7 @@ from models.scene import Scene
 from models.tree import Limb
 from sim.engine import Drive, Facts, Poses, Settings
 from sim.mujoco.own_model.limbs import coordinates
-from sim.mujoco.own_model.read import OwnModel
+from sim.mujoco.own_model.planar_model import PlanarModel
 from sim.mujoco.own_model.variants import applied, held
 from sim.mujoco.settings import INTEGRATORS
 from sim.mujoco.stepped import VERSION, SteppedModel
@@ -31,7 +31,7 @@ class OwnModelSession(SteppedModel):
 
     def __init__(
         self,
-        own: OwnModel,
+        own: PlanarModel,
         scene: Scene,
         state: State,
         settings: Settings,
