@@ -52,7 +52,9 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
+        timing
         remedies run snippets tuning viewing own_models
+        recording
         check energy registry
         measure drive tree_poses settings
         engine
