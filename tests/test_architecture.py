@@ -28,7 +28,9 @@ FLOORS: Mapping[str, str] = {
     "reports": """
         cli
         face
-        page figures diff tune advise history verify selftest
+        page figures
+        own_model
+        diff tune advise history verify selftest
         sweep stability own_log contract
         results
         store
@@ -50,7 +52,9 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        remedies run snippets tuning viewing
+        timing
+        remedies run snippets tuning viewing own_models
+        recording
         check energy registry
         measure drive tree_poses settings own_engine
         engine

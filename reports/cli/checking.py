@@ -12,6 +12,8 @@ import typer
 from reports.cli.application import Engines, Jobs, StepS, StepsPerTurn, Turns, command
 from reports.output.console import terminal
 
+PRESCRIBED = "prescribed"
+
 
 @dataclass(frozen=True)
 class VerifyRequest:
@@ -36,7 +38,9 @@ class VerifyRequest:
             "--tol", metavar="NAME=NUMBER", help="Tolerance as a pure number, such as angle=1e-4."
         ),
     ] = ()
-    drive: Annotated[str, typer.Option(help="prescribed or servo.")] = "prescribed"
+    drive: Annotated[
+        str, typer.Option(help="prescribed or servo; with --mjcf: the joint that is driven.")
+    ] = PRESCRIBED
     converge: Annotated[
         bool,
         typer.Option(
@@ -58,11 +62,41 @@ class VerifyRequest:
     factor: Annotated[
         float, typer.Option(help="Growth over the baseline that is no fault yet.")
     ] = 1.1
+    mjcf: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A MuJoCo model of your own, run as it is."),
+    ] = None
+    speed_rad_s: Annotated[
+        float | None,
+        typer.Option("--speed", metavar="RAD/S", help="Of the joint that drives --mjcf."),
+    ] = None
+    key: Annotated[
+        str | None, typer.Option(help="Keyframe of --mjcf to start from; default: as drawn.")
+    ] = None
+    start_deg: Annotated[
+        float | None,
+        typer.Option("--start", metavar="DEG", help="Where the driven joint of --mjcf starts."),
+    ] = None
+    branch: Annotated[
+        Sequence[str],
+        typer.Option(metavar="NAME=1", help="Assembly of --mjcf; default: the nearest."),
+    ] = ()
+    write_scene: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the scene that --mjcf is, as TOML.")
+    ] = None
+    limit_s: Annotated[float, typer.Option(help="Time limit of each line of --mjcf [s].")] = 60.0
+    memory_gb: Annotated[float, typer.Option(help="Memory limit of each line of --mjcf [GB].")] = (
+        2.0
+    )
 
 
 @command
 def verify(request: VerifyRequest) -> int:
     """Run scenes in engines and hold them to the closed form; exit 1 when out of tolerance."""
+    if request.mjcf is not None:
+        from reports.cli.commands import verify_model
+
+        return verify_model.verify_model(request, terminal(), terminal(stderr=True))
     from reports.cli.commands import verify as verb
 
     return verb.verify(request, terminal(), terminal(stderr=True))

@@ -87,21 +87,24 @@ def check(cell: Cell) -> Checked:
     return examined(cell)[0]
 
 
-def examined(cell: Cell, runner: CellRunner | None = None) -> tuple[Checked, Run | None]:
+def examined(
+    cell: Cell, runner: CellRunner | None = None, adapter: Engine | None = None
+) -> tuple[Checked, Run | None]:
     """As `check`, and the run at the full step, None where there is none.
 
     ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
+    ``adapter`` takes the place of the engine of that name: one that runs a model of its own.
     """
     began = time.perf_counter()
-    found, done = _examined(cell, runner or run)
+    found, done = _examined(cell, runner or run, adapter)
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
+def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
-        runs = _Runs(cell, truth.start, engine(cell.engine), runner)
+        runs = _Runs(cell, truth.start, adapter or engine(cell.engine), runner, adapter)
         done = runs.run(1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
@@ -125,7 +128,7 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", left_words(errors.departure)
-    adapter, seen = engine(cell.engine), None
+    adapter, seen = runs.adapter if runs else engine(cell.engine), None
     if cell.converge and errors and runs:
         nature = adapter.placing, adapter.order
         seen = followed(truth, cell.dt_s, errors, cell.tolerance, runs.run, *nature)
@@ -160,11 +163,13 @@ class _Runs:
     state: State
     adapter: Engine
     runner: CellRunner
+    given: Engine | None = None
     unasked: list[str] = field(default_factory=list)
 
     def run(self, finer: int) -> Run:
         """The cell with its step cut into ``finer`` parts, logged at the same instants."""
-        cell, names = self.cell, (self.cell.engine, self.cell.profile)
+        cell = self.cell
+        names = self.given or cell.engine, cell.profile
         options: dict[str, Any] = {
             "dt_s": cell.dt_s / finer,
             "steps": cell.steps * finer,

@@ -19,7 +19,8 @@ from models.files import load_scene
 from models.scene import Scene
 from sim.engine import Facts, Run
 from sim.registry import ENGINES, available, engine
-from sim.run import run, time_run
+from sim.run import run
+from sim.timing import time_run
 
 FOURBAR = load_scene("fourbar-lecture-1")
 TANGENT = load_scene("tangent")

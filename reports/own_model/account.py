@@ -1,0 +1,152 @@
+"""What a model is read as, and what its lines come to: all that is told of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.errors import CrankcheckError, ReachError
+from models.scene import Scene
+from reports.judge.cell import Cell, Checked, examined, unfinished
+from reports.judge.tolerance import check_names
+from reports.own_model.assembly import assembled, in_joint_words
+from reports.own_model.request import ModelRequest
+from reports.plan.singular import refuse_singular
+from reports.plan.steps import counted
+from reports.workers.isolated import Isolated, Limits, Lost
+from sim.own_models import reader, reading_engine
+
+POSES = 73
+"""Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
+
+
+@dataclass(frozen=True)
+class Account:
+    """A model as it was read: its scene, how far open its own pose is by joint [m], what can
+    disturb a comparison, the lines to run, and the recommended settings as a diff."""
+
+    request: ModelRequest
+    scene: Scene
+    dt_s: float
+    steps: int
+    open_m: Mapping[str, float]
+    notes: Sequence[str]
+    disturbances: Sequence[str]
+    touching: bool
+    profiles: Sequence[str]
+    patch: str
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of an account: the model in one profile."""
+
+    account: Account
+    profile: str
+
+    @property
+    def cell(self) -> Cell:
+        account, request = self.account, self.account.request
+        return Cell(
+            scene=account.scene,
+            engine=reading_engine(),
+            profile=self.profile,
+            dt_s=account.dt_s,
+            steps=account.steps,
+            gated=self.profile == account.profiles[0],
+            tolerance=request.tolerance,
+            converge=request.converge and self.profile in told(account.profiles),
+        )
+
+
+def told(profiles: Sequence[str]) -> tuple[str, ...]:
+    """The three that are told with their finer steps: as written, contacts off, recommended."""
+    return (profiles[0], profiles[1], profiles[-1])
+
+
+def read(request: ModelRequest, limits: Limits) -> Account:
+    """Read a model in a process of its own: what is wrong with it may end that, or not come to an
+    end. Raises CrankcheckError for what can not be read, or held to a closed form."""
+    reader()  # says how to install it where it is missing
+    child: Isolated[Account] = Isolated(limits)
+    try:
+        account = child.call(read_here, request)
+    finally:
+        child.close()
+    return _unless_lost(account, request)
+
+
+def run_lines(
+    account: Account, limits: Limits, done: Callable[[Checked], None] = lambda _: None
+) -> list[Checked]:
+    """Run all lines of an account, each in a process that is ended when it fails or hangs."""
+    child: Isolated[Checked] = Isolated(limits)
+    checked = []
+    try:
+        for profile in account.profiles:
+            line = Line(account, profile)
+            result = child.call(checked_line, line)
+            if isinstance(result, Lost):
+                if isinstance(result.error, CrankcheckError):
+                    raise result.error
+                result = unfinished(line.cell, result.status, result.reason)
+            checked.append(result)
+            done(result)
+    finally:
+        child.close()
+    return checked
+
+
+def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
+    if not isinstance(account, Lost):
+        return account
+    if isinstance(account.error, CrankcheckError):
+        raise account.error
+    raise CrankcheckError(f"{request.path}: reading it {account.status}: {account.reason}")
+
+
+def read_here(request: ModelRequest) -> Account:
+    """As `read`, in this process."""
+    own = reader()(request.path, request.joint, request.key)
+    found = assembled(own, request)
+    scene = found.scene
+    check_names(scene)
+    dt_s, steps = counted(scene, request.dt_s or own.dt_s, None, request.turns)
+    times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
+    try:
+        motion = solve(scene, times, bound=False)
+    except ReachError as error:
+        words = in_joint_words(own, scene, request.joint)
+        raise CrankcheckError(
+            f"{request.path}: {error} {words} Ask for less of a turn with --turns, or start "
+            "elsewhere with --start."
+        ) from None
+    refuse_singular(scene, dt_s * steps)
+    seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
+    touching = bool(seen.touching)
+    touches = [
+        f"{first} touches {second} in {share:.0%} of the poses"
+        for (first, second), share in seen.touching.items()
+    ]
+    return Account(
+        request=request,
+        scene=scene,
+        dt_s=dt_s,
+        steps=steps,
+        open_m=own.open_m(),
+        notes=found.notes,
+        disturbances=[*touches, *seen.passed, *own.disturbances],
+        touching=touching,
+        profiles=list(own.engine(touching=touching).profiles),
+        patch=own.patch(dt_s, touching=touching),
+    )
+
+
+def checked_line(line: Line) -> Checked:
+    """Run and judge one line, in this process."""
+    account, request = line.account, line.account.request
+    own = reader()(request.path, request.joint, request.key)
+    return examined(line.cell, adapter=own.engine(touching=account.touching))[0]

@@ -1,0 +1,134 @@
+"""Which assembly a model is drawn in: the scene that was read off it, with its branch and start."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.kinematics import reach, solve
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, ReachError
+from models.laws import ConstantSpeed
+from models.poses import Frame, frames
+from models.scene import Driver, Scene
+from reports.own_model.request import ModelRequest
+from sim.engine import BodyPose
+from sim.own_models import OwnModel
+
+MOST_CHOICES = 8
+"""Assemblies are tried one by one up to so many choices, two to the power of it; the dyads after
+these keep the first."""
+ALIKE = 0.1
+"""A pose that is nearer to the best assembly than to the next, by less than this share, fits
+both."""
+TURN = math.tau
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The scene as it is to be run, and how far the drawn pose is from it: the largest distance of
+    a body's frame over the longest link, or angle [rad]."""
+
+    scene: Scene
+    far: float
+    notes: tuple[str, ...]
+
+
+def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
+    """The scene of a model, in the assembly that it is drawn in.
+
+    Raises
+    ------
+    CrankcheckError
+        No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
+        with the range in the coordinate of the joint; a branch that chooses nothing.
+    """
+    law = ConstantSpeed(_drawn_angle(own), request.speed_rad_s)
+    bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
+    try:
+        structure = analyse(bare)
+    except CrankcheckError as error:
+        raise CrankcheckError(f"{request.path}: {error}") from None
+    keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
+    unknown = [key for key in request.branch if key not in keys]
+    if unknown:
+        have = f"it has {', '.join(keys)}" if keys else "it has none"
+        raise CrankcheckError(
+            f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
+        )
+    ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
+    if not ranked:
+        raise CrankcheckError(f"{request.path}: {_out_of_reach(own, bare, request)}")
+    far, scene = ranked[0]
+    if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
+        choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
+        raise CrankcheckError(
+            f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
+            "--branch NAME=1 or NAME=-1, or start from another pose with --key"
+        )
+    notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
+    if request.start_deg is not None:
+        start = law.start_rad + math.radians(request.start_deg) - own.coordinate_rad()
+        scene = replace(scene, driver=Driver(scene.driver.link, replace(law, start_rad=start)))
+    return Assembled(scene, far, tuple(notes))
+
+
+def _words(branch: Mapping[str, int]) -> str:
+    return ", ".join(f"{key} {sign:+d}" for key, sign in branch.items())
+
+
+def _drawn_angle(own: OwnModel) -> float:
+    """The angle of the driver in the pose [rad], in (-pi, pi]."""
+    theta = float(own.drawn().bodies[own.scene.driver.link].theta[0])
+    return math.remainder(theta, TURN)
+
+
+def _fits(
+    own: OwnModel, bare: Scene, keys: list[str], chosen: Mapping[str, int]
+) -> Iterator[tuple[float, Scene]]:
+    """Every assembly, with how far the pose is from it."""
+    free = [key for key in keys if key not in chosen][:MOST_CHOICES]
+    drawn = own.drawn().bodies
+    for signs in itertools.product((1, -1), repeat=len(free)):
+        branch = dict.fromkeys(keys, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
+        scene = replace(bare, branch=branch)
+        try:
+            state = solve(scene, np.zeros(1), bound=False).state()
+        except CrankcheckError:
+            continue
+        placed = frames(scene, state)
+        yield max(_off(placed[name], drawn[name], scene.longest_m) for name in drawn), scene
+
+
+def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
+    """How far a body is drawn from where it should be."""
+    turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, TURN))
+    return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
+
+
+def _out_of_reach(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
+    """Why no assembly holds at the start, with the range in the coordinate of the joint."""
+    try:
+        solve(bare, np.zeros(1), bound=False)
+    except ReachError as error:
+        return f"{error} {in_joint_words(own, bare, request.joint)}"
+    except CrankcheckError as error:
+        return str(error)
+    return "it can not be assembled at the start"
+
+
+def in_joint_words(own: OwnModel, scene: Scene, joint: str) -> str:
+    """The reachable range of the driver in the coordinate of its joint."""
+    law = scene.driver.law
+    shift = own.coordinate_rad() - _drawn_angle(own)
+    spans = [
+        f"{math.degrees(low + shift):.4g} to {math.degrees(high + shift):.4g} deg"
+        for low, high in reach(replace(scene, driver=Driver(scene.driver.link, law)))
+    ]
+    if not spans:
+        return ""
+    return f"In its own coordinate joint {joint} reaches {' and '.join(spans)}."
