@@ -193,6 +193,14 @@ class Inquiry:
         missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
         return told if len(missed) <= missing * len(moved) else None
 
+    def no_chance(self, account: Account) -> bool:
+        """Whether an account of numbers tells several channels, or one so well that it is not
+        merely like something else that happened to it."""
+        if len(account.columns) > 1 or account.world is None:
+            return True
+        (column,) = account.columns
+        return self.excerpts[column].told_apart(self.errors(account.world, [column])[column])
+
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
         """The columns that were healthy, and are not with these errors."""
         return tuple(
@@ -240,7 +248,7 @@ class Inquiry:
     def whole(self, column: str) -> tuple[Array, Array]:
         """All readings of a column, and their errors, 0 where a number is missing. Raises
         CrankcheckError."""
-        reading = self.case.excerpts[column].reading
+        reading = self.excerpts[column].reading
         channel = reading.channel
         if self.changed:
             expected = channel.expected(self.world.at(reading.instants, [channel]))

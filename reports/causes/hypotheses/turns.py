@@ -71,10 +71,17 @@ def _wrapped(values: Array, angle: Array) -> bool:
     return False
 
 
+def _folded(values: Array) -> bool:
+    """Whether readings lie in half a turn that begins where an arc tangent does."""
+    least, most = float(np.min(values)), float(np.max(values))
+    begins = (-0.5 * math.pi, 0.0)
+    return any(each - EDGE < least and most < each + math.pi + EDGE for each in begins)
+
+
 def _half(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:
     """The account of an angle that is known but for half turns, as from an arc tangent."""
     half = np.round(error / math.pi)
-    if not np.any(half % 2.0) or np.ptp(values) > math.pi + EDGE:
+    if not np.any(half % 2.0) or not _folded(values):
         return None
     phrase = "{who} {is} folded into half a turn, as an arc tangent of one number does"
     left = error - math.pi * half
