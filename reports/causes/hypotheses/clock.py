@@ -35,9 +35,6 @@ ROWS = 200
 """Rows of a stretch that a clock is fitted to."""
 UNLIKE = 3.0
 """Of two readings of a drift one is ruled out where it leaves so many times as much."""
-SHORTEST = 0.02
-"""In periods, the shortest log whose times are in another unit: in less hardly anything moves, and
-readings that are nearly nothing would be told by it."""
 FASTEST = 1e3
 """Times that a clock may be slow, or fast."""
 
@@ -70,7 +67,7 @@ def time_unit(inquiry: Inquiry) -> Iterator[Account]:
     size = UNITS["time"].get(told, 1.0)
     for unit, other in UNITS["time"].items():
         ratio = other / size
-        if ratio == 1.0 or inquiry.world.drive is not None or not _seen(inquiry, ratio):
+        if ratio == 1.0 or inquiry.world.drive is not None:
             continue
         world = inquiry.world.stamped(lambda stamps, ratio=ratio: ratio * stamps)  # type: ignore[misc]
         times = f"the times (column {column})" if column else "the times"
@@ -80,13 +77,6 @@ def time_unit(inquiry: Inquiry) -> Iterator[Account]:
         account = inquiry.account_of_world("time unit", CAUSE + CHOICE, world, phrase)
         if account is not None:
             yield account
-
-
-def _seen(inquiry: Inquiry, ratio: float) -> bool:
-    """Whether a log whose times are so many times as long lasts long enough to show that something
-    moves, and has a sample a turn."""
-    lasts, step = float(np.ptp(inquiry.case.log.time_s)), inquiry.step_s
-    return ratio * lasts > SHORTEST * inquiry.period_s and ratio * step < inquiry.period_s
 
 
 def drift(inquiry: Inquiry) -> Iterator[Account]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -55,6 +56,8 @@ def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask)
     """The account of readings that stay where they are, while the channel should move."""
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected[np.isfinite(excerpt.expected)]
+    if excerpt.channel.kind.turns:  # whole turns from sample to sample do not show
+        expected = np.remainder(expected - expected[:1] + math.pi, math.tau)
     moves = np.ptp(expected)
     if moves <= excerpt.limit or np.ptp(values) > min(excerpt.limit, DEAD * moves):
         return None

@@ -6,6 +6,7 @@ stick or jump, which are left out. Another fault is looked for in what is there 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -53,7 +54,7 @@ class First:
 
 def two_faults(inquiry: Inquiry) -> Iterator[Account]:
     """The accounts of two faults of each channel that one does not explain well."""
-    for column in inquiry.unexplained[:MOST]:
+    for column in _unclear(inquiry)[:MOST]:
         for first in (*_read_otherwise(inquiry, column), *_without_samples(inquiry, column)):
             for hypothesis in first.others:
                 try:
@@ -62,6 +63,17 @@ def two_faults(inquiry: Inquiry) -> Iterator[Account]:
                     continue
                 yield from (_both(inquiry, column, first, each) for each in found
                             if _well(first, column, each))  # fmt: skip
+
+
+def _unclear(inquiry: Inquiry) -> list[str]:
+    """The channels that one fault does not explain well, nor one of the log with several others."""
+    clear = {
+        column
+        for account in inquiry.accounts
+        for column, rest in account.rests.items()
+        if rest <= TIGHT or (account.world is not None and len(account.rests) > 1)
+    }
+    return [column for column in inquiry.open if column not in clear]
 
 
 def _well(first: First, column: str, second: Account) -> bool:
@@ -125,11 +137,15 @@ def _reread(excerpt: Excerpt, channel: Channel, gain: float) -> Excerpt:
 
 
 def _likely(excerpt: Excerpt, fresh: Excerpt) -> bool:
-    """Whether readings are of the size that is expected, and nearer to it than before."""
+    """Whether readings are of the size that is expected, and nearer to it than before; of angles
+    whatever whole turns they lost."""
+    error = fresh.error
+    if fresh.channel.kind.turns:
+        error = np.remainder(error + math.pi, math.tau) - math.pi
     expected = Size.of_signal(fresh.expected, fresh.nothing).rms
-    ratio = Size.of_signal(fresh.values).rms / expected
-    nearer = Size.of(fresh.error).rms < NEARER * Size.of(excerpt.error).rms
-    small = Size.of(fresh.error).rms < NEARER * expected
+    ratio = Size.of_signal(fresh.expected + error).rms / expected
+    nearer = Size.of(error).rms < NEARER * Size.of(excerpt.error).rms
+    small = Size.of(error).rms < NEARER * expected
     return (nearer or small) and 1.0 / LIKE < ratio < LIKE
 
 
