@@ -190,7 +190,7 @@ class Inquiry:
         told = self.account(name, cost, errors, phrase, expected=expected)
         if told is None or self.spoilt(errors):
             return None
-        if any(self._vanishes(column, expected[column]) for column in told.rests):
+        if all(self._vanishes(column, expected[column]) for column in told.rests):
             return None
         told = replace(told, world=world)
         moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]

@@ -10,7 +10,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, Account
-from reports.causes.excerpt import BROUGHT_WITHIN, Rows
+from reports.causes.excerpt import BROUGHT_WITHIN, Rows, Size
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import listed
 
@@ -101,7 +101,8 @@ def _told(
     if rest > BROUGHT_WITHIN or (rest > 0.1 and np.max(np.abs(left)) > excerpt.limit):
         return None
     name, cost, phrase = said
-    return Account(name, cost, {column: rest}, {column: rest}, phrase, {column: correction})
+    over = float(np.max(np.abs(left))) / Size.of(excerpt.error).largest
+    return Account(name, cost, {column: rest}, {column: over}, phrase, {column: correction})
 
 
 def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:

@@ -216,3 +216,10 @@ def test_a_driver_that_turns_the_other_way_may_have_a_speed_without_sign() -> No
     cause = only(back)
     assert cause.name == "reversed"
     assert cause.columns == ("rocker_a", "crank_a")
+
+
+def test_a_delay_is_not_told_of_a_channel_that_would_not_show_it() -> None:
+    plain = of(point("B", "x"), omega("crank"), omega("rocker"))
+    late = plain.of(solve(SCENE, plain.time_s - 2.5 * plain.step_s, bound=False), ["B_x"])
+    end = 1e-13 * (np.arange(plain.time_s.size) < 2)
+    assert only(late.put({"crank_w": late.values["crank_w"] + end})).columns == ("B_x",)
