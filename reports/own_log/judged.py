@@ -23,6 +23,7 @@ from reports.judge.tolerance import DEFAULTS, Limit, in_passage, limits
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking, readings_of
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
+from reports.own_log.no_cause import of_no_cause, seldom
 from reports.quantities import QUANTITIES
 
 EVERY = "all"
@@ -117,6 +118,8 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         absent=absent if required else None,
     )
     sound = fit is None or fit.explains
+    case = Case(log, truth, _by_column(log, evidence, errors))
+    found = causes(case) if sound else ()
     return JudgedLog(
         **vars(evidence),
         log=log,
@@ -125,9 +128,9 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         step_s=request.step_s,
         fit=fit,
         findings=_findings(evidence, request),
-        causes=causes(Case(log, truth, _by_column(log, evidence, errors))) if sound else (),
+        causes=found,
         not_judged=not_judged,
-        notes=_notes(errors) if sound else (NO_FIT,),
+        notes=_notes(case, found, errors) if sound else (NO_FIT,),
     )
 
 
@@ -201,7 +204,13 @@ def _by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, flo
         for reading in readings_of(log, row.quantity, row.body):
             if reading.channel.kind.body_kind == row.body_kind or row.quantity == "drive":
                 side = under if row.pure <= limit else over
-                side.setdefault(reading.channel.column, []).append(limit * row.scale)
+                # Two coordinates may be off by too much together, though neither is alone.
+                both = (
+                    math.sqrt(2.0)
+                    if side is over and reading.channel.kind.axis is not None
+                    else 1.0
+                )
+                side.setdefault(reading.channel.column, []).append(limit * row.scale / both)
     return {column: max(each) for column, each in under.items()} | {
         column: min(each) for column, each in over.items()
     }
@@ -262,7 +271,7 @@ def _absent(
     return tuple(found)
 
 
-def _notes(errors: Errors) -> tuple[str, ...]:
+def _notes(case: Case, found: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
     """What is worth knowing of a log that is within tolerance, or out of it."""
     rows: list[Error] = [row for row in errors.rows if row.kind == "total"]
     if rows and all(row.maximum == 0.0 for row in rows):
@@ -270,4 +279,4 @@ def _notes(errors: Errors) -> tuple[str, ...]:
             "every reading is that of the reference to the last bit: it may have been compared "
             "with itself",
         )
-    return ()
+    return (*seldom(case), *of_no_cause(case, found, errors))
