@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -12,18 +12,18 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.scene_text import scene_text
 from reports.cli.checking import PRESCRIBED, VerifyRequest
-from reports.judge.cell import Checked
 from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import cell_row
 from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
-from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
-from reports.own_model.account import Account, read, run_lines
+from reports.own_model.account import read, run_lines
+from reports.own_model.document import document
+from reports.own_model.judged import JudgedModel, judged_model
 from reports.own_model.request import ModelRequest
 from reports.own_model.table import show
+from reports.plan.steps import positive
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
 from sim.own_models import reading_engine
@@ -36,32 +36,41 @@ IN_FOLDER = (
     "errors.parquet",
     "scene.toml",
     "recommended.diff",
+    "page.html",
 )
 
 
 def verify_model(request: VerifyRequest, console: Console, progress: Console) -> int:
-    """Do it; returns the exit code: 0 within as written, 1 out. Raises CrankcheckError for what can
-    not be read, or is no planar linkage with one driver, before anything is written."""
+    """Do it; returns the exit code: 0 within as written, 1 out, 2 not to be run. Raises
+    CrankcheckError for what can not be read, or is no planar linkage with one driver, before
+    anything is written."""
     asked = _asked(request)
     limits = checked_limits(request.limit_s, request.memory_gb)
+    _check_outputs(request, [asked.path])
+    account = read(asked, limits)
+    _check_outputs(request, account.files)
+    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("running", total=len(account.profiles))
+        lines = run_lines(account, limits, lambda _: bar.advance(task))
+    judged = judged_model(account, lines)
+    name = reading_engine()
+    facts = provenance({name: engine(name).version()})
+    try:
+        _write(request, judged, facts)
+    finally:  # a full disk costs the file, and not the verdict with it
+        show(console, judged, facts)
+    return {"within": 0, "out": 1}.get(judged.verdict, 2)
+
+
+def _check_outputs(request: VerifyRequest, inputs: Sequence[Path]) -> None:
+    """Refuse outputs that can not be written, or that are read. Raises CrankcheckError."""
     files = {
         "--junit": request.junit,
         "--csv": request.csv,
         "--json": request.json,
         "--write-scene": request.write_scene,
     }
-    check_outputs(files, request.folder, IN_FOLDER, inputs=[asked.path])
-    account = read(asked, limits)
-    with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
-        task = bar.add_task("running", total=len(account.profiles))
-        checked = run_lines(account, limits, lambda _: bar.advance(task))
-    name = reading_engine()
-    facts = provenance({name: engine(name).version()})
-    try:
-        _write(request, account, checked, facts)
-    finally:  # a full disk costs the file, and not the verdict with it
-        show(console, account, checked, facts)
-    return int(checked[0].verdict != "within")
+    check_outputs(files, request.folder, IN_FOLDER, inputs=inputs)
 
 
 def _asked(request: VerifyRequest) -> ModelRequest:
@@ -78,20 +87,38 @@ def _asked(request: VerifyRequest) -> ModelRequest:
             raise CrankcheckError(
                 f"--mjcf and {name}: a model of your own runs as it is; leave one"
             )
-    if request.speed_rad_s is None or not abs(request.speed_rad_s) > 0.0:
-        raise CrankcheckError("--mjcf: --speed is missing; give the crank's in rad/s, such as 10")
+    speed = request.speed_rad_s
+    if speed is None:
+        raise CrankcheckError("--speed is missing: give that of the crank in rad/s, such as 10")
+    if not (math.isfinite(speed) and speed):
+        raise CrankcheckError(
+            f"--speed {speed:g}: give that of the crank in rad/s, such as 10; -10 turns it the "
+            "other way"
+        )
+    if request.start_deg is not None and not math.isfinite(request.start_deg):
+        raise CrankcheckError(f"--start {request.start_deg:g}: give an angle in degrees")
     return ModelRequest(
         path=request.mjcf,
         joint="" if request.drive == PRESCRIBED else request.drive,
-        speed_rad_s=request.speed_rad_s,
+        speed_rad_s=speed,
         key=request.key,
         start_deg=request.start_deg,
         branch=_branch(request.branch),
-        dt_s=request.dt_s,
+        dt_s=_step_s(request, speed),
         turns=request.turns,
         tolerance=parse(request.tolerance),
         converge=request.converge,
     )
+
+
+def _step_s(request: VerifyRequest, speed_rad_s: float) -> float | None:
+    """The step [s], None for the model's own. Raises CrankcheckError for two of them."""
+    if request.steps_per_turn is None:
+        return request.dt_s
+    if request.dt_s is not None:
+        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
+    per_turn = positive("--steps-per-turn", request.steps_per_turn, "steps, such as 720")
+    return math.tau / abs(speed_rad_s) / per_turn
 
 
 def _branch(texts: Sequence[str]) -> dict[str, int]:
@@ -105,53 +132,38 @@ def _branch(texts: Sequence[str]) -> dict[str, int]:
     return branch
 
 
-def _write(
-    request: VerifyRequest,
-    account: Account,
-    checked: Sequence[Checked],
-    facts: Mapping[str, str],
-) -> None:
+def _write(request: VerifyRequest, judged: JudgedModel, facts: Mapping[str, str]) -> None:
     """Every output that was asked for, each whole or not at all."""
-    contents: dict[str, str | bytes] = {
-        "verify.csv": csv(cell_frame(checked)),
-        "verify.json": _json(account, checked, facts),
-        "verify.junit.xml": junit(suite(checked, facts)),
-        "errors.parquet": parquet(error_frame(checked)),
-        "scene.toml": scene_text(account.scene),
-        "recommended.diff": account.patch,
-    }
     named: dict[str, Path | None] = {
         "verify.csv": request.csv,
         "verify.json": request.json,
         "verify.junit.xml": request.junit,
         "scene.toml": request.write_scene,
     }
-    for name, content in contents.items():
-        for target in filter(None, (named.get(name), request.folder and request.folder / name)):
+    for name in IN_FOLDER:
+        targets = [*filter(None, (named.get(name), request.folder and request.folder / name))]
+        content = _content(name, judged, facts) if targets else ""
+        for target in targets:
             write(target, content)
 
 
-def _json(account: Account, checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
-    """Facts, what was read, and the lines with their findings; what is not finite is null."""
-    document = {
-        "provenance": dict(facts),
-        "model": {
-            "file": str(account.request.path),
-            "driven": account.request.joint,
-            "scene": scene_text(account.scene),
-            "open_m": dict(account.open_m),
-            "notes": list(account.notes),
-            "disturbances": list(account.disturbances),
-            "recommended": account.patch,
-        },
-        "cells": [
-            cell_row(one)
-            | {
-                "settings": dict(one.settings),
-                "notes": list(one.errors.notes) if one.errors else [],
-                "findings": [vars(finding) for finding in one.findings],
-            }
-            for one in checked
-        ],
-    }
-    return json.dumps(finite(document), indent=1) + "\n"
+def _content(name: str, judged: JudgedModel, facts: Mapping[str, str]) -> str | bytes:
+    """What stands in one output."""
+    match name:
+        case "verify.csv":
+            return csv(cell_frame(judged.lines))
+        case "verify.json":
+            return document(judged, facts)
+        case "verify.junit.xml":
+            return junit(suite(judged.lines, facts))
+        case "errors.parquet":
+            return parquet(error_frame(judged.lines))
+        case "scene.toml":
+            return scene_text(judged.scene)
+        case "recommended.diff":
+            return judged.patch
+        case _:
+            # It brings the drawings, which nothing else here needs.
+            from reports.page.model_page import model_page
+
+            return model_page(judged, facts)
