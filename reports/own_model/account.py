@@ -118,7 +118,10 @@ def read_here(request: ModelRequest) -> Account:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    dt_s, steps = counted(scene, request.dt_s or own.dt_s, None, request.turns)
+    step = request.dt_s, request.steps_per_turn
+    dt_s, steps = counted(
+        scene, *(step if any(each is not None for each in step) else (own.dt_s, None)), request.turns
+    )
     times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
     try:
         motion = solve(scene, times, bound=False)

@@ -142,8 +142,10 @@ def gaps(judged: JudgedModel) -> str:
 
 
 def share_text(share: float) -> str:
-    """A part of a limit: 12% of its limit, 34 times its limit."""
-    return f"{share:.1%} of its limit" if share < 1 else f"{factor_text(share)} times its limit"
+    """A part of a limit: 12.3% of its limit, 34 times its limit."""
+    if share >= 1.0:
+        return f"{factor_text(share)} times its limit"
+    return f"{share:.1%} of its limit" if share >= 1e-3 else "below 0.1% of its limit"
 
 
 def verdict_text(judged: JudgedModel) -> str:
@@ -200,3 +202,8 @@ def step_heads(judged: JudgedModel) -> list[str]:
     if not judged.account.request.converge:
         return ["dt"]
     return ["dt" if parts == 1 else f"dt/{parts}" for parts in PARTS]
+
+
+def is_diff(patch: str) -> bool:
+    """Whether recommended settings are a diff, and not told in words."""
+    return patch.startswith("--- ")

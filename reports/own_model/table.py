@@ -23,6 +23,7 @@ from reports.own_model.sentences import (
     footer,
     gaps,
     groups,
+    is_diff,
     reading,
     step_heads,
     steps_text,
@@ -145,8 +146,3 @@ def _recommended(console: Console, judged: JudgedModel) -> None:
         return
     console.print(Text(f"Recommended{', as a diff of the file' * is_diff(patch)}:", "bold"))
     console.print(harmless(patch), markup=False, highlight=False, soft_wrap=True)
-
-
-def is_diff(patch: str) -> bool:
-    """Whether recommended settings are a diff, and not told in words."""
-    return patch.startswith("--- ")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -17,13 +16,12 @@ from reports.judge.tolerance import parse
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs, write
+from reports.output.write import check_file, check_outputs, write
 from reports.own_model.account import read, run_lines
 from reports.own_model.document import document
 from reports.own_model.judged import JudgedModel, judged_model
 from reports.own_model.request import ModelRequest
 from reports.own_model.table import show
-from reports.plan.steps import positive
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
 from sim.own_models import reading_engine
@@ -38,6 +36,15 @@ IN_FOLDER = (
     "recommended.diff",
     "page.html",
 )
+NOT_OF_MODELS = {
+    "scenes": "SCENE",
+    "engines": "--engine",
+    "profiles": "--profile",
+    "jobs": "--jobs",
+    "baseline": "--baseline",
+    "factor": "--factor",
+}
+"""What is asked of scenes alone, by the field of the request."""
 
 
 def verify_model(request: VerifyRequest, console: Console, progress: Console) -> int:
@@ -70,55 +77,34 @@ def _check_outputs(request: VerifyRequest, inputs: Sequence[Path]) -> None:
         "--json": request.json,
         "--write-scene": request.write_scene,
     }
+    if request.write_scene is not None:
+        check_file(request.write_scene, "--write-scene", (".toml",))
     check_outputs(files, request.folder, IN_FOLDER, inputs=inputs)
 
 
 def _asked(request: VerifyRequest) -> ModelRequest:
     """What the model is asked for. Raises CrankcheckError for what does not go with it."""
     assert request.mjcf is not None
-    others = {
-        "SCENE": request.scenes,
-        "--engine": request.engines,
-        "--profile": request.profiles,
-        "--baseline": request.baseline,
-    }
-    for name, given in others.items():
-        if given:
+    for name, option in NOT_OF_MODELS.items():
+        if getattr(request, name) != getattr(VerifyRequest(), name):
             raise CrankcheckError(
-                f"--mjcf and {name}: a model of your own runs as it is; leave one"
+                f"--mjcf and {option}: a model of your own runs by itself, as it is; leave out one"
             )
-    speed = request.speed_rad_s
-    if speed is None:
+    if request.speed_rad_s is None:
         raise CrankcheckError("--speed is missing: give that of the crank in rad/s, such as 10")
-    if not (math.isfinite(speed) and speed):
-        raise CrankcheckError(
-            f"--speed {speed:g}: give that of the crank in rad/s, such as 10; -10 turns it the "
-            "other way"
-        )
-    if request.start_deg is not None and not math.isfinite(request.start_deg):
-        raise CrankcheckError(f"--start {request.start_deg:g}: give an angle in degrees")
     return ModelRequest(
         path=request.mjcf,
         joint="" if request.drive == PRESCRIBED else request.drive,
-        speed_rad_s=speed,
+        speed_rad_s=request.speed_rad_s,
         key=request.key,
         start_deg=request.start_deg,
         branch=_branch(request.branch),
-        dt_s=_step_s(request, speed),
+        dt_s=request.dt_s,
+        steps_per_turn=request.steps_per_turn,
         turns=request.turns,
         tolerance=parse(request.tolerance),
         converge=request.converge,
     )
-
-
-def _step_s(request: VerifyRequest, speed_rad_s: float) -> float | None:
-    """The step [s], None for the model's own. Raises CrankcheckError for two of them."""
-    if request.steps_per_turn is None:
-        return request.dt_s
-    if request.dt_s is not None:
-        raise CrankcheckError("--dt and --steps-per-turn: both set the step; give one of them")
-    per_turn = positive("--steps-per-turn", request.steps_per_turn, "steps, such as 720")
-    return math.tau / abs(speed_rad_s) / per_turn
 
 
 def _branch(texts: Sequence[str]) -> dict[str, int]:
