@@ -4,7 +4,10 @@ shown."""
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
+
+import pytest
 
 import crankcheck
 from crankcheck import testing
@@ -13,6 +16,7 @@ from tests.worlds.documents import blocks, commands, follows, ran, scripts, word
 
 PAGE = (Path(__file__).parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
 OWN_LOG = (Path(__file__).parents[1] / "docs" / "own-log.md").read_text(encoding="utf-8")
+OWN_MODEL = (Path(__file__).parents[1] / "docs" / "own-model.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
@@ -35,14 +39,30 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
+    assert not told_otherwise(OWN_LOG, tmp_path)
+
+
+def test_what_is_said_of_own_models_is_true(tmp_path: Path) -> None:
+    """What the commands print of a model that stands on the page, before and after the diff."""
+    if shutil.which("patch") is None:
+        pytest.skip("no patch: apt-get install patch")
+    (model,) = blocks(OWN_MODEL, "xml")
+    (tmp_path / "engine.xml").write_text(model)
+    assert not told_otherwise(OWN_MODEL, tmp_path)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {name for name in written if f"`{name}`" in OWN_MODEL}
+
+
+def told_otherwise(page: str, folder: Path) -> str:
+    """The commands of a page that end or print otherwise, "" where there are none."""
     faults = []
-    for command, shown, code in commands(OWN_LOG):
-        done = ran(words(command), tmp_path)
+    for command, shown, code in commands(page):
+        done = ran(words(command), folder)
         printed = [line.rstrip() for line in done.stdout.splitlines()]
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:
             faults.append(f"$ {command}\nexit {done.returncode}\n{fault}\n{done.stderr}")
-    assert not faults, "\n\n".join(faults)
+    return "\n\n".join(faults)
 
 
 def test_every_name_of_the_face_stands_on_the_page() -> None:

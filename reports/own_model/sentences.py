@@ -51,7 +51,7 @@ def _drive(account: Account) -> str:
     """How it is driven, and from where."""
     request = account.request
     turns = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
-    start = "as drawn" if request.key is None else f"keyframe {request.key}"
+    start = "the pose as drawn" if request.key is None else f"keyframe {request.key}"
     if request.start_deg is not None:
         start = f"{request.start_deg:g} deg"
     return (
