@@ -116,9 +116,7 @@ class VerifyRequest:
     ] = None
     limit_s: Annotated[
         float,
-        typer.Option(
-            metavar="SECONDS", help="Time limit of each line.", rich_help_panel=OWN_MODEL
-        ),
+        typer.Option(metavar="SECONDS", help="Time limit of each line.", rich_help_panel=OWN_MODEL),
     ] = 60.0
     memory_gb: Annotated[
         float,

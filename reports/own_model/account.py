@@ -118,10 +118,9 @@ def read_here(request: ModelRequest) -> Account:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    step = request.dt_s, request.steps_per_turn
-    dt_s, steps = counted(
-        scene, *(step if any(each is not None for each in step) else (own.dt_s, None)), request.turns
-    )
+    given_s = own.dt_s if request.steps_per_turn is None else None
+    given_s = given_s if request.dt_s is None else request.dt_s
+    dt_s, steps = counted(scene, given_s, request.steps_per_turn, request.turns)
     times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
     try:
         motion = solve(scene, times, bound=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -43,9 +44,7 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
     found, run = examined(cell, adapter=adapter)
     if run is None or found.errors is None:
         return without_run(found)
-    return CheckedLine(
-        **vars(found), last_turn=trace(cell.scene, run), course=course_of(cell, run)
-    )
+    return CheckedLine(**vars(found), last_turn=trace(cell.scene, run), course=course_of(cell, run))
 
 
 def without_run(found: Checked) -> CheckedLine:
@@ -67,7 +66,7 @@ def course_of(cell: Cell, run: Run) -> Course | None:
 
 
 def _widest(gaps: Mapping[str, Array], samples: int) -> Array:
-    return np.max([np.zeros(samples), *(np.abs(gap) for gap in gaps.values())], axis=0)
+    return np.asarray(np.max([np.zeros(samples), *map(np.abs, gaps.values())], axis=0))
 
 
 def _largest_rows(series: Array) -> list[int]:
@@ -75,8 +74,5 @@ def _largest_rows(series: Array) -> list[int]:
     if series.size <= MOST:
         return list(range(series.size))
     ends = np.linspace(0, series.size, MOST - 1).astype(int)
-    largest = (
-        int(start + np.argmax(series[start:end]))
-        for start, end in zip(ends[:-1], ends[1:], strict=True)
-    )
+    largest = (int(start + np.argmax(series[start:end])) for start, end in itertools.pairwise(ends))
     return sorted({0, *largest, series.size - 1})

@@ -50,12 +50,13 @@ def reading(account: Account) -> dict[str, str]:
 def _drive(account: Account) -> str:
     """How it is driven, and from where."""
     request = account.request
-    turns = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
+    turned = f"{account.steps * account.dt_s / account.scene.driver.law.period_s:.4g}"
+    turns = "1 turn" if turned == "1" else f"{turned} turns"
     start = "the pose as drawn" if request.key is None else f"keyframe {request.key}"
     if request.start_deg is not None:
         start = f"{request.start_deg:g} deg"
     return (
-        f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} turn{'s' * (turns != '1')} from {start}, by a "
+        f"{request.joint} at {request.speed_rad_s:g} rad/s, {turns} from {start}, by a "
         "flywheel on that hinge, set at run time, by whose ratio the solver's tolerance is "
         "divided; nothing else is changed"
     )
@@ -186,7 +187,8 @@ def footer(judged: JudgedModel) -> list[str]:
     return [
         "Largest errors of place against the closed form at the commanded time: rad, or over the "
         "longest link L; gain: the error as written over that of the line.",
-        f"dt {account.dt_s:g} s, {per_turn:.4g} steps a turn, {account.steps} steps{driven}{finer}.",
+        f"dt {account.dt_s:g} s, {per_turn:.4g} steps a turn, {account.steps} steps{driven}"
+        f"{finer}.",
     ]
 
 

@@ -31,8 +31,9 @@ from reports.own_model.sentences import (
 )
 from reports.verify.table import MARKS
 
-WIDE = 76
-"""Columns of a terminal that show the gap and the body of the largest error."""
+WIDE, NARROW = 76, 52
+"""Columns of a terminal that show the gap and the body of the largest error; below which what
+halving the step does is left out, if all lines ran."""
 STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 
 
@@ -83,7 +84,8 @@ def _table(judged: JudgedModel, width: int) -> Table:
     if wide:
         table.add_column("gap\n/ L", justify="right", no_wrap=True)
         table.add_column("largest of", overflow="fold", min_width=12)
-    table.add_column("when dt\nis halved", overflow="fold", min_width=10)
+    if width >= NARROW or any(one.errors is None for one in judged.lines):
+        table.add_column("when dt\nis halved", overflow="fold", min_width=10)
     for one in (*judged.three, *judged.others):
         _add(table, judged, one, wide=wide)
     return table
@@ -91,10 +93,11 @@ def _table(judged: JudgedModel, width: int) -> Table:
 
 def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
     """A line, and below it what it gains."""
+    columns = len(table.columns) - 2
     mark = MARKS[one.verdict]
     shown = mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
     steps = len(step_heads(judged))
-    table.add_row(shown, one.cell.profile, *_numbers(one, steps, wide=wide))
+    table.add_row(shown, one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
     if one is not judged.own and any(map(math.isfinite, judged.gains(one))):
         factors = [
             "" if math.isnan(factor) else factor_text(factor)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from models.array import Array
-from models.errors import CrankcheckError
 from reports.drawing.moving import INSTANTS, displacements, drawing
 from reports.own_model.judged import JudgedModel
 from reports.page.log_sections.foreign_text import sentence_text
@@ -14,18 +13,14 @@ from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
 
 
-def build(judged: JudgedModel) -> Section | None:
-    """The section; None where the closed form can not be drawn."""
+def build(judged: JudgedModel) -> Section:
+    """The section."""
     time_s = _instants(judged)
     looks = line_looks(judged)
-    try:
-        shape = drawing(judged.scene, time_s)
-        off = {
-            looks[one.cell.profile].number: displacements(judged.scene, one.last_turn, time_s)
-            for one in judged.three
-        }
-    except CrankcheckError:
-        return None
+    off = {
+        looks[one.cell.profile].number: displacements(judged.scene, one.last_turn, time_s)
+        for one in judged.three
+    }
     words = scene_words(judged.scene)
     return Section(
         anchor="motion",
@@ -41,7 +36,7 @@ def build(judged: JudgedModel) -> Section | None:
             ],
         },
         embedded={
-            "drawing": shape,
+            "drawing": drawing(judged.scene, time_s),
             "lines": [{"look": number, "off": rows} for number, rows in off.items() if rows],
         },
         scripts=("legend.js", "mechanism.js", "stage.js", "model_motion.js"),

@@ -8,7 +8,13 @@ from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
 from reports.own_model.checked_line import CheckedLine
 from reports.own_model.judged import JointGap, JudgedModel, errors_of
-from reports.own_model.sentences import factor_text, share_text, step_heads, steps_text, verdict_text
+from reports.own_model.sentences import (
+    factor_text,
+    share_text,
+    step_heads,
+    steps_text,
+    verdict_text,
+)
 from reports.page.log_sections.foreign_text import name_text, sentence_text
 from reports.page.model_sections.line_looks import line_looks
 from reports.page.sections.section import Section
