@@ -109,7 +109,10 @@ def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
         return account
     if isinstance(account.error, CrankcheckError):
         raise account.error
-    raise CrankcheckError(f"{request.path}: reading it {account.status}: {account.reason}")
+    raise CrankcheckError(
+        f"{request.path}: can not be read: {account.status}: {account.reason}; --limit-s and "
+        "--memory-gb set what it may take"
+    )
 
 
 def read_here(request: ModelRequest) -> Account:

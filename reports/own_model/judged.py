@@ -102,6 +102,12 @@ class JudgedModel:
         first, second, third = (_ratio(a, b) for a, b in zip(own, other, strict=True))
         return first, second, third
 
+    def still(self) -> Finding | None:
+        """What the recommended settings fail by most, as a part of its limit; None where they fail
+        nothing."""
+        failures = self.lines[-1].failures
+        return max(failures, key=_part, default=None)
+
     def joints(self) -> list[JointGap]:
         """Every joint and loop, the widest as written first."""
         limit = self.own.limits.get("gap")
@@ -162,10 +168,17 @@ def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
     error, best = errors_of(one)[0], errors_of(last)[0]
     if error < HELPS * best:
         return one
-    less = f" {short(error / best)} times less error," if best > 0.0 and error > 0.0 else ""
-    changed = replace(one, remedy=f"The recommended settings:{less} {_standing(last)}.")
+    less = f"{short(error / best)} times less error" if best > 0.0 and error > 0.0 else "it runs"
+    changed = replace(one, remedy=f"The recommended settings: {less}, {_standing(last)}.")
     return replace(changed, findings=judge(changed))
 
 
 def _standing(one: Checked) -> str:
     return "within tolerance" if one.verdict == "within" else "out of tolerance still"
+
+
+def _part(finding: Finding) -> float:
+    """What a finding takes of its limit; without numbers it is how the run ended."""
+    if finding.number is None or not finding.limit:
+        return math.inf
+    return finding.number / finding.limit if math.isfinite(finding.number) else math.inf

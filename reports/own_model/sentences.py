@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from models.errors import few
 from reports.judge.halving import worst_place
+from reports.judge.rules import RULES
 from reports.output.numbers import count, error_text, listed, short
 from reports.own_model.account import Account, told
 from reports.own_model.judged import PARTS, JudgedModel
@@ -140,6 +141,16 @@ def gaps(judged: JudgedModel) -> str:
     if rest:
         told_ += f"; {count(len(rest), 'other')} up to {size(rest[0].gap_m[name])}"
     return told_
+
+
+def still_out(judged: JudgedModel) -> str:
+    """Why the recommended settings are out of tolerance, "" where they are not."""
+    finding = judged.still()
+    if finding is None:
+        return ""
+    more = len(judged.lines[-1].failures) - 1
+    others = f"; and by {count(more, 'more rule')}" if more else ""
+    return f"out by {finding.rule} {RULES[finding.rule].title}: {finding.text}{others}"
 
 
 def share_text(share: float) -> str:

@@ -27,6 +27,7 @@ from reports.own_model.sentences import (
     reading,
     step_heads,
     steps_text,
+    still_out,
     verdict_text,
 )
 from reports.verify.table import MARKS
@@ -43,6 +44,8 @@ def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> Non
     _told(console, str(judged.account.request.path), reading(judged.account))
     console.print()
     console.print(_table(judged, console.width), "")
+    if text := still_out(judged):
+        hanging(console, "recommended: ", harmless(text))
     if text := gaps(judged):
         hanging(console, "joints: ", harmless(text))
     _disturbing(console, judged)

@@ -67,7 +67,11 @@
   const legend = crankcheck.legend(
     document.getElementById("lines-legend"), crankcheck.lookGroups(new Set(own.lines.map((line) => line.look))), () => draw(),
   );
-  const charts = [crankcheck.chart(document.getElementById("lines-course"), course), crankcheck.chart(document.getElementById("lines-steps"), steps)];
+  // Finer steps are drawn where they were run.
+  const charts = [["lines-course", course], ["lines-steps", steps]].flatMap(([id, figure]) => {
+    const element = document.getElementById(id);
+    return element ? [crankcheck.chart(element, figure)] : [];
+  });
   const draw = () => charts.forEach((chart) => chart());
   what.addEventListener("change", draw);
 })();

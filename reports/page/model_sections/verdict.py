@@ -13,6 +13,7 @@ from reports.own_model.sentences import (
     share_text,
     step_heads,
     steps_text,
+    still_out,
     verdict_text,
 )
 from reports.page.log_sections.foreign_text import name_text, sentence_text
@@ -37,6 +38,7 @@ def build(judged: JudgedModel) -> Section:
             "steps": steps_text(judged),
             "heads": step_heads(judged),
             "rows": [_row(judged, one) for one in (*judged.three, *judged.others)],
+            "still_out": sentence_text(still_out(judged)),
             "lines": [one.cell.profile for one in judged.three],
             "joints": [_joint(judged, joint) for joint in judged.joints()],
         },

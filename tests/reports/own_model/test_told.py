@@ -10,7 +10,8 @@ import pytest
 from rich.console import Console
 
 from reports.judge.cell import unfinished
-from reports.own_model.checked_line import MOST, CheckedLine, without_run
+from reports.own_model import checked_line
+from reports.own_model.checked_line import without_run
 from reports.own_model.judged import JudgedModel, errors_of, judged_model
 from reports.own_model.sentences import (
     EACH,
@@ -19,6 +20,7 @@ from reports.own_model.sentences import (
     groups,
     reading,
     share_text,
+    still_out,
     verdict_text,
 )
 from reports.own_model.table import show
@@ -191,17 +193,32 @@ def test_shares_of_a_limit_in_words(share: float, words: str) -> None:
     assert share_text(share) == words
 
 
-def test_a_long_course_keeps_its_largest_error(rubbing: JudgedModel) -> None:
-    long = judged(SLIDER_CRANK, "motor", 2.2).own
-    assert isinstance(long, CheckedLine)
-    course = long.course
+def test_a_long_course_keeps_its_largest_error(
+    rubbing: JudgedModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(checked_line, "MOST", 30)
+    long = judged.__wrapped__(SLIDER_CRANK, "motor").own
+    whole, course = rubbing.own.course, long.course
+    assert whole is not None
     assert course is not None
-    assert long.cell.steps > MOST
-    assert course.time_s.size <= MOST
-    assert course.time_s[0] == 0.0
-    assert course.time_s[-1] == pytest.approx(long.cell.steps * long.cell.dt_s)
-    assert course.error.max() == pytest.approx(errors_of(long)[0], rel=1e-12)
+    assert whole.time_s.size == long.cell.steps + 1
+    assert course.time_s.size <= 30
+    assert (course.time_s[0], course.time_s[-1]) == (0.0, whole.time_s[-1])
+    assert course.error.max() == whole.error.max() == errors_of(long)[0]
+    assert set(course.error) <= set(whole.error)
     assert long.errors is not None
     gap = long.errors.worst("gap")
     assert gap is not None
-    assert course.gap.max() == pytest.approx(gap.pure, rel=0.01)
+    assert whole.gap.max() == pytest.approx(gap.pure, rel=1e-12)
+
+
+def test_why_the_recommended_settings_are_out_is_told(rubbing: JudgedModel) -> None:
+    assert still_out(rubbing) == ""
+    own, last = rubbing.own, rubbing.lines[-1]
+    failing = replace(last, findings=own.findings)
+    one = replace(rubbing, lines=[*rubbing.lines[:-1], failing])
+    worst = max(own.failures, key=lambda finding: finding.number / finding.limit)
+    assert still_out(one).startswith(f"out by {worst.rule} ")
+    assert still_out(one).endswith(f"; and by {len(own.failures) - 1} more rules")
+    text = " ".join(" ".join(printed(one)).split())
+    assert f"recommended: out by {worst.rule}" in text

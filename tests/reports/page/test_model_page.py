@@ -144,6 +144,18 @@ def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Opened) -> None:
     opened.restore()
 
 
+def test_without_finer_steps_there_is_no_diagram_of_them(
+    open_page: Open, rubbing: JudgedModel, tmp_path: Path
+) -> None:
+    request = replace(rubbing.account.request, converge=False)
+    one = replace(rubbing, account=replace(rubbing.account, request=request))
+    (tmp_path / "page.html").write_text(model_page(one, FACTS), encoding="utf-8")
+    found = open_page(tmp_path / "page.html")
+    found.show("lines")
+    assert found.page.locator(".chart").count() == 1
+    assert found.said == []
+
+
 def test_it_fits_a_phone(open_page: Open, text: str, tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text(text, encoding="utf-8")
     found = open_page(tmp_path / "page.html", phone=True, color_scheme="dark")
