@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from models.errors import CrankcheckError
 from reports.face.arguments import is_true, kind_of, path_of, text_of, tolerances_of
 from reports.face.shown import Shown
-from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
 from reports.output.provenance import provenance
 from reports.own_model.account import read, run_lines
@@ -52,7 +51,10 @@ class ModelVerdict(Shown, JudgedModel):
         show(console, self, self.facts)
 
     def _drawn(self) -> str:
-        return drawn(self.scene)
+        """Over what was run, as it may have no whole turn."""
+        from reports.drawing.svg import svg
+
+        return svg(self.scene, most_s=self.account.dt_s * self.account.steps)
 
 
 @told_at_the_call

@@ -45,6 +45,15 @@
     };
   }
 
+  /** Ends of a logarithmic axis that shows a decade at least: errors that are the same look so. */
+  function decades(values) {
+    const known = values.filter((v) => v > 0).map(Math.log10);
+    if (!known.length) return {};
+    const [least, most] = [Math.min(...known), Math.max(...known)];
+    const spare = Math.max(0.15, (1 - (most - least)) / 2);
+    return { range: [least - spare, most + spare] };
+  }
+
   function steps() {
     const every = own.lines[0].dt;
     return {
@@ -59,7 +68,7 @@
           ...crankcheck.logAxis("step dt [s]", false), tickvals: every, ticktext: every.map((dt) => String(Number(dt.toPrecision(3)))),
           range: [Math.log10(every.at(-1) / 1.3), Math.log10(every[0] * 1.3)],
         },
-        yaxis: crankcheck.logAxis(TITLES.error, true),
+        yaxis: { ...crankcheck.logAxis(TITLES.error, true), ...decades(shown().flatMap((line) => line.error)) },
       },
     };
   }

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import crankcheck
-from tests.worlds.own_models import SLIDER_CRANK
+from reports.drawing.svg import svg
+from tests.worlds.own_models import CROWDED, FACTS, SLIDER_CRANK, judged
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +56,15 @@ def test_it_prints_the_table_and_a_notebook_shows_the_mechanism(
     assert "<svg" in page
     assert "recommended" in page
     assert "<option" not in page
+
+
+def test_a_linkage_that_goes_through_no_whole_turn_is_drawn_as_far_as_it_went() -> None:
+    """Driven at its rocker, which swings."""
+    one = judged(CROWDED, "ankle", turns=0.02, dt_s=1e-4)
+    swung = crankcheck.ModelVerdict(account=one.account, lines=one.lines, facts=FACTS)
+    assert "<svg" in swung._repr_html_()
+    with pytest.raises(crankcheck.ReachError):
+        svg(one.scene)
 
 
 REFUSED = {

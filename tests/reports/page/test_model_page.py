@@ -126,6 +126,8 @@ def test_the_scripts_draw_every_line_and_say_nothing(opened: Opened) -> None:
     assert drawn == ["as-written", "contacts-off", "recommended", "limit"]
     steps = page.evaluate("document.getElementById('lines-steps').data.map(each => each.y.length)")
     assert steps == [3, 3, 3]
+    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+    assert low < -6.0 < -2.0 < high
     assert page.locator("#motion-picture .run").count() == 3
     assert "as-written" in page.locator("#motion-readout").inner_text()
     assert opened.said == []
@@ -140,6 +142,9 @@ def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Opened) -> None:
     page.select_option("#lines-what", "gap")
     page.wait_for_function("document.getElementById('lines-course').data.length === 3")
     assert page.locator("#motion-picture .run").count() == 2
+    page.locator("#lines-legend [data-item='1']").click()
+    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+    assert high - low >= 1.0
     assert "gap" in page.evaluate("document.getElementById('lines-course').layout.yaxis.title.text")
     opened.restore()
 
