@@ -39,7 +39,6 @@ def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
             }
             for joint in judged.joints()
         ],
-        "scenes": {},
         "cells": [_cell(judged, one) for one in judged.lines],
     }
     return json.dumps(finite(content), indent=1) + "\n"
