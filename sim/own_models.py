@@ -24,6 +24,16 @@ class Tour:
     passed: Sequence[str]
 
 
+@dataclass(frozen=True)
+class Disturbance:
+    """Something in a model that can move a run off its closed form: ``text`` names it, with its
+    joint or body; what is of one ``kind`` goes away together where a line of that name without it
+    is told (``contacts`` in ``contacts-off``)."""
+
+    kind: str
+    text: str
+
+
 class OwnModel(Protocol):
     """A model as it was read.
 
@@ -38,8 +48,13 @@ class OwnModel(Protocol):
     def dt_s(self) -> float: ...
 
     @property
-    def disturbances(self) -> Sequence[str]:
-        """What can move a run off its closed form, by joint or body, in words."""
+    def disturbances(self) -> Sequence[Disturbance]:
+        """What can move a run off its closed form, but for what its tour shows."""
+        ...
+
+    @property
+    def files(self) -> Sequence[Path]:
+        """The file, and those that it includes."""
         ...
 
     def drawn(self) -> Poses:

@@ -4,7 +4,10 @@ shown."""
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
+
+import pytest
 
 import crankcheck
 from crankcheck import engine, testing
@@ -15,6 +18,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
 OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
 OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
+OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
@@ -37,20 +41,29 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
-    faults = untrue(OWN_LOG, tmp_path)
-    assert not faults, "\n\n".join(faults)
+    assert not told_otherwise(OWN_LOG, tmp_path)
 
 
 def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:
     """In the folder of the example: some 10 s, most of them for the whole contract."""
     for path in (DOCS.parent / "examples" / "engine").glob("*.*"):
         (tmp_path / path.name).write_bytes(path.read_bytes())
-    faults = untrue(OWN_ENGINE, tmp_path)
-    assert not faults, "\n\n".join(faults)
+    assert not told_otherwise(OWN_ENGINE, tmp_path)
 
 
-def untrue(page: str, folder: Path) -> list[str]:
-    """The commands of a page that do not print what stands below them, or end otherwise."""
+def test_what_is_said_of_own_models_is_true(tmp_path: Path) -> None:
+    """What the commands print of a model that stands on the page, before and after the diff."""
+    if shutil.which("patch") is None:
+        pytest.skip("no patch: apt-get install patch")
+    (model,) = blocks(OWN_MODEL, "xml")
+    (tmp_path / "engine.xml").write_text(model)
+    assert not told_otherwise(OWN_MODEL, tmp_path)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {name for name in written if f"`{name}`" in OWN_MODEL}
+
+
+def told_otherwise(page: str, folder: Path) -> str:
+    """The commands of a page that end or print otherwise, "" where there are none."""
     faults = []
     for command, shown, code in commands(page):
         done = ran(words(command), folder)
@@ -58,7 +71,7 @@ def untrue(page: str, folder: Path) -> list[str]:
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:
             faults.append(f"$ {command}\nexit {done.returncode}\n{fault}\n{done.stderr}")
-    return faults
+    return "\n\n".join(faults)
 
 
 def test_every_name_for_engines_stands_on_its_page() -> None:

@@ -140,7 +140,7 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
         limits=limits(cell.scene, errors, cell.tolerance) if errors else {},
         convergence=seen,
         gated=cell.gated,
-        profile=cell.profile,
+        profile="" if runs and runs.given else cell.profile,
         placing=adapter.placing,
         order=adapter.order,
         unasked=tuple(runs.unasked) if runs else None,

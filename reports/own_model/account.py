@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, ReachError
 from models.scene import Scene
-from reports.judge.cell import Cell, Checked, examined, unfinished
+from reports.judge.cell import Cell, unfinished
 from reports.judge.tolerance import check_names
 from reports.own_model.assembly import assembled, in_joint_words
+from reports.own_model.checked_line import CheckedLine, checked, without_run
 from reports.own_model.request import ModelRequest
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.own_models import reader, reading_engine
+from sim.own_models import Disturbance, reader, reading_engine
 
 POSES = 73
 """Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
@@ -25,8 +27,9 @@ POSES = 73
 
 @dataclass(frozen=True)
 class Account:
-    """A model as it was read: its scene, how far open its own pose is by joint [m], what can
-    disturb a comparison, the lines to run, and the recommended settings as a diff."""
+    """A model as it was read, from its ``files``: its scene, how far open its own pose is by joint
+    [m], what can disturb a comparison, the lines to run, and the recommended settings as a diff, or
+    in words."""
 
     request: ModelRequest
     scene: Scene
@@ -34,10 +37,11 @@ class Account:
     steps: int
     open_m: Mapping[str, float]
     notes: Sequence[str]
-    disturbances: Sequence[str]
+    disturbances: Sequence[Disturbance]
     touching: bool
     profiles: Sequence[str]
     patch: str
+    files: Sequence[Path]
 
 
 @dataclass(frozen=True)
@@ -80,11 +84,11 @@ def read(request: ModelRequest, limits: Limits) -> Account:
 
 
 def run_lines(
-    account: Account, limits: Limits, done: Callable[[Checked], None] = lambda _: None
-) -> list[Checked]:
+    account: Account, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
+) -> list[CheckedLine]:
     """Run all lines of an account, each in a process that is ended when it fails or hangs."""
-    child: Isolated[Checked] = Isolated(limits)
-    checked = []
+    child: Isolated[CheckedLine] = Isolated(limits)
+    lines = []
     try:
         for profile in account.profiles:
             line = Line(account, profile)
@@ -92,12 +96,12 @@ def run_lines(
             if isinstance(result, Lost):
                 if isinstance(result.error, CrankcheckError):
                     raise result.error
-                result = unfinished(line.cell, result.status, result.reason)
-            checked.append(result)
+                result = without_run(unfinished(line.cell, result.status, result.reason))
+            lines.append(result)
             done(result)
     finally:
         child.close()
-    return checked
+    return lines
 
 
 def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
@@ -105,7 +109,10 @@ def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
         return account
     if isinstance(account.error, CrankcheckError):
         raise account.error
-    raise CrankcheckError(f"{request.path}: reading it {account.status}: {account.reason}")
+    raise CrankcheckError(
+        f"{request.path}: can not be read: {account.status}: {account.reason}; --limit-s and "
+        "--memory-gb set what it may take"
+    )
 
 
 def read_here(request: ModelRequest) -> Account:
@@ -114,7 +121,9 @@ def read_here(request: ModelRequest) -> Account:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    dt_s, steps = counted(scene, request.dt_s or own.dt_s, None, request.turns)
+    given_s = own.dt_s if request.steps_per_turn is None else None
+    given_s = given_s if request.dt_s is None else request.dt_s
+    dt_s, steps = counted(scene, given_s, request.steps_per_turn, request.turns)
     times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
     try:
         motion = solve(scene, times, bound=False)
@@ -127,10 +136,11 @@ def read_here(request: ModelRequest) -> Account:
     refuse_singular(scene, dt_s * steps)
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
     touching = bool(seen.touching)
-    touches = [
-        f"{first} touches {second} in {share:.0%} of the poses"
+    met = [
+        Disturbance("contacts", f"{first} touches {second} in {share:.0%} of the poses")
         for (first, second), share in seen.touching.items()
     ]
+    met += [Disturbance("limits", text) for text in seen.passed]
     return Account(
         request=request,
         scene=scene,
@@ -138,15 +148,16 @@ def read_here(request: ModelRequest) -> Account:
         steps=steps,
         open_m=own.open_m(),
         notes=found.notes,
-        disturbances=[*touches, *seen.passed, *own.disturbances],
+        disturbances=[*met, *own.disturbances],
         touching=touching,
         profiles=list(own.engine(touching=touching).profiles),
         patch=own.patch(dt_s, touching=touching),
+        files=own.files,
     )
 
 
-def checked_line(line: Line) -> Checked:
+def checked_line(line: Line) -> CheckedLine:
     """Run and judge one line, in this process."""
     account, request = line.account, line.account.request
     own = reader()(request.path, request.joint, request.key)
-    return examined(line.cell, adapter=own.engine(touching=account.touching))[0]
+    return checked(line.cell, own.engine(touching=account.touching))

@@ -1,160 +1,154 @@
-"""An own model on the terminal: what was read, a line for each way to run it, what to change."""
+"""An own model on the terminal: what is wrong, what was read, its lines, what to change, the
+verdict."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from models.errors import few, harmless
-from reports.judge.cell import Checked
+from models.errors import harmless
 from reports.judge.halving import worst_place
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
-from reports.output.numbers import count
-from reports.own_model.account import Account, told
+from reports.output.numbers import short
+from reports.own_model.checked_line import CheckedLine
+from reports.own_model.judged import JudgedModel, errors_of
+from reports.own_model.sentences import (
+    factor_text,
+    footer,
+    gaps,
+    groups,
+    is_diff,
+    reading,
+    step_heads,
+    steps_text,
+    still_out,
+    verdict_text,
+)
 from reports.verify.table import MARKS
 
-OPEN = 1e-9
-"""A joint that is open by more, over the longest link, is told."""
-SHOWN = 6
-PARTS = (1, 2, 4)
+WIDE, NARROW = 76, 52
+"""Columns of a terminal that show the gap and the body of the largest error; below which what
+halving the step does is left out, if all lines ran."""
+STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
 
 
-def show(
-    console: Console, account: Account, checked: Sequence[Checked], facts: Mapping[str, str]
-) -> None:
+def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
     """Print it all."""
-    _read(console, account)
-    own = checked[0]
-    for finding in own.failures:
+    _failures(console, judged)
+    _told(console, str(judged.account.request.path), reading(judged.account))
+    console.print()
+    console.print(_table(judged, console.width), "")
+    if text := still_out(judged):
+        hanging(console, "recommended: ", harmless(text))
+    if text := gaps(judged):
+        hanging(console, "joints: ", harmless(text))
+    _disturbing(console, judged)
+    _recommended(console, judged)
+    console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))
+    lines = [*footer(judged), ", ".join(f"{name} {value}" for name, value in facts.items())]
+    console.print(escape("\n".join(lines)), style="dim", highlight=False)
+
+
+def _failures(console: Console, judged: JudgedModel) -> None:
+    """What is out of tolerance as written, rule by rule."""
+    if not judged.failures:
+        return
+    mark = MARKS[judged.verdict].plain
+    console.print(Text(harmless(f"{mark}  {judged.account.request.path}, as written"), "bold red"))
+    for finding in judged.failures:
         rule = RULES[finding.rule]
         hanging(console, f"  {rule.id} ", harmless(f"{rule.title}: {finding.text}"))
-    for text in account.disturbances:
-        hanging(console, "  there is ", harmless(text))
+    if judged.own.remedy:
+        hanging(console, "  cure: ", judged.own.remedy, style="cyan")
     console.print()
-    console.print(_table(account, checked), "")
-    for text in gains(account, checked):
-        hanging(console, "", harmless(text))
-    if account.patch:
-        console.print("\nRecommended, as a diff of the file:", style="bold")
-        console.print(harmless(account.patch), markup=False, highlight=False, soft_wrap=True)
-    console.print(verdict_line(own))
-    console.print(escape("\n".join(footer(account, facts))), style="dim", highlight=False)
 
 
-def _read(console: Console, account: Account) -> None:
-    """What the file was read as."""
-    for text in reading(account):
-        hanging(console, "", harmless(text))
+def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
+    """Sentences under a title, each beside its head."""
+    console.print(Text(harmless(title), "bold"))
+    for head, text in told.items():
+        hanging(console, f"  {head}: ", harmless(text))
 
 
-def reading(account: Account) -> list[str]:
-    """What the file was read as, in sentences."""
-    scene, request = account.scene, account.request
-    links = ", ".join(scene.links)
-    sliders = f"; sliders: {', '.join(scene.sliders)}" if scene.sliders else ""
-    texts = [
-        f"{request.path}: {count(len(scene.links), 'link')} ({links}){sliders}; driven by "
-        f"{request.joint} at {request.speed_rad_s:g} rad/s",
-        *account.notes,
-    ]
-    gaping = {
-        name: gap for name, gap in account.open_m.items() if gap > OPEN * (scene.longest_m or 1.0)
-    }
-    if gaping:
-        each = few([f"{name} by {gap:.3g} m" for name, gap in gaping.items()], SHOWN)
-        texts.append(
-            f"the file's own pose is open at {each}; the run starts from the closed form, where "
-            "all joints are shut"
-        )
-    else:
-        texts.append("the file's own pose is shut; the run starts from the closed form")
-    texts.append("drive: a flywheel on the driven hinge, set at run time; nothing else is changed")
-    return texts
-
-
-def _table(account: Account, checked: Sequence[Checked]) -> Table:
-    """A row for each line: the error that is followed, at the step, its half and its quarter."""
-    table = plain_table()
+def _table(judged: JudgedModel, width: int) -> Table:
+    """The three lines, each with what it gains, and the others that say something."""
+    wide = width >= WIDE
+    table = plain_table(f"largest error of place {steps_text(judged)}")
     table.add_column("")
     table.add_column("line", no_wrap=True)
-    for parts in PARTS:
-        head = f"dt {account.dt_s / parts:.4g} s"
+    for head in step_heads(judged):
         table.add_column(head, justify="right", no_wrap=True)
-    table.add_column("gap", justify="right", no_wrap=True)
-    table.add_column("of", overflow="fold")
-    table.add_column("when dt\nis halved", overflow="fold", min_width=12)
-    for one in checked:
-        mark = MARKS[one.verdict]
-        shown = mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
-        table.add_row(shown, one.cell.profile, *_numbers(one))
+    if wide:
+        table.add_column("gap\n/ L", justify="right", no_wrap=True)
+        table.add_column("largest of", overflow="fold", min_width=12)
+    if width >= NARROW or any(one.errors is None for one in judged.lines):
+        table.add_column("when dt\nis halved", overflow="fold", min_width=10)
+    for one in (*judged.three, *judged.others):
+        _add(table, judged, one, wide=wide)
     return table
 
 
-def _numbers(one: Checked) -> list[str]:
+def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
+    """A line, and below it what it gains."""
+    columns = len(table.columns) - 2
+    mark = MARKS[one.verdict]
+    shown = mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
+    steps = len(step_heads(judged))
+    table.add_row(shown, one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
+    if one is not judged.own and any(map(math.isfinite, judged.gains(one))):
+        factors = [
+            "" if math.isnan(factor) else factor_text(factor)
+            for factor in judged.gains(one)[:steps]
+        ]
+        table.add_row("", Text("  gain", "dim"), *(Text(each, "cyan") for each in factors))
+
+
+def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
     """One row, from its numbers on."""
-    worst = worst_place(one.errors) if one.errors else None
-    if one.errors is None or worst is None:
-        return ["-"] * (len(PARTS) + 1) + ["", harmless(f"{one.status}: {one.reason}")]
-    seen = one.convergence
-    finer = [f"{error:.1e}" for error in seen.error[1:]] if seen else [""] * (len(PARTS) - 1)
-    gap = one.errors.worst("gap")
-    ended = seen.words if seen else ""
+    if one.errors is None:
+        reason = Text(harmless(f"{one.status}: {one.reason}"), "red")
+        return [*["-"] * steps, *(["-", reason] if wide else [reason])]
+    worst, gap = worst_place(one.errors), one.errors.worst("gap")
+    first = math.nan if worst is None else worst.pure
+    errors = [first, *errors_of(one)[1:]][:steps]
+    body = f"{worst.quantity} of {worst.body}" if worst else ""
+    return [
+        *("" if at and math.isnan(error) else short(error) for at, error in enumerate(errors)),
+        *([short(gap.pure) if gap else "-", body] if wide else []),
+        _ended(one),
+    ]
+
+
+def _ended(one: CheckedLine) -> str:
+    """What the error does when the step is halved, or how the run ended."""
     if one.status != "ok":
-        ended = f"{one.status} at t = {one.stopped_at_s:.3g} s"
-    return [
-        f"{worst.pure:.1e}",
-        *finer,
-        f"{gap.pure:.1e}" if gap else "-",
-        f"{worst.quantity} of {worst.body}",
-        ended,
-    ]
+        early = one.status != "branch-changed"  # such a run goes on to its end
+        return one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
+    return one.convergence.words.replace(": ", "\n") if one.convergence else ""
 
 
-def error_of(one: Checked) -> float:
-    """The largest error of place of a line, as a pure number; NaN where it has none."""
-    worst = worst_place(one.errors) if one.errors else None
-    return math.nan if worst is None or one.status != "ok" else worst.pure
+def _disturbing(console: Console, judged: JudgedModel) -> None:
+    """What can disturb the comparison, a paragraph for each kind."""
+    found = groups(judged)
+    if found:
+        console.print("can disturb it:")
+    for group in found:
+        texts = [group.short(), *([group.effect] if group.effect else [])]
+        hanging(console, f"  {group.kind}: ", harmless("; ".join(texts)))
+    console.print()
 
 
-def gains(account: Account, checked: Sequence[Checked]) -> list[str]:
-    """What each other line leaves of the error as written."""
-    own, texts = error_of(checked[0]), []
-    for one in checked[1:]:
-        error = error_of(one)
-        name = one.cell.profile
-        if math.isnan(error) or math.isnan(own):
-            continue
-        if name not in told(account.profiles) and not (error < own / 2 or error > 2 * own):
-            continue
-        if own <= 0.0 or error == own:
-            texts.append(f"{name}: the same error")
-        elif error < own:
-            texts.append(f"{name}: {own / max(error, 1e-300):.3g} times less error")
-        else:
-            texts.append(f"{name}: {error / own:.3g} times more error")
-    return texts
-
-
-def verdict_line(own: Checked) -> Text:
-    """The verdict on the model as written."""
-    if own.verdict == "within":
-        return Text("WITHIN TOLERANCE as written", "bold green")
-    return Text("OUT OF TOLERANCE as written", "bold red")
-
-
-def footer(account: Account, facts: Mapping[str, str]) -> list[str]:
-    """Units, steps and versions."""
-    cell_turns = account.steps * account.dt_s / account.scene.driver.law.period_s
-    return [
-        "Largest error of place against the closed form at the commanded time: rad, or over the "
-        "longest link.",
-        f"{account.steps} steps of {account.dt_s:g} s, {cell_turns:.4g} turns; "
-        f"{', '.join(told(account.profiles))} are run at half and quarter step too",
-        ", ".join(f"{name} {value}" for name, value in facts.items()),
-    ]
+def _recommended(console: Console, judged: JudgedModel) -> None:
+    """The recommended settings."""
+    patch = judged.patch
+    if not patch:
+        console.print("The file has the recommended settings already.\n", style="bold")
+        return
+    console.print(Text(f"Recommended{', as a diff of the file' * is_diff(patch)}:", "bold"))
+    console.print(harmless(patch), markup=False, highlight=False, soft_wrap=True)

@@ -100,7 +100,9 @@ def _driven(model: Any, joint: str) -> int:
     names = [name_of(model, mujoco.mjtObj.mjOBJ_JOINT, index) for index in range(model.njnt)]
     able = [name for index, name in enumerate(names) if name and not _not_drivable(model, index)]
     can = f"drivable: {few(able, SHOWN)}" if able else "no named hinge turns against the ground"
-    if joint not in names or not joint:
+    if not joint:
+        raise ModelError(f"--drive is missing: name the joint that turns the crank; {can}")
+    if joint not in names:
         there = [name for name in names if name]
         hint = suggestion(joint, there, "it has") if there else "none of its joints has a name"
         raise ModelError(f"--drive {joint!r}: the model has no joint of that name; {hint}; {can}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -21,23 +20,16 @@ from sim.mujoco.own_model.component import (
     rigid,
 )
 from sim.mujoco.own_model.linkage import Linkage
+from sim.own_models import Disturbance
 
 SHOWN = 6
 SOFT_S = 0.02
 """MuJoCo's own time constant of a loop; one that is longer is softer."""
 
 
-@dataclass(frozen=True)
-class Disturbance:
-    """Something that can move a run off its closed form: ``kind`` is a key of `variants.OFF` where
-    it can be switched off; ``text`` names it, with its joint or body."""
-
-    kind: str
-    text: str
-
-
 def disturbances(linkage: Linkage) -> list[Disturbance]:
-    """All that there is, but for contacts, which depend on where the links are."""
+    """All that there is, but for contacts, which depend on where the links are; a kind that can be
+    switched off is a key of `variants.OFF`."""
     model = linkage.component.model
     ids = {body.id for body in linkage.component.bodies}
     return [

@@ -29,7 +29,7 @@ def load(path: Path) -> Any:
         No such file, no MJCF, an included file that is missing or outside the folder of the model,
         or what MuJoCo refuses, in its own words.
     """
-    for file in dict.fromkeys(_files(path, path.resolve().parent, 0)):
+    for file in files(path):
         if file.stat().st_size > MOST_BYTES:
             raise ModelError(f"{file}: over {MOST_BYTES // 1_000_000} MB; MJCF text is shorter")
     try:
@@ -38,8 +38,13 @@ def load(path: Path) -> Any:
         raise ModelError(f"{path}: {cut(' '.join(str(error).split()), 600)}") from None
 
 
-def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
+def files(path: Path) -> list[Path]:
     """The file and all that it includes. Raises ModelError for what can not be included."""
+    return list(dict.fromkeys(_files(path, path.resolve().parent, 0)))
+
+
+def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
+    """As `files`, some of them several times."""
     root = _root(path)
     if depth == 0 and root.tag != "mujoco":
         raise ModelError(f"{path}: its root is <{cut(root.tag)}>; an MJCF file has <mujoco>")

@@ -18,9 +18,9 @@ from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.measure import gaps
 from sim.mujoco.own_model.closures import name_of
 from sim.mujoco.own_model.component import component
-from sim.mujoco.own_model.disturbing import Disturbance, disturbances
+from sim.mujoco.own_model.disturbing import disturbances
 from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.file import load
+from sim.mujoco.own_model.file import files, load
 from sim.mujoco.own_model.limbs import limbs_of
 from sim.mujoco.own_model.linkage import linkage
 from sim.mujoco.own_model.naming import scene_name
@@ -32,7 +32,7 @@ from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.tour import tour
 from sim.mujoco.own_model.variants import OFF, checked, profiles
 from sim.mujoco.stepped import VERSION
-from sim.own_models import Tour
+from sim.own_models import Disturbance, Tour
 from sim.tree_poses import body_poses
 
 
@@ -58,14 +58,23 @@ class ReadModel:
         return disturbances(self.planar.linkage)
 
     @property
-    def disturbances(self) -> list[str]:
+    def disturbances(self) -> list[Disturbance]:
         """Also points of a link that may have been meant to be one."""
         called = self.planar.read.names
         near = [
-            f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m apart"
+            Disturbance(
+                "near points",
+                f"{called[each.link]}: {each.first} and {each.second} are {each.distance_m:.3g} m "
+                "apart",
+            )
             for each in nearly(self.planar.read.points, self.planar.linkage)
         ]
-        return [*(each.text for each in self._present), *near]
+        return [*self._present, *near]
+
+    @property
+    def files(self) -> list[Path]:
+        """The file, and those that it includes."""
+        return files(self.path)
 
     def drawn(self) -> Poses:
         """The pose that the file asks for: as drawn, or that of the keyframe."""
