@@ -117,6 +117,21 @@ def test_a_pymunk_run_that_comes_apart_is_diverged_too(
 def test_an_engine_that_says_it_diverged_is_believed(fake_engine: ModuleType) -> None:
     result = ran(engine=fake_engine.FakeEngine(solve, diverges_after=120), steps=9000)
     assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
+    assert result.reason == "came apart at 0.12 s"
+
+
+def test_an_engine_that_stops_by_itself_says_why(fake_engine: ModuleType) -> None:
+    given = {"diverges_after": 120, "stopped": "no step was small enough"}
+    result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
+    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
+    assert result.reason == "stopped after 0.12 s: no step was small enough"
+
+
+def test_what_came_apart_before_an_engine_stopped_is_told_first(fake_engine: ModuleType) -> None:
+    apart = fake_engine.turned_link("rocker", lambda t: np.where(t > 0.1, 3.0, 0.0))
+    given = {"diverges_after": 120, "stopped": "no step was small enough", "disturb": apart}
+    result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
+    assert result.reason.startswith("came apart at 0.10")
 
 
 def test_a_loop_open_by_more_than_the_longest_link_is_diverged(fake_engine: ModuleType) -> None:
