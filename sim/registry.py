@@ -16,6 +16,7 @@ from sim.engine import Engine
 ENGINES: Mapping[str, str] = {
     "mujoco": ".mujoco",
     "pymunk": ".pymunk",
+    "exudyn": ".exudyn",
 }
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))

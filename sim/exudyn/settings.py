@@ -1,0 +1,81 @@
+"""exudyn's settings: the two profiles, and what they are in its own structures."""
+
+from __future__ import annotations
+
+from sim.engine import Placing, Profile, Setting, Settings
+from sim.settings import check_choices, check_ranges
+
+INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
+"""The implicit ones; explicit ones take no joints."""
+JACOBIANS = ("as-needed", "each-step", "each-iteration")
+"""When Newton's method works out its matrix anew: where it converges slowly, or always."""
+LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
+BY_SIZE = "by-size"
+"""A choice of ours: EigenDense, or EigenSparse for more than `MOST_DENSE` unknowns."""
+MOST_DENSE = 60
+SWITCH = ("enable", "disable")
+CHOICES = {
+    "integrator": INTEGRATORS,
+    "jacobian": JACOBIANS,
+    "adaptive_step": SWITCH,
+    "linear_solver": (*LINEAR_SOLVERS, BY_SIZE),
+    "ignore_singular": SWITCH,
+}
+RANGES = {
+    "spectral_radius": (0.0, 1.0),
+    "relative_tolerance": (0.0, 1.0),
+    "absolute_tolerance": (0.0, 1.0),
+    "iterations": (1, 1_000_000),
+    "servo_gain": (1e-9, 1e15),
+}
+"""What exudyn takes, and the ways round it that make sense."""
+OF_SERVO = ("servo_gain",)
+"""What only that drive has."""
+
+AS_SHIPPED = Profile(
+    "as-shipped",
+    "exudyn",
+    "exudyn's own defaults",
+    {
+        "integrator": Setting(
+            "GeneralizedAlpha", "default: joints closed in their places (index 3)"
+        ),
+        "spectral_radius": Setting(
+            0.9, "default: damps what is faster than the step by 10 % in it"
+        ),
+        "relative_tolerance": Setting(1e-8, "default: of Newton's method, over the first residual"),
+        "absolute_tolerance": Setting(1e-10, "default: of the residual"),
+        "iterations": Setting(25, "default: the most that Newton's method may take"),
+        "jacobian": Setting("as-needed", "default: useModifiedNewton, updated where it is slow"),
+        "adaptive_step": Setting("enable", "default: a step that fails is cut in two"),
+        "linear_solver": Setting("EXUdense", "default"),
+        "ignore_singular": Setting("disable", "default: joints that are redundant end the run"),
+        "servo_gain": Setting(1e3, "of the drive `servo`, over inertia scale times peak speed"),
+    },
+)
+TUNED = Profile(
+    "tuned",
+    "exudyn",
+    "Rates closed, by the trapezoidal rule: all errors of second order, accelerations too",
+    dict(AS_SHIPPED.settings)
+    | {
+        "integrator": Setting("TrapezoidalIndex2", "TODO"),
+        "spectral_radius": Setting(1.0, "not used: the trapezoidal rule damps nothing"),
+        "relative_tolerance": Setting(1e-8, "TODO"),
+        "absolute_tolerance": Setting(1e-14, "TODO"),
+        "jacobian": Setting("each-step", "TODO"),
+        "linear_solver": Setting(BY_SIZE, "TODO"),
+        "ignore_singular": Setting("enable", "TODO"),
+    },
+)
+
+
+def checked(settings: Settings) -> None:
+    """Refuse values that exudyn does not take. Raises SettingError."""
+    check_choices(settings, CHOICES)
+    check_ranges(settings, RANGES)
+
+
+def placing(settings: Settings) -> Placing:
+    """How places come about: with joints closed in their rates they are integrated."""
+    return "integrated" if settings["integrator"] == "TrapezoidalIndex2" else "solved"
