@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from models.motion import State
 from models.scene import Scene
-from sim.engine import Settings
 from sim.exudyn.settings import BY_SIZE, INTEGRATORS, JACOBIANS
 from sim.tuning import Knob, SearchSpace, Work
 
@@ -22,7 +21,7 @@ KNOBS = SearchSpace(
         Knob("linear_solver", ("EXUdense", BY_SIZE)),
     ),
     starts=(
-        {"integrator": "GeneralizedAlpha", "spectral_radius": 0.6},
+        {"integrator": "TrapezoidalIndex2"},
         {"relative_tolerance": 1e-4},
     ),
     work=work,

@@ -1,4 +1,4 @@
-"""What may help in exudyn at the same step: joints closed in their places, or more exactly."""
+"""What may help in exudyn at the same step."""
 
 from __future__ import annotations
 
@@ -7,19 +7,18 @@ from models.scene import Scene
 from sim.engine import Settings
 from sim.remedies import Remedies
 
-CLOSER: Settings = {"relative_tolerance": 1e-11}
-IN_PLACES: Settings = {"integrator": "GeneralizedAlpha", "spectral_radius": 0.6}
-"""The radius at which what an ill start shakes has gone after a few steps."""
+CHOICES: tuple[Settings, ...] = (
+    {"jacobian": "each-iteration"},
+    {"relative_tolerance": 1e-11, "absolute_tolerance": 1e-13},
+    {"integrator": "TrapezoidalIndex2"},
+)
+"""A matrix that is never old, for steps that do not converge; more exact places; and joints closed
+in their rates, whose accelerations need no settling at the start."""
 
 
 def exudyn_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
     """Those that the settings have not, whatever the scene."""
-    found = []
-    if settings["integrator"] != IN_PLACES["integrator"]:
-        found.append(IN_PLACES)
-    if float(settings["relative_tolerance"]) > float(CLOSER["relative_tolerance"]):
-        found.append(CLOSER)
-    return found
+    return [choice for choice in CHOICES if any(settings[n] != v for n, v in choice.items())]
 
 
 REMEDIES: Remedies = exudyn_remedies

@@ -68,15 +68,16 @@ class ExudynSession:
         if drive == "servo":
             gain = float(self._settings["servo_gain"]) * inertia_scale(self._scene)
             self._add_motor(ends, gain * law.peak_speed_rad_s)
-        elif isinstance(law, ConstantSpeed):
+            return
+        told: dict[str, object] = {}
+        if isinstance(law, ConstantSpeed):
             told = {"velocityLevel": True, "offset": law.speed_rad_s}
-            self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
         elif self._course:
             told = {
                 "offsetUserFunction": self._course.angle,
                 "offsetUserFunction_t": self._course.speed,
             }
-            self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
+        self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
 
     def _add_motor(self, ends: list[Any], gain: float) -> None:
         """A damper to the ground, and the torque that it has at the law's speed."""
@@ -201,11 +202,15 @@ class ExudynSession:
             self._course.reach(self._done + steps)
         first = self._done + 1
         self._done += steps
-        ends = range(first, self._done + 1) if self._solver.it.adaptiveStep else (self._done,)
+        clock = self._solver.it
+        adaptive = clock.adaptiveStep
+        ends = range(first, self._done + 1) if adaptive else (self._done,)
         with quiet(self._heard):
             try:
                 for end in ends:
-                    self._solver.it.endTime = end * self._dt
+                    # A clock that adds up its steps would leave, once late by 1e-10 s, that to do.
+                    clock.currentTime = (end - 1) * self._dt if adaptive else clock.currentTime
+                    clock.endTime = end * self._dt
                     if not self._solver.SolveSteps(self._system, self._asked):
                         return str(self._solver.GetErrorString())
             except RuntimeError as error:  # all of exudyn's are

@@ -101,8 +101,8 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         lines.append("#   stepping.adaptiveStep = False")
     linear = "simulationSettings.linearSolver"
     if complete["linear_solver"] != defaults["linear_solver"]:
-        name = complete["linear_solver"]
-        lines.append(f"#   {linear}.solverType = exu.LinearSolverType.{name}")
+        solver = complete["linear_solver"]
+        lines.append(f"#   {linear}.solverType = exu.LinearSolverType.{solver}")
     if complete["ignore_singular"] == "enable":
         lines.append(f"#   {linear}.ignoreSingularJacobian = True")
     title = "ONLY TO MEASURE AS WE DID, in a system with nothing else in it:"

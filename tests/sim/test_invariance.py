@@ -20,6 +20,8 @@ from tests.worlds.other_way import mirrored
 
 SCENES = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper")
 STEPS_PER_TURN = 400
+SOLVED = 1e-9
+"""As pure numbers: errors up to this are where an engine ends that solves for its joints."""
 
 
 def at_speed(scene: Scene, speed_rad_s: float) -> Scene:
@@ -81,4 +83,6 @@ def test_pure_number_errors_stay_within_a_factor_of_two(
     plain = plain_errors(name, engine)
     other = pure_errors(CHANGES[change](load_scene(name)), engine)
     for kind, error in plain.items():
+        if max(error, other[kind]) < SOLVED:
+            continue
         assert error / 2 <= other[kind] <= 2 * error, f"{kind}: {other[kind]:.3g}, not {error:.3g}"
