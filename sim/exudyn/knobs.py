@@ -8,7 +8,7 @@ from models.joints import bodies, joints
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.exudyn.settings import BY_SIZE, INTEGRATORS, JACOBIANS
+from sim.exudyn.settings import BY_NEED, INTEGRATORS, JACOBIANS
 from sim.tuning import Knob, SearchSpace, Work
 
 STEP_US, ITERATION_US, MATRIX_US = 3.400, 0.190, 0.0139
@@ -48,7 +48,7 @@ KNOBS = SearchSpace(
         Knob("spectral_radius", (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)),
         Knob("relative_tolerance", (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)),
         Knob("jacobian", JACOBIANS),
-        Knob("linear_solver", ("EXUdense", BY_SIZE)),
+        Knob("linear_solver", ("EXUdense", BY_NEED)),
     ),
     starts=(
         {"integrator": "TrapezoidalIndex2"},

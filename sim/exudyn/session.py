@@ -17,7 +17,7 @@ from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings
 from sim.exudyn.crank import Course
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.settings import checked
-from sim.exudyn.solver import held, simulation
+from sim.exudyn.solver import constraints, held, initialized, simulation
 from sim.exudyn.system import build, masses
 
 LEAST_DT_S = 1e-9
@@ -50,11 +50,8 @@ class ExudynSession:
                 self._drive_crank(drive)
             self._sensors = self._sense()
             self._system.Assemble()
-            state_size = self._system.systemData
-            unknowns = state_size.ODE2Size() + state_size.AEsize()
-            self._asked = simulation(settings, dt_s, unknowns)
-            self._solver = exu.MainSolverImplicitSecondOrder()
-            self._solver.InitializeSolver(self._system, self._asked)
+            self._asked = simulation(settings, dt_s)
+            self._solver = initialized(self._system, self._asked, settings)
             if self._course is not None and drive == "prescribed":
                 self._set_off(self._course)
 
@@ -135,11 +132,7 @@ class ExudynSession:
 
     def _per_crank(self) -> Array:
         """The rates of all coordinates over that of the crank; the drive is the last constraint."""
-        solver, count = self._solver, self._solver.GetODE2size()
-        size = count + solver.GetAEsize()
-        solver.SetSystemJacobian(np.zeros((size, size)))
-        solver.ComputeJacobianAE(self._system)
-        held_by = np.array(solver.GetSystemJacobian())[count:, :count]
+        held_by = constraints(self._solver, self._system)
         asked = np.zeros(len(held_by))
         asked[-1] = 1.0
         return np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])

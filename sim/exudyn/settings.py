@@ -10,15 +10,16 @@ INTEGRATORS = ("GeneralizedAlpha", "TrapezoidalIndex2")
 JACOBIANS = ("as-needed", "each-step", "each-iteration")
 """When Newton's method works out its matrix anew: where it converges slowly, or always."""
 LINEAR_SOLVERS = ("EXUdense", "EigenDense", "EigenSparse")
-BY_SIZE = "by-size"
-"""A choice of ours: EigenDense, or EigenSparse for more than `MOST_DENSE` unknowns."""
+BY_NEED = "by-need"
+"""A choice of ours: EXUdense, or EigenDense where joints are redundant at the start, or EigenSparse
+for more than `MOST_DENSE` coordinates and constraints."""
 MOST_DENSE = 60
 SWITCH = ("enable", "disable")
 CHOICES = {
     "integrator": INTEGRATORS,
     "jacobian": JACOBIANS,
     "adaptive_step": SWITCH,
-    "linear_solver": (*LINEAR_SOLVERS, BY_SIZE),
+    "linear_solver": (*LINEAR_SOLVERS, BY_NEED),
     "ignore_singular": SWITCH,
 }
 RANGES = {
@@ -65,18 +66,14 @@ TUNED = Profile(
             "to ring for 60 steps and 0.4 for 5; at 0 velocities have 1.7 times the error, and "
             "between 0.3 and 0.5 the accelerations of all shipped scenes the least",
         ),
-        "absolute_tolerance": Setting(
-            1e-12,
-            "at short steps it is this that ends Newton's method, and what it leaves of places is "
-            "in accelerations over dt^2; 1e-14 is below the rounding of a place of 1 m",
-        ),
         "jacobian": Setting(
             "each-step", "3 iterations in a step instead of 8, for a matrix: two thirds of the time"
         ),
         "linear_solver": Setting(
-            BY_SIZE,
-            "EigenDense, which finds out which joints are redundant, for 5 % more time; of more "
-            f"than {MOST_DENSE} coordinates and constraints EigenSparse, 3 to 10 times faster then",
+            BY_NEED,
+            "EXUdense; where joints are redundant at the start EigenDense, which takes as many of "
+            f"them as there have to be; of more than {MOST_DENSE} coordinates and constraints "
+            "EigenSparse, 3 to 10 times faster then",
         ),
         "ignore_singular": Setting("enable", "joints that are redundant take any share of a force"),
     },

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from models.array import Array
 from sim.engine import Settings, SettingValue
-from sim.exudyn.library import exu
-from sim.exudyn.settings import BY_SIZE, MOST_DENSE
+from sim.exudyn.library import exu, quiet
+from sim.exudyn.settings import BY_NEED, MOST_DENSE
 
 
-def simulation(settings: Settings, dt_s: float, unknowns: int) -> Any:
+def simulation(settings: Settings, dt_s: float) -> Any:
     """exudyn's settings of a simulation that writes no files and prints nothing of its own.
 
-    Its sensors keep every step, and no step is longer than ``dt_s``. ``unknowns`` counts the
-    coordinates and constraints of the system.
+    Its sensors keep every step, and no step is longer than ``dt_s``.
     """
     asked = exu.SimulationSettings()
     asked.solution.file.write = False
@@ -33,11 +35,43 @@ def simulation(settings: Settings, dt_s: float, unknowns: int) -> Any:
     newton.useModifiedNewton = settings["jacobian"] != "each-iteration"
     newton.modifiedNewtonJacUpdatePerStep = settings["jacobian"] == "each-step"
     linear = str(settings["linear_solver"])
-    if linear == BY_SIZE:
-        linear = "EigenDense" if unknowns <= MOST_DENSE else "EigenSparse"
-    asked.linearSolver.solverType = getattr(exu.LinearSolverType, linear)
+    if linear != BY_NEED:
+        asked.linearSolver.solverType = getattr(exu.LinearSolverType, linear)
     asked.linearSolver.ignoreSingularJacobian = settings["ignore_singular"] == "enable"
     return asked
+
+
+def initialized(system: Any, asked: Any, settings: Settings) -> Any:
+    """A solver of the system, at its start, by the linear solver that it needs if that is left to
+    us."""
+    solver = exu.MainSolverImplicitSecondOrder()
+    if settings["linear_solver"] == BY_NEED:
+        with quiet([]):  # it warns of what is looked for here
+            solver.InitializeSolver(system, asked)
+        asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
+    solver.InitializeSolver(system, asked)
+    return solver
+
+
+def _needed(solver: Any, held_by: Array) -> Any:
+    """The linear solver for a system of that size, and of constraints that are redundant or not."""
+    if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
+        return exu.LinearSolverType.EigenSparse
+    real = held_by[np.any(held_by != 0.0, axis=1)]  # a point on a line has an empty one
+    scale = np.abs(real).max(axis=1, keepdims=True)
+    if np.linalg.matrix_rank(real / scale, tol=1e-9) < len(real):
+        return exu.LinearSolverType.EigenDense
+    return exu.LinearSolverType.EXUdense
+
+
+def constraints(solver: Any, system: Any) -> Array:
+    """The derivatives of the constraints with respect to the coordinates, a row each, as exudyn has
+    them now; afterwards the solver has to be initialized again."""
+    count = solver.GetODE2size()
+    size = count + solver.GetAEsize()
+    solver.SetSystemJacobian(np.zeros((size, size)))
+    solver.ComputeJacobianAE(system)
+    return np.array(solver.GetSystemJacobian())[count:, :count]
 
 
 def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
