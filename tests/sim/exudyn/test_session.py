@@ -140,7 +140,7 @@ def test_accelerations_are_off_by_a_step_at_the_start_and_settle_sooner_where_tu
             off(FOURBAR, ran(profile=profile, per_turn=n), "rocker", "alpha") for n in (400, 1600)
         )
         assert 3.0 < coarse[:settled].max() / fine[:settled].max() < 5.0
-        assert fine[settled:].max() < 0.02 * fine[:settled].max()
+        assert fine[settled:].max() < 0.03 * fine[:settled].max()
         ringing.append(fine[10:50].max())
     assert ringing[1] > 100.0 * ringing[0]
 
@@ -152,7 +152,7 @@ def test_accelerations_are_off_by_a_step_at_the_start_and_settle_sooner_where_tu
 def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
     law: str, settings: Settings
 ) -> None:
-    """The trapezoidal rule damps nothing: it would be off by what its start is off by ever after."""
+    """The trapezoidal rule damps nothing: what is wrong at the start would be so ever after."""
     scene = driven_by(LAWS[law])
     coarse, fine = (
         off(scene, ran(scene, settings=settings, per_turn=n), "rocker", "alpha") for n in (200, 800)
