@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from models.errors import CrankcheckError, shown
 from reports.plan.chosen import chosen_engines
 from reports.plan.study import Study, StudyValue, Variant
-from sim.registry import engine
+from sim.registry import engine, usual
 from sim.settings import profile_of
 
 Overrides = Mapping[str, Mapping[str, StudyValue | list[StudyValue]]]
@@ -31,11 +31,16 @@ def chosen_study(study: Study, choice: Choice, *, is_shipped: bool) -> Study:
     """The study with a choice in place of what it says itself.
 
     Settings are varied in every variant of their engine; of the shipped study, in profile tuned
-    alone, or in those profiles that are named. Raises CrankcheckError for an unknown engine or
-    profile, and for an engine of which the study has no variant.
+    alone, or in those profiles that are named. An engine that is named and of which the shipped
+    study has no variant is there with all its profiles. Raises CrankcheckError for an unknown
+    engine or profile, and for an engine of which another study has no variant.
     """
-    engines = chosen_engines(choice.engines)
+    engines = chosen_engines(choice.engines or [*usual(), *(v.engine for v in study.variants)])
     variants = list(study.variants)
+    if is_shipped:
+        lacking = set(engines) - {variant.engine for variant in variants}
+        added = [(e, p) for e in engines if e in lacking for p in engine(e).profiles]
+        variants += [Variant(engine=e, profile=p) for e, p in added]
     if choice.profiles or (choice.overrides and is_shipped):
         profiles = list(dict.fromkeys(choice.profiles or ("tuned",)))
         named = [(e, profile_of(engine(e), p).name) for p in profiles for e in engines]
@@ -48,9 +53,9 @@ def chosen_study(study: Study, choice: Choice, *, is_shipped: bool) -> Study:
             else v
             for v in variants
         ]
-    if not variants:
+    if lost := [name for name in choice.engines if name not in {v.engine for v in variants}]:
         raise CrankcheckError(
-            f"--engine {', '.join(choice.engines)}: the study has no variant of it; add --profile"
+            f"--engine {', '.join(lost)}: the study has no variant of it; add --profile"
         )
     return study.model_copy(
         update={
