@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.exudyn.settings import AS_SHIPPED
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE
 from sim.snippets import SnippetWriter, Stepping
 
 WIDTH = 96
@@ -100,18 +100,23 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
     if complete["adaptive_step"] == "disable":
         lines.append("#   stepping.adaptiveStep = False")
     linear = "simulationSettings.linearSolver"
-    if complete["linear_solver"] != defaults["linear_solver"]:
+    by_need = complete["linear_solver"] == BY_NEED
+    if complete["linear_solver"] != defaults["linear_solver"] and not by_need:
         solver = complete["linear_solver"]
         lines.append(f"#   {linear}.solverType = exu.LinearSolverType.{solver}")
-    if complete["ignore_singular"] == "enable":
+    if complete["ignore_singular"] == "enable" and not by_need:
         lines.append(f"#   {linear}.ignoreSingularJacobian = True")
     title = "ONLY TO MEASURE AS WE DID, in a system with nothing else in it:"
-    harm = (
-        ["A singular matrix is to be ignored where joints are redundant; elsewhere it is a fault."]
-        if complete["ignore_singular"] == "enable"
-        else []
+    redundant = (
+        f"Where joints are redundant: {linear}.solverType = exu.LinearSolverType.EigenDense and "
+        "ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be told of. "
+        f"Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
     )
-    return [*_comment([title]), *lines, *_comment(harm)] if lines else []
+    return [
+        *(_comment([title]) if lines else []),
+        *lines,
+        *(_comment([redundant]) if by_need else []),
+    ]
 
 
 def _comment(paragraphs: Sequence[str]) -> list[str]:
