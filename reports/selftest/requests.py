@@ -149,7 +149,7 @@ _fault = partial(Fault, "request", rule="CC117", scenes=(FOURBAR, SLIDER, SHAPER
 FAULTS = (
     _fault(
         "engine-other",
-        "the other engine's run",
+        "another engine's run",
         plant=_run_of(_engine_for, renamed=False),
         says=("engine: asked for",),
         needs=lambda name: other_engine(name) is not None,
