@@ -52,28 +52,24 @@ class ExudynSession:
             self._system.Assemble()
             self._asked = simulation(settings, dt_s)
             self._solver = initialized(self._system, self._asked, settings)
-            if self._course is not None and drive == "prescribed":
+            if self._course is not None:
                 self._set_off(self._course)
 
     def _drive_crank(self, drive: Drive) -> None:
         """Add what turns the crank. Constant speeds are parameters; exudyn calls back for those of
         another law."""
         law = self._scene.driver.law
-        if not isinstance(law, ConstantSpeed):
-            self._course = Course(law, self._start_s, self._dt)
         ends = self._model.crank_markers(self._scene.driver.link)
         if drive == "servo":
             gain = float(self._settings["servo_gain"]) * inertia_scale(self._scene)
             self._add_motor(ends, gain * law.peak_speed_rad_s)
             return
-        told: dict[str, object] = {}
+        told: dict[str, object]
         if isinstance(law, ConstantSpeed):
             told = {"velocityLevel": True, "offset": law.speed_rad_s}
-        elif self._course:
-            told = {
-                "offsetUserFunction": self._course.angle,
-                "offsetUserFunction_t": self._course.speed,
-            }
+        else:
+            self._course = course = Course(law, self._start_s, self._dt)
+            told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
         self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
 
     def _add_motor(self, ends: list[Any], gain: float) -> None:
@@ -204,6 +200,7 @@ class ExudynSession:
                     # A clock that adds up its steps would leave, once late by 1e-10 s, that to do.
                     clock.currentTime = (end - 1) * self._dt if adaptive else clock.currentTime
                     clock.endTime = end * self._dt
+                    self._asked.solution.file.writeInitialValues = end == ends[0]
                     if not self._solver.SolveSteps(self._system, self._asked):
                         return str(self._solver.GetErrorString())
             except RuntimeError as error:  # all of exudyn's are

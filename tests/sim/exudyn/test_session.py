@@ -82,6 +82,14 @@ def test_the_clock_does_not_add_up_its_steps(adaptive: str) -> None:
     assert session._system.systemData.GetTime() == session._solver.it.currentTime
 
 
+@pytest.mark.parametrize("adaptive", ["enable", "disable"])
+def test_the_sensors_keep_each_step_once_and_begin_anew_at_each_stretch(adaptive: str) -> None:
+    session = opened(adaptive_step=adaptive)
+    for steps in (100, 50):
+        session.record(steps, 5)
+        assert len(session._system.GetSensorStoredData(session._sensors[0])) == steps + 1
+
+
 def test_steps_in_one_go_are_the_same_as_steps_one_by_one() -> None:
     one, other = (ran(settings={"adaptive_step": each}) for each in ("enable", "disable"))
     assert one.motion is not None
