@@ -189,18 +189,15 @@ class ExudynSession:
         self._asked.solution.sensors.active = log
         if self._course is not None:
             self._course.reach(self._done + steps)
-        first = self._done + 1
-        self._done += steps
-        clock = self._solver.it
-        adaptive = clock.adaptiveStep
-        ends = range(first, self._done + 1) if adaptive else (self._done,)
+        done, self._done = self._done, self._done + steps
+        clock, length = self._solver.it, 1 if self._solver.it.adaptiveStep else steps
         with quiet(self._heard):
             try:
-                for end in ends:
-                    # A clock that adds up its steps would leave, once late by 1e-10 s, that to do.
-                    clock.currentTime = (end - 1) * self._dt if adaptive else clock.currentTime
-                    clock.endTime = end * self._dt
-                    self._asked.solution.file.writeInitialValues = end == ends[0]
+                for start in range(done, self._done, length or 1):
+                    # It would count steps from its start, and times up to a rounding of its own.
+                    clock.startTime = clock.currentTime = start * self._dt
+                    clock.endTime = (start + length) * self._dt
+                    self._asked.solution.file.writeInitialValues = start == done
                     if not self._solver.SolveSteps(self._system, self._asked):
                         return str(self._solver.GetErrorString())
             except RuntimeError as error:  # all of exudyn's are

@@ -90,6 +90,16 @@ def test_the_sensors_keep_each_step_once_and_begin_anew_at_each_stretch(adaptive
         assert len(session._system.GetSensorStoredData(session._sensors[0])) == steps + 1
 
 
+def test_two_stretches_in_one_go_are_one() -> None:
+    whole, parts = (opened(adaptive_step="disable") for _ in range(2))
+    whole.step(150)
+    parts.step(100)
+    parts.record(50, 5)
+    for one, other in zip(whole.read().bodies.values(), parts.read().bodies.values(), strict=True):
+        np.testing.assert_allclose(one.theta, other.theta, atol=1e-12)
+        np.testing.assert_allclose(one.omega, other.omega, atol=1e-9)
+
+
 def test_steps_in_one_go_are_the_same_as_steps_one_by_one() -> None:
     one, other = (ran(settings={"adaptive_step": each}) for each in ("enable", "disable"))
     assert one.motion is not None
