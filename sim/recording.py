@@ -83,6 +83,8 @@ def _sound(scene: Scene, log: Log, apart_m: Mapping[str, Array], runaway: float)
     if count == len(bad) and not log.diverged:
         return count, ""
     when = float(poses.time_s[min(count, len(bad) - 1)])
+    if log.stopped and count == len(bad):
+        return count, f"stopped after {when:.6g} s: {log.stopped}"
     return max(count, 1), f"came apart at {when:.6g} s"
 
 

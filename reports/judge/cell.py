@@ -22,6 +22,7 @@ from reports.judge.tolerance import limits
 from sim.engine import Drive, Engine, Run, SettingValue
 from sim.registry import engine
 from sim.run import run, setup
+from sim.settings import profile_of, resolved
 
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
@@ -129,8 +130,9 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", left_words(errors.departure)
     adapter, seen = runs.adapter if runs else engine(cell.engine), None
+    placing = adapter.placing(resolved(profile_of(adapter, cell.profile), cell.settings))
     if cell.converge and errors and runs:
-        nature = adapter.placing, adapter.order
+        nature = placing, adapter.order
         seen = followed(truth, cell.dt_s, errors, cell.tolerance, runs.run, *nature)
     evidence = Evidence(
         status=status,
@@ -141,7 +143,7 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
         convergence=seen,
         gated=cell.gated,
         profile="" if runs and runs.given else cell.profile,
-        placing=adapter.placing,
+        placing=placing,
         order=adapter.order,
         unasked=tuple(runs.unasked) if runs else None,
     )

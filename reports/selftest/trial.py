@@ -18,8 +18,7 @@ from reports.compare.beside import truth_of
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.fault import FOURBAR, Fault
-from reports.selftest.requests import PROFILE
+from reports.selftest.fault import FOURBAR, PROFILE, Fault
 from reports.selftest.unseen import UNSEEN, Unseen
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all

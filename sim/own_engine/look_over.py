@@ -17,7 +17,7 @@ NEEDED = tuple(
     for each in fields(Engine)
     if each.default is MISSING and each.default_factory is MISSING
 )
-CALLED = ("version", "check", "open", "holds", "in_seconds")
+CALLED = ("version", "check", "open", "holds", "placing", "in_seconds")
 
 
 def looked_over(spelling: str, value: object) -> Engine:
@@ -41,7 +41,25 @@ def looked_over(spelling: str, value: object) -> Engine:
     }
     if faults := list(_faults(given)):
         raise EngineError(f"engine {spelling}: {'; '.join(faults)}")
-    return Engine(**given)
+    made = Engine(**given)
+    if faults := list(_faults_of_placing(made)):
+        raise EngineError(f"engine {spelling}: {'; '.join(faults)}")
+    return made
+
+
+def _faults_of_placing(made: Engine) -> Iterator[str]:
+    """What it says of places under the settings of its profiles."""
+    for name, profile in made.profiles.items():
+        settings = {each: setting.value for each, setting in profile.settings.items()}
+        try:
+            found: object = made.placing(settings)
+        except Exception as error:  # whatever somebody else's function raises
+            found = error
+        if found not in get_args(Placing):
+            yield (
+                f"placing of profile {shown(name)} gives {_kind(found)}; give "
+                f"{' or '.join(get_args(Placing))}"
+            )
 
 
 def _faults(given: Mapping[str, Any]) -> Iterator[str]:
@@ -55,8 +73,6 @@ def _faults(given: Mapping[str, Any]) -> Iterator[str]:
     for name in CALLED:
         if name in given and not callable(given[name]):
             yield f"{name} is {_kind(given[name])}; give a function"
-    if given.get("placing", "solved") not in get_args(Placing):
-        yield f"placing is {shown(given['placing'])}; use {' or '.join(get_args(Placing))}"
     if type(given.get("order", 1)) is not int or given.get("order", 1) < 1:
         yield f"order is {shown(given['order'])}; give a whole number above 0"
     if not isinstance(said := given.get("reports_accelerations", True), bool):

@@ -77,7 +77,7 @@ def test_it_has_its_adapter_alone(folder: Path) -> None:
         ("penalty_engine:VERSION", "found '1.0', which lacks name"),
         ("penalty_engine:", "write it package.module:ATTRIBUTE"),
         ("../penalty_engine.py:ENGINE", "write it package.module:ATTRIBUTE"),
-        ("penalty_engine", "unknown; there are mujoco, pymunk; one of your own is written"),
+        ("penalty_engine", "unknown; there are mujoco, pymunk, exudyn; one of your own is written"),
     ],
 )
 def test_what_is_not_to_be_found_is_told_with_what_would_work(text: str, words: str) -> None:
@@ -112,7 +112,11 @@ def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words:
         (", PROFILES, lambda", ", [], lambda", "profiles is a list; give a dict of Profile"),
         ("lambda: VERSION", "VERSION", "version is '1.0'; give a function"),
         ("cc.Setting(c, why)", "c", "'damping' is 0.1; give a Setting"),
-        ("reports_accelerations=False", "placing='cast'", "placing is 'cast'; use integrated"),
+        (
+            "reports_accelerations=False",
+            "placing=lambda settings: 'cast'",
+            "placing of profile 'tuned' gives 'cast'; give integrated",
+        ),
         ("reports_accelerations=False", "order=0", "order is 0; give a whole number above 0"),
         ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
     ],

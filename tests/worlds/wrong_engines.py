@@ -12,7 +12,18 @@ import numpy as np
 
 from models.motion import State
 from models.scene import Scene
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Session, Setting, Settings
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Engine,
+    Facts,
+    Log,
+    Placing,
+    Poses,
+    Session,
+    Setting,
+    Settings,
+)
 from tests.worlds.fake.engine import FakeEngine
 
 Opened = Callable[[Scene, State, Settings, float, Drive], Session]
@@ -253,8 +264,15 @@ def _blunt(sound: Engine) -> Engine:
     return opening(sound, refused)
 
 
+class _Integrated(FakeEngine):
+    """It has its places from the reference, and says otherwise."""
+
+    def placing(self, settings: Settings) -> Placing:
+        return "integrated"
+
+
 def _exact(_: Engine) -> Any:
-    return FakeEngine(placing="integrated", drives=("prescribed", "servo"))
+    return _Integrated(drives=("prescribed", "servo"))
 
 
 FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {

@@ -62,7 +62,7 @@ def _drive_fault(subject: Subject, turns: float) -> str:
 
 
 def _shrinking(subject: Subject) -> Iterator[str]:
-    if subject.engine.placing == "solved":
+    if subject.engine.placing(subject.settings()) == "solved":
         raise NotTriedError("placing is solved, where errors need not shrink")
     errors, unit = [], ""
     for steps in STEPS:
@@ -88,16 +88,17 @@ def _shrinking(subject: Subject) -> Iterator[str]:
 
 def _placing(subject: Subject) -> Iterator[str]:
     engine = subject.engine
+    placing = engine.placing(subject.settings())
     for steps in (180, 720):
         errors = subject.errors(subject.ran(steps, 1.0))
         if errors is None:
             yield f"with {steps} steps a turn nothing is logged"
             return
-        if engine.placing == "solved":
+        if placing == "solved":
             worst = largest(row for row in errors.rows if row.quantity in PLACES)
             if worst and not worst.pure <= SOLVED:
                 yield f"placing is solved, and {worst.body} is off by {worst.pure:.2g}"
-        elif near := too_good(errors, engine.placing, engine.order):
+        elif near := too_good(errors, placing, engine.order):
             yield (
                 f"placing is integrated with order {engine.order}, and with {steps} steps a turn "
                 f"{near[0].quantity} of {near[0].body} is off by {near[0].pure:.2g} only"
@@ -180,8 +181,8 @@ CLAUSES = (
         "EC53",
         "places come about as `placing` says",
         "Places that are nearer to the reference than steps can bring them were taken from it.",
-        "Set Engine.placing to solved where joints are solved for in each step; raise Engine.order "
-        "where errors shrink faster than it says.",
+        "Let Engine.placing give solved where joints are solved for in each step; raise "
+        "Engine.order where errors shrink faster than it says.",
         _placing,
     ),
     Clause(

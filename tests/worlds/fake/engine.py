@@ -29,7 +29,8 @@ class FakeEngine:
     ``exact(scene, time_s)`` gives the true motion; ``disturb`` puts the error into the poses;
     velocities are sampled ``velocity_shift`` steps away from the positions, as engines do.
     It follows the driver's law under any drive, of which ``drives`` are not refused.
-    ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged.
+    ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged, and in
+    ``stopped`` why.
     """
 
     exact: Callable[[Scene, Array], Motion] = solve
@@ -37,13 +38,13 @@ class FakeEngine:
     velocity_shift: float = 0.0
     fails_after: int | None = None
     diverges_after: int | None = None
+    stopped: str = ""
     warns: tuple[str, ...] = ()
     refuses: str = ""
     drives: tuple[Drive, ...] = get_args(Drive)
     changes: Callable[[Facts], Facts] = lambda facts: facts
     name: str = "fake"
     reports_accelerations: bool = True
-    placing: Placing = "solved"
     order: int = 2
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
@@ -58,6 +59,10 @@ class FakeEngine:
     def holds(self, settings: Settings, dt_s: float, drive: Drive) -> Settings:
         """And keeps it as it is."""
         return settings
+
+    def placing(self, settings: Settings) -> Placing:
+        """It has its places from the reference."""
+        return "solved"
 
     def in_seconds(self, settings: Settings) -> tuple[str, ...]:
         """It knows no seconds."""
@@ -126,7 +131,10 @@ class FakeSession:
         poses = exact_poses(self._scene, engine, self._start_s + self._dt * at, self._dt)
         diverged = self._done + steps > limit
         self._done += steps
-        return Log(engine.disturb(poses), int(at[-1]), diverged, engine.warns, 1e-6 * steps)
+        stopped = engine.stopped if diverged else ""
+        return Log(
+            engine.disturb(poses), int(at[-1]), diverged, engine.warns, 1e-6 * steps, stopped
+        )
 
     def read(self) -> Poses:
         time_s = np.array([self._start_s + self._dt * self._done])
