@@ -9,12 +9,13 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, ReachError
+from models.motion import Motion
 from models.scene import Scene
 from reports.judge.cell import Cell, Checked, examined, unfinished
 from reports.judge.tolerance import check_names
-from reports.own_model.assembly import assembled, in_joint_words
+from reports.own_model.assembly import assembled, out_of_reach
 from reports.own_model.request import ModelRequest
-from reports.plan.singular import refuse_singular
+from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.own_models import reader, reading_engine
@@ -118,13 +119,14 @@ def read_here(request: ModelRequest) -> Account:
     times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
     try:
         motion = solve(scene, times, bound=False)
+        refuse_singular(scene, dt_s * steps)
     except ReachError as error:
-        words = in_joint_words(own, scene, request.joint)
+        words = out_of_reach(scene, request, str(error))
+        raise CrankcheckError(f"{request.path}: {words}") from None
+    except CrankcheckError as error:
         raise CrankcheckError(
-            f"{request.path}: {error} {words} Ask for less of a turn with --turns, or start "
-            "elsewhere with --start."
+            f"{request.path}: {error}; --start and --turns set the range of joint {request.joint}"
         ) from None
-    refuse_singular(scene, dt_s * steps)
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
     touching = bool(seen.touching)
     touches = [
@@ -137,12 +139,18 @@ def read_here(request: ModelRequest) -> Account:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=found.notes,
+        notes=[*found.notes, *_passed(motion, request)],
         disturbances=[*touches, *seen.passed, *own.disturbances],
         touching=touching,
         profiles=list(own.engine(touching=touching).profiles),
         patch=own.patch(dt_s, touching=touching),
     )
+
+
+def _passed(motion: Motion, request: ModelRequest) -> list[str]:
+    """The change points that a run goes through."""
+    note = continued_note(motion)
+    return [f"joint {request.joint}: {note}"] if note else []
 
 
 def checked_line(line: Line) -> Checked:

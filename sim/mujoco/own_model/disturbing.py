@@ -11,15 +11,8 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
-from sim.mujoco.own_model.closures import name_of, tendon_bodies
-from sim.mujoco.own_model.component import (
-    JOINTS,
-    PARALLEL_DEG,
-    WORLD,
-    body_name,
-    joint_name,
-    rigid,
-)
+from sim.mujoco.own_model.closures import body_name, name_of, tendon_bodies
+from sim.mujoco.own_model.component import JOINTS, PARALLEL_DEG, WORLD, joint_name, rigid
 from sim.mujoco.own_model.linkage import Linkage
 
 SHOWN = 6

@@ -16,14 +16,8 @@ import cmath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from sim.mujoco.own_model.closures import Closure
-from sim.mujoco.own_model.component import (
-    PARALLEL_DEG,
-    WORLD,
-    Component,
-    RigidBody,
-    body_name,
-)
+from sim.mujoco.own_model.closures import Closure, body_name
+from sim.mujoco.own_model.component import PARALLEL_DEG, WORLD, Component, RigidBody
 from sim.mujoco.own_model.fault import ModelError
 
 PAIRS = {
@@ -72,8 +66,9 @@ class Pivot:
 @dataclass(frozen=True)
 class Guide:
     """``rider`` slides along ``direction`` of link ``on``: the whole link, or, where ``mark`` says
-    so, one point of it, through ``through`` on the link ``on``; ``lean`` is by how much the two
-    have to turn against each other for their welds to hold."""
+    so, one point of it, through ``through`` on the link ``on``. Where the whole link slides
+    ``origin`` is a place on it, and ``lean`` is by how much the two have to turn against each other
+    for their welds to hold."""
 
     name: str
     on: int
@@ -81,6 +76,7 @@ class Guide:
     direction: complex
     through: complex
     mark: Mark | None = None
+    origin: Mark | None = None
     lean: complex = 1.0 + 0.0j
 
 
@@ -187,8 +183,15 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
     elif slide is not None and hinge is None:
         link, placement = on_parent
         direction = placement.turn * slide.direction
-        lean = bare.placements[body.id][1].turn / placement.turn
-        yield Guide(slide.name, link, own, direction, placement(slide.anchor), lean=lean)
+        yield Guide(
+            slide.name,
+            link,
+            own,
+            direction,
+            placement(slide.anchor),
+            origin=bare.mark(body.id, slide.anchor),
+            lean=bare.placements[body.id][1].turn / placement.turn,
+        )
     elif slide is not None and hinge is not None:
         upper, lower = (body.parent, body.id) if kind == "point on line" else (body.id, body.parent)
         link, placement = bare.placements[upper]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.scene import Point
+from sim.mujoco.own_model.component import WORLD
 from sim.mujoco.own_model.linkage import Linkage, Mark
 from sim.mujoco.own_model.naming import point_of, scene_name
 
@@ -100,12 +101,21 @@ def _extent(places: Sequence[complex]) -> float:
 
 
 def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
-    """The marks of every pin, and of every point on a line."""
+    """The marks of every pin, of every point on a line, and one of each link that has no other: a
+    link without a point is none."""
+    marked: set[int] = {WORLD}
     for pivot in linkage.pivots:
+        marked.update(mark.link for mark in pivot.marks)
         yield [pivot.name], list(pivot.marks)
     for guide in linkage.guides:
         if guide.mark is not None:
+            marked.add(guide.mark.link)
             yield [guide.name], [guide.mark]
+    for guide in linkage.guides:
+        for mark in (guide.origin, Mark(guide.on, guide.through)):
+            if mark is not None and mark.link not in marked:
+                marked.add(mark.link)
+                yield [guide.name], [mark]
 
 
 def _meet(first: Sequence[Mark], second: Sequence[Mark], tolerance: float) -> bool:

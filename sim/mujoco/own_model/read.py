@@ -16,13 +16,14 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.measure import gaps
-from sim.mujoco.own_model.closures import name_of
+from sim.mujoco.own_model.closures import body_name, name_of
 from sim.mujoco.own_model.component import component
 from sim.mujoco.own_model.disturbing import Disturbance, disturbances
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.file import load
 from sim.mujoco.own_model.limbs import limbs_of
 from sim.mujoco.own_model.linkage import linkage
+from sim.mujoco.own_model.loose import loose_joints
 from sim.mujoco.own_model.naming import scene_name
 from sim.mujoco.own_model.patch import diff, in_words, patched
 from sim.mujoco.own_model.planar_model import PlanarModel
@@ -83,6 +84,19 @@ class ReadModel:
     def open_m(self) -> Mapping[str, float]:
         """By how much each joint is open in that pose [m]."""
         return {name: float(gap[0]) for name, gap in gaps(self.scene, self.drawn()).items()}
+
+    def loose(self) -> list[str]:
+        """The joints that can still move where the driven one is held."""
+        return loose_joints(self.planar.linkage.component)
+
+    def welds(self) -> list[str]:
+        """The welds that make bodies of the linkage one."""
+        component = self.planar.linkage.component
+        return [
+            f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
+            for each in component.closures
+            if each.kind == "weld"
+        ]
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Hold the model in states of its closed form."""

@@ -11,9 +11,10 @@ import numpy as np
 from models.joints import block_name
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver, Link, Scene, Slider
-from sim.mujoco.own_model.component import WORLD, body_name, rigid
+from sim.mujoco.own_model.closures import body_name
+from sim.mujoco.own_model.component import WORLD, rigid
 from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.linkage import Guide, Linkage, Placement
+from sim.mujoco.own_model.linkage import Guide, Linkage, Mark, Placement
 from sim.mujoco.own_model.naming import scene_name
 from sim.mujoco.own_model.points import NamedPoint, pair, points
 
@@ -32,7 +33,8 @@ class Matter:
 
 @dataclass(frozen=True, eq=False)
 class SceneRead:
-    """The scene, without a branch and at speed 1; ``frames`` say, by link id, where the frame of
+    """The scene, without a branch and at speed 1, whose driver's angle is what its joint reads;
+    ``frames`` say, by link id, where the frame of
     each of its bodies is drawn (a link or a block), and ``names`` what the body is called there."""
 
     scene: Scene
@@ -59,8 +61,13 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     _refuse_loose(linkage, found, called)
     matter = {link: matter_of(linkage, link) for link in linkage.links}
     blocks = [link for link in linkage.links if _is_block(linkage, link, found, matter[link])]
+    found += _centres(linkage, found, matter, blocks, called)
     frames = {link: _frame(linkage, link, found, matter[link]) for link in linkage.links}
     frames[WORLD] = Placement()
+    driver, reads = _driver(linkage)
+    if driver == WORLD or driver in blocks:
+        raise ModelError(f"body {called[driver]}: a weld ties the driven body to the ground")
+    frames[driver] = _reading(linkage, frames[driver], reads)
     links = {
         called[link]: Link(
             called[link],
@@ -85,10 +92,6 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
             # A block has its point at its origin, and its x-axis along the line.
             turn = unit * on.turn
             frames[guide.rider] = Placement(turn, -turn * point)
-    driver = linkage.placements[rigid(model, int(model.jnt_bodyid[linkage.component.driven]))][0]
-    if driver == WORLD or driver in blocks:
-        raise ModelError(f"body {called[driver]}: a weld ties the driven body to the ground")
-    start = -cmath.phase(frames[driver].turn)
     ground = {p.name: pair(p.places[WORLD]) for p in found if WORLD in p.places}
     gravity = linkage.component.plane.flat(np.array(model.opt.gravity, dtype=np.float64))
     scene = Scene(
@@ -97,9 +100,14 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
         ground=ground,
         links=links,
         sliders=sliders,
-        driver=Driver(called[driver], ConstantSpeed(start, 1.0)),
+        driver=Driver(called[driver], ConstantSpeed(reads, 1.0)),
         gravity_m_s2=pair(gravity),
     )
+    if not scene.longest_m > 0.0:
+        raise ModelError(
+            "its links have no length: each has one point, in its centre of mass; an error is told "
+            "over the longest link, so give one of them a second pin, or its mass where it is"
+        )
     return SceneRead(scene, frames, names, found)
 
 
@@ -137,8 +145,7 @@ def _refuse_loose(linkage: Linkage, found: Sequence[NamedPoint], called: Mapping
     for guide in linkage.guides:
         for link in (guide.on, guide.rider):
             held[link] = held.get(link, 0) + 1
-    model = linkage.component.model
-    driver = linkage.placements[rigid(model, int(model.jnt_bodyid[linkage.component.driven]))][0]
+    driver, _ = _driver(linkage)
     loose = [link for link in linkage.links if held[link] < 2 and link != driver]
     if loose:
         bodies = {body.id: body for body in linkage.component.bodies}
@@ -152,6 +159,22 @@ def _refuse_loose(linkage: Linkage, found: Sequence[NamedPoint], called: Mapping
         )
 
 
+def _driver(linkage: Linkage) -> tuple[int, float]:
+    """The driven link, and what its joint reads as it is drawn [rad]."""
+    model, joint = linkage.component.model, linkage.component.driven
+    body = rigid(model, int(model.jnt_bodyid[joint]))
+    return linkage.placements[body][0], float(model.qpos0[model.jnt_qposadr[joint]])
+
+
+def _reading(linkage: Linkage, frame: Placement, reads: float) -> Placement:
+    """The frame of the driven link, turned about its origin so that its angle is what the joint
+    reads: all that is told of the driver's angle is in the joint's own coordinate."""
+    model, joint = linkage.component.model, linkage.component.driven
+    own = linkage.placements[rigid(model, int(model.jnt_bodyid[joint]))][1]
+    turn = cmath.exp(-1j * reads) / own.turn
+    return Placement(turn, turn / frame.turn * frame.shift)
+
+
 def _is_block(linkage: Linkage, link: int, found: Sequence[NamedPoint], matter: Matter) -> bool:
     """Whether a sliding link is a block: one point, that holds its mass, and nothing on it."""
     slides = [g for g in linkage.guides if g.rider == link and g.mark is None]
@@ -161,6 +184,27 @@ def _is_block(linkage: Linkage, link: int, found: Sequence[NamedPoint], matter: 
         return False
     size = max(abs(own[0].places[link]), abs(matter.centre), 1e-12)
     return abs(own[0].places[link] - matter.centre) <= CENTRED * size
+
+
+def _centres(
+    linkage: Linkage,
+    found: Sequence[NamedPoint],
+    matter: Mapping[int, Matter],
+    blocks: Sequence[int],
+    called: Mapping[int, str],
+) -> list[NamedPoint]:
+    """The centres of mass of links that have one point alone: such a link has no length, and none
+    of its places but that one would be judged."""
+    named = {point.name for point in found}
+    centres = []
+    for link in linkage.links:
+        own = [point for point in found if link in point.places]
+        apart = abs(own[0].places[link] - matter[link].centre) if own else 0.0
+        if link not in blocks and len(own) == 1 and apart > CENTRED * abs(matter[link].centre):
+            name = scene_name(f"{called[link]}-centre", "P", named)
+            named.add(name)
+            centres.append(NamedPoint(name, (Mark(link, matter[link].centre),)))
+    return centres
 
 
 def _frame(linkage: Linkage, link: int, found: Sequence[NamedPoint], matter: Matter) -> Placement:
