@@ -63,7 +63,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         )
     ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
     if not ranked:
-        raise CrankcheckError(f"{request.path}: {_not_assembled(bare, request)}")
+        raise CrankcheckError(f"{request.path}: {_not_assembled(own, bare, request)}")
     far, scene = ranked[0]
     if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
         choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
@@ -86,9 +86,9 @@ def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
     """What makes the mobility of a model other than 1, by joint and weld."""
     loose, welds = own.loose(), own.welds()
     if loose:
-        return f" With {request.joint} held these still move: {few(loose, SHOWN)}."
+        return f" (with {request.joint} held these still move: {few(loose, SHOWN)})"
     if welds:
-        return f" A weld makes its two bodies one: {few(welds, SHOWN)}; use <connect> for a pin."
+        return f" (a weld makes two bodies one: {few(welds, SHOWN)}; use <connect> for a pin)"
     return ""
 
 
@@ -115,14 +115,14 @@ def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
     return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
 
 
-def _not_assembled(bare: Scene, request: ModelRequest) -> str:
+def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
     """Why no assembly holds in the pose."""
     try:
         solve(bare, np.zeros(1), bound=False)
     except ReachError as error:
         return out_of_reach(bare, request, str(error))
     except CrankcheckError as error:
-        return str(error)
+        return f"{error}{_why_not_one(own, request)}"
     return "it can not be assembled in this pose"
 
 
@@ -131,7 +131,8 @@ def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
 
     The angle of the driver is what its joint reads, so that all is in the joint's own coordinate.
     """
-    start, way = scene.driver.law.start_rad, math.copysign(TURN, request.speed_rad_s)
+    start = float(scene.driver.law.at(np.zeros(1))[0][0])
+    way = math.copysign(TURN, request.speed_rad_s)
     end = start + way * request.turns
     spans = [_near(span, start) for span in reach(scene)]
     if not spans:

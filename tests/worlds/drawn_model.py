@@ -60,7 +60,7 @@ class _Body:
 
 
 def drawn(scene: Scene, state: State, drawing: Drawing | None = None) -> str:
-    """The MJCF text of a scene in a state. Joints are called ``link.point``, as bodies are links."""
+    """The MJCF text of a scene in a state; joints are called ``link.point``."""
     return _Writer(scene, state, drawing or Drawing()).text()
 
 
@@ -172,10 +172,7 @@ class _Writer:
         place = self.placed[body].at(centre_of(self.scene, body))
         # About other axes it is less: only that across the plane is the scene's.
         across = " ".join(repr(part * inertia) for part in (0.6, 0.7, 1.0))
-        x, y = made.axes.T @ self.turn[:, 0], made.axes.T @ self.turn[:, 1]
-        axes = f"{self._vector(x)} {self._vector(y)}"
         quat = quaternion(made.axes.T @ self.turn)
-        del axes
         return (
             f'<inertial pos="{self._local(made, place)}" quat="{self._vector(quat)}" '
             f'mass="{mass!r}" diaginertia="{across}"/>'
@@ -183,7 +180,7 @@ class _Writer:
 
     def _closed(self, pin: LoopPin) -> str:
         """The equality that closes a loop."""
-        one, other = pin.bodies if GROUND != pin.bodies[0] else pin.bodies[::-1]
+        one, other = pin.bodies if pin.bodies[0] != GROUND else pin.bodies[::-1]
         if self.drawing.sites:
             for body in (one, other):
                 place = self._local(self.made[body], self._own(body, pin.point))

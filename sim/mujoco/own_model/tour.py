@@ -49,7 +49,9 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
             for pair in _touching(model, data):
                 touching[pair] = touching.get(pair, 0) + 1
     shares = {pair: count / len(states) for pair, count in touching.items()}
-    return Tour(dict(sorted(shares.items(), key=lambda item: -item[1])), _passed(own, low, high))
+    return Tour(
+        dict(sorted(shares.items(), key=lambda item: (-item[1], item[0]))), _passed(own, low, high)
+    )
 
 
 def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
