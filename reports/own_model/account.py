@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.kinematics import solve
+from analytic.kinematics import repeats_after, solve
 from models.errors import CrankcheckError, ReachError
 from models.motion import Motion
 from models.scene import Scene
@@ -18,7 +19,7 @@ from reports.own_model.request import ModelRequest
 from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.own_models import reader, reading_engine
+from sim.own_models import OwnModel, reader, reading_engine
 
 POSES = 73
 """Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
@@ -77,7 +78,7 @@ def read(request: ModelRequest, limits: Limits) -> Account:
         account = child.call(read_here, request)
     finally:
         child.close()
-    return _unless_lost(account, request)
+    return _unless_lost(account, request, limits)
 
 
 def run_lines(
@@ -101,12 +102,16 @@ def run_lines(
     return checked
 
 
-def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
+def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
     if not isinstance(account, Lost):
         return account
     if isinstance(account.error, CrankcheckError):
         raise account.error
-    raise CrankcheckError(f"{request.path}: reading it {account.status}: {account.reason}")
+    how = "came to no end" if account.status == "timeout" else account.status
+    raise CrankcheckError(
+        f"{request.path}: reading it {how}: {account.reason}; it may take --limit-s "
+        f"{limits.time_s:g} s and --memory-gb {limits.memory_gb:g}"
+    )
 
 
 def read_here(request: ModelRequest) -> Account:
@@ -115,8 +120,10 @@ def read_here(request: ModelRequest) -> Account:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    dt_s, steps = counted(scene, request.dt_s or own.dt_s, None, request.turns)
-    times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
+    dt_s, steps = _counted(scene, own, request)
+    turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
+    poses = max(POSES, math.ceil(POSES * turns))
+    times = np.linspace(0.0, turns * scene.driver.law.period_s, poses)
     try:
         motion = solve(scene, times, bound=False)
         refuse_singular(scene, dt_s * steps)
@@ -145,6 +152,15 @@ def read_here(request: ModelRequest) -> Account:
         profiles=list(own.engine(touching=touching).profiles),
         patch=own.patch(dt_s, touching=touching),
     )
+
+
+def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
+    """Step [s] and number of steps. Raises CrankcheckError as `counted`."""
+    if request.dt_s is None and not 0.0 < own.dt_s < math.inf:
+        raise CrankcheckError(
+            f"{request.path}: its timestep is {own.dt_s:g} s; give it one above 0, or --dt"
+        )
+    return counted(scene, request.dt_s or own.dt_s, None, request.turns)
 
 
 def _passed(motion: Motion, request: ModelRequest) -> list[str]:

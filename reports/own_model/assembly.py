@@ -48,6 +48,8 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
         with the range in the coordinate of the joint; a branch that chooses nothing.
     """
+    if request.start_deg is not None and not math.isfinite(request.start_deg):
+        raise CrankcheckError(f"--start {request.start_deg:g}: give a number of degrees")
     law = ConstantSpeed(own.coordinate_rad(), request.speed_rad_s)
     bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
     try:

@@ -12,6 +12,8 @@ from models.array import Array
 from sim.mujoco.own_model.naming import REMARK
 
 SITE = mujoco.mjtObj.mjOBJ_SITE.value
+IDLE = int(mujoco.mjtDisableBit.mjDSBL_EQUALITY) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+"""Flags of a model that ties nothing."""
 KINDS = {
     kind.value: kind.name.removeprefix("mjEQ_").lower()
     for kind in mujoco.mjtEq.__members__.values()
@@ -58,6 +60,8 @@ def body_name(model: Any, body: int) -> str:
 def equalities(model: Any, data: Any) -> tuple[list[Closure], list[Coupling]]:
     """The active equalities of the model, at the pose of ``data``."""
     closures, couplings = [], []
+    if int(model.opt.disableflags) & IDLE:
+        return [], []
     for index in map(int, np.flatnonzero(model.eq_active0)):
         kind = KINDS[int(model.eq_type[index])]
         name = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)

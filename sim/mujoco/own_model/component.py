@@ -11,6 +11,7 @@ import numpy as np
 
 from models.errors import few, suggestion
 from sim.mujoco.own_model.closures import (
+    IDLE,
     Closure,
     Coupling,
     body_name,
@@ -164,6 +165,8 @@ def _refuse_couplings(model: Any, couplings: Sequence[Coupling], ids: set[int]) 
 def _refuse_open(model: Any, closures: Sequence[Closure]) -> None:
     if not closures:
         idle = int(model.neq - np.count_nonzero(model.eq_active0))
+        if int(model.opt.disableflags) & IDLE:
+            raise ModelError('no loop: <flag equality="disable"/>, or constraint, lets none close')
         found = "no equality is active" if idle else "the model has no <equality>"
         if model.neq > idle:
             found = "no equality ties a body that moves with the driven joint"

@@ -75,6 +75,6 @@ def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
 
 
 def _included(path: Path, folder: Path, name: str) -> Path:
-    """The file that MuJoCo takes: as seen from the main file, else from the one that includes it."""
+    """The file that MuJoCo takes: as seen from the main file, else from the including one."""
     nearer = path.parent / name
     return nearer if nearer.exists() and not (folder / name).exists() else folder / name

@@ -155,4 +155,6 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
     keyframe = None if key is None else names.index(key)
+    if keyframe is not None and not np.isfinite(model.key_qpos[keyframe]).all():
+        raise ModelError(f"{path}: keyframe {key}: its qpos is not finite")
     return ReadModel(path, PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe))

@@ -12,7 +12,7 @@ from models.joints import block_name
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Driver, Link, Scene, Slider
 from sim.mujoco.own_model.closures import body_name
-from sim.mujoco.own_model.component import WORLD, rigid
+from sim.mujoco.own_model.component import WORLD, joint_name, rigid
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.linkage import Guide, Linkage, Mark, Placement
 from sim.mujoco.own_model.naming import scene_name
@@ -60,13 +60,18 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     found = points(linkage, bodies, ())
     _refuse_loose(linkage, found, called)
     matter = {link: matter_of(linkage, link) for link in linkage.links}
-    blocks = [link for link in linkage.links if _is_block(linkage, link, found, matter[link])]
+    driver, reads = _driver(linkage)
+    if driver == WORLD:
+        joint = joint_name(model, linkage.component.driven)
+        raise ModelError(f"joint {joint} can not turn: a weld ties its body to the ground")
+    blocks = [
+        link
+        for link in linkage.links
+        if link != driver and _is_block(linkage, link, found, matter[link])
+    ]
     found += _centres(linkage, found, matter, blocks, called)
     frames = {link: _frame(linkage, link, found, matter[link]) for link in linkage.links}
     frames[WORLD] = Placement()
-    driver, reads = _driver(linkage)
-    if driver == WORLD or driver in blocks:
-        raise ModelError(f"body {called[driver]}: a weld ties the driven body to the ground")
     frames[driver] = _reading(linkage, frames[driver], reads)
     links = {
         called[link]: Link(

@@ -60,6 +60,8 @@ def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
     rows = np.flatnonzero(np.array(data.efc_type) == EQUALITY)
     for closure in own.linkage.component.closures:
         mine = [row for row in rows if int(data.efc_id[row]) == closure.index][:3]
+        if not mine:  # MuJoCo leaves out what holds nothing, such as a pin in the axis of a hinge
+            continue
         gap = abs(plane.flat(np.array([data.efc_pos[row] for row in mine])))
         if not gap <= limit:
             raise ModelError(

@@ -1,4 +1,4 @@
-"""The start tags of an XML text, with where they stand in it: what is read of a file, and edited."""
+"""The start tags of an XML text, and where they stand in it."""
 
 from __future__ import annotations
 
