@@ -21,6 +21,8 @@ from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
 from sim.own_models import OwnModel, reader, reading_engine
 
+NO_MEMORY = "not allocate memory"
+"""What an engine says that may have no more memory."""
 POSES = 73
 """Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
 
@@ -105,7 +107,7 @@ def run_lines(
 def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
     if not isinstance(account, Lost):
         return account
-    if isinstance(account.error, CrankcheckError):
+    if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
         raise account.error
     how = "came to no end" if account.status == "timeout" else account.status
     raise CrankcheckError(

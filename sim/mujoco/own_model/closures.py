@@ -9,6 +9,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.naming import REMARK
 
 SITE = mujoco.mjtObj.mjOBJ_SITE.value
@@ -97,6 +98,8 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure
         rotation = _rotation(data, first) @ relative.reshape(3, 3)
     if not name:
         name = " to ".join(body_name(model, body) for body in (first, second))
+    if not np.isfinite([*anchors, *rotation]).all():
+        raise ModelError(f"<{kind}> {name}: its anchor or pose is not finite")
     turns = kind == "connect" or float(own[10]) == 0.0
     return Closure(
         index,

@@ -6,8 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
 from models.errors import EngineError, cut
 from models.regular import UnreadableError, regular_bytes
+from sim.mujoco.own_model.closures import name_of
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.xml_tags import XmlError, tags
 from sim.mujoco.stepped import compiled_file
@@ -17,6 +21,17 @@ MOST_BYTES = 20_000_000
 DEEPEST = 20
 """Files that include one another."""
 MOST_FILES = 1000
+NUMBERS = (
+    *(("body", f"body_{name}") for name in ("pos", "quat", "ipos", "iquat", "mass", "inertia")),
+    *(("jnt", f"jnt_{name}") for name in ("pos", "axis", "range", "stiffness")),
+    *(("site", f"site_{name}") for name in ("pos", "quat")),
+)
+"""Numbers of a model that MuJoCo takes though they may not be finite."""
+KINDS = {
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "jnt": mujoco.mjtObj.mjOBJ_JOINT,
+    "site": mujoco.mjtObj.mjOBJ_SITE,
+}
 INCLUDING = ("include", "model")
 """Elements that read another MJCF file."""
 CURE = "give an MJCF file, such as model.xml"
@@ -35,9 +50,19 @@ def load(path: Path) -> Any:
         if count == MOST_FILES:
             raise ModelError(f"{path}: it includes more than {MOST_FILES} files")
     try:
-        return compiled_file(path)
+        model = compiled_file(path)
     except EngineError as error:
         raise ModelError(f"{path}: {cut(' '.join(str(error).split()), 600)}") from None
+    for kind, name in NUMBERS:
+        if len(wrong := np.argwhere(~np.isfinite(getattr(model, name)))):
+            at = _called(model, kind, int(wrong[0][0]))
+            raise ModelError(f"{path}: {name} of {at} is not finite")
+    return model
+
+
+def _called(model: Any, kind: str, index: int) -> str:
+    """What a file calls an element, or its number."""
+    return name_of(model, KINDS[kind], index) or f"{kind} {index}"
 
 
 def text_of(path: Path) -> bytes:
