@@ -40,7 +40,7 @@ class Near:
     distance_m: float
 
 
-def points(linkage: Linkage, bodies: Container[str], taken: Container[str]) -> list[NamedPoint]:
+def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
     """All points of the linkage, in the order of the file."""
     groups: list[tuple[list[str], list[Mark]]] = []
     tolerance = SAME * size(linkage)
@@ -55,24 +55,13 @@ def points(linkage: Linkage, bodies: Container[str], taken: Container[str]) -> l
             )
         )
     named: list[NamedPoint] = []
-    used = _Names(taken)
+    used: set[str] = set()
     for names, marks in groups:
         wished = [point_of(name, bodies) for name in names]
         name = scene_name(min(wished, key=len), "P", used)
         used.add(name)
         named.append(NamedPoint(name, tuple(marks)))
     return named
-
-
-class _Names(set[str]):
-    """Names that are used here, or elsewhere."""
-
-    def __init__(self, elsewhere: Container[str]) -> None:
-        super().__init__()
-        self._elsewhere = elsewhere
-
-    def __contains__(self, name: object) -> bool:
-        return super().__contains__(name) or name in self._elsewhere
 
 
 def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[Near]:
