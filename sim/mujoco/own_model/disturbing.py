@@ -126,7 +126,7 @@ def _reading(coordinate: float, hinge: bool) -> str:
 def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
     for tendon in range(model.ntendon):
         if any(rigid(model, body) in ids for body in tendon_bodies(model, tendon)):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or f"tendon {tendon}"
+            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or str(tendon)
             acts = [
                 kind
                 for kind, value in (
@@ -155,7 +155,7 @@ def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
         else:
             on, where = list(range(model.nbody)), "bodies"
         if any(rigid(model, body) in ids for body in on):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or f"actuator {index}"
+            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or str(index)
             yield Disturbance("actuators", f"actuator {name} acts on {where}")
 
 

@@ -41,6 +41,11 @@ class Placement:
     def __call__(self, place: complex) -> complex:
         return self.turn * place + self.shift
 
+    @property
+    def inverse(self) -> Placement:
+        """The way back."""
+        return Placement(1.0 / self.turn, -self.shift / self.turn)
+
     def after(self, first: Placement) -> Placement:
         """This one of what ``first`` gives."""
         return Placement(self.turn * first.turn, self(first.shift))
@@ -67,8 +72,7 @@ class Pivot:
 class Guide:
     """``rider`` slides along ``direction`` of link ``on``: the whole link, or, where ``mark`` says
     so, one point of it, through ``through`` on the link ``on``. Where the whole link slides
-    ``origin`` is a place on it, and ``lean`` is by how much the two have to turn against each other
-    for their welds to hold."""
+    ``meets`` says where its places are on the link ``on``, as the pair is drawn."""
 
     name: str
     on: int
@@ -76,8 +80,7 @@ class Guide:
     direction: complex
     through: complex
     mark: Mark | None = None
-    origin: Mark | None = None
-    lean: complex = 1.0 + 0.0j
+    meets: Placement = Placement()
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +146,7 @@ def _welded(component: Component) -> dict[int, tuple[int, Placement]]:
                 if body in ends and ends[0] != ends[1]:
                     second = _placement(component, weld)
                     if body == ends[1]:
-                        second = Placement(1 / second.turn, -second.shift / second.turn)
+                        second = second.inverse
                     waiting.append(
                         (ends[1] if body == ends[0] else ends[0], placement.after(second))
                     )
@@ -189,8 +192,7 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
             own,
             direction,
             placement(slide.anchor),
-            origin=bare.mark(body.id, slide.anchor),
-            lean=bare.placements[body.id][1].turn / placement.turn,
+            meets=placement.after(bare.placements[body.id][1].inverse),
         )
     elif slide is not None and hinge is not None:
         upper, lower = (body.parent, body.id) if kind == "point on line" else (body.id, body.parent)

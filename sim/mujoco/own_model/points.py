@@ -90,8 +90,8 @@ def _extent(places: Sequence[complex]) -> float:
 
 
 def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
-    """The marks of every pin, of every point on a line, and one of each link that has no other: a
-    link without a point is none."""
+    """The marks of every pin, of every point on a line, and one of each link that carries nothing
+    but lines: a link without a point is none."""
     marked: set[int] = {WORLD}
     for pivot in linkage.pivots:
         marked.update(mark.link for mark in pivot.marks)
@@ -101,10 +101,9 @@ def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
             marked.add(guide.mark.link)
             yield [guide.name], [guide.mark]
     for guide in linkage.guides:
-        for mark in (guide.origin, Mark(guide.on, guide.through)):
-            if mark is not None and mark.link not in marked:
-                marked.add(mark.link)
-                yield [guide.name], [mark]
+        if guide.on not in marked:
+            marked.add(guide.on)
+            yield [guide.name], [Mark(guide.on, guide.through)]
 
 
 def _meet(first: Sequence[Mark], second: Sequence[Mark], tolerance: float) -> bool:

@@ -115,7 +115,7 @@ def _reading(parts: Parts, frame: Placement) -> Placement:
 
 def _block_frame(parts: Parts, guide: Guide, slider: Slider, on: Placement) -> Placement:
     """The frame of a block: its point is its origin, and its x-axis lies along the line."""
-    turn = cmath.exp(-1j * slider.direction_rad) * on.turn
+    turn = cmath.exp(-1j * slider.direction_rad) * on.turn * guide.meets.turn
     return Placement(turn, -turn * parts.point(slider.point).places[guide.rider])
 
 
@@ -127,7 +127,7 @@ def _slider(
     direction = cmath.phase(on.turn * guide.direction)
     if guide.mark is None:
         point = parts.points_of(rider)[0]
-        through, wished = point.places[rider], parts.called[rider]
+        through, wished = guide.meets(point.places[rider]), parts.called[rider]
     else:
         point = next(point for point in parts.points if guide.mark in point.marks)
         through, wished = guide.through, point.name
@@ -141,5 +141,5 @@ def _slider(
         matter = parts.matter[rider]
         return Slider(*common, mass_kg=matter.mass_kg, inertia_kg_m2=matter.inertia_kg_m2)
     # From the frame of the guide to that of the link.
-    turn = frames[rider].turn * guide.lean / on.turn
+    turn = frames[rider].turn / (guide.meets.turn * on.turn)
     return Slider(*common, link=parts.called[rider], angle_rad=-cmath.phase(turn) - direction)

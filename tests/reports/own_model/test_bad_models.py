@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import pytest
 
 from models.errors import CrankcheckError
-from reports.own_model.account import Account, Line, checked_line, read, read_here
+from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
 from reports.own_model.request import ModelRequest
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
@@ -266,3 +267,10 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
         read(ModelRequest(path, "A", 10.0), Limits(30.0, 1.0))
     with pytest.raises(CrankcheckError, match=r"reading it came to no end: .* --limit-s 0\.01 s"):
         read(ModelRequest(path, "A", 10.0), Limits(0.01, 8.0))
+
+
+def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
+    """In a process of its own (0.4 s), which is ended."""
+    account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])
+    (line,) = run_lines(account, Limits(0.01, 2.0))
+    assert (line.verdict, line.status, line.reason) == ("out", "timeout", "no end within 0.01 s")

@@ -116,6 +116,21 @@ def test_masses_and_inertias_come_from_geoms(tmp_path: Path) -> None:
     assert math.hypot(*rocker.centre_m) == pytest.approx(0.1)
 
 
+def test_what_is_fixed_to_a_body_adds_to_its_mass(tmp_path: Path) -> None:
+    weight = '<body name="weight" pos="0.1 0 0.3"><geom size="0.05" type="sphere" mass="2"/></body>'
+    bare = planted('size="0.004"', 'size="0.004" mass="0.5"')
+    alone = account(tmp_path, bare).scene.links["rocker"]
+    both = bare.replace('<site name="rocker-tip"', weight + '<site name="rocker-tip"')
+    rocker = account(tmp_path, both).scene.links["rocker"]
+    assert rocker.mass_kg == pytest.approx(2.5)
+    apart = abs(complex(0.1, 0.3) - complex(-0.03313281, 0.09435156))
+    sphere = 0.4 * 2.0 * 0.05**2
+    assert rocker.inertia_kg_m2 == pytest.approx(
+        alone.inertia_kg_m2 + sphere + 0.5 * 2.0 / 2.5 * apart**2
+    )
+    assert math.dist(rocker.centre_m, alone.centre_m) == pytest.approx(2.0 / 2.5 * apart)
+
+
 @pytest.mark.parametrize("beside", ["main", "includer"])
 def test_includes_are_read_from_the_main_folder_or_that_of_the_includer(
     beside: str, tmp_path: Path
