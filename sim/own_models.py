@@ -37,8 +37,8 @@ class Disturbance:
 class OwnModel(Protocol):
     """A model as it was read.
 
-    Its ``scene`` has no branch, and a driver that turns at 1 rad/s from where the model is drawn;
-    ``dt_s`` is the model's own step [s].
+    Its ``scene`` has no branch, and a driver that turns at 1 rad/s from where the model is drawn,
+    and whose angle is what its joint reads; ``dt_s`` is the model's own step [s].
     """
 
     @property
@@ -67,6 +67,14 @@ class OwnModel(Protocol):
 
     def open_m(self) -> Mapping[str, float]:
         """By how much each joint of the scene is open in that pose [m]."""
+        ...
+
+    def loose(self) -> Sequence[str]:
+        """The joints that can still move where the driven one is held."""
+        ...
+
+    def welds(self) -> Sequence[str]:
+        """The welds that make bodies of the linkage one, with these bodies, in words."""
         ...
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:

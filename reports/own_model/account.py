@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from analytic.kinematics import solve
+from analytic.kinematics import repeats_after, solve
 from models.errors import CrankcheckError, ReachError
+from models.motion import Motion
 from models.scene import Scene
 from reports.judge.cell import Cell, unfinished
 from reports.judge.tolerance import check_names
-from reports.own_model.assembly import assembled, in_joint_words
+from reports.own_model.assembly import assembled, out_of_reach
 from reports.own_model.checked_line import CheckedLine, checked, without_run
 from reports.own_model.request import ModelRequest
-from reports.plan.singular import refuse_singular
+from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.own_models import Disturbance, reader, reading_engine
+from sim.own_models import Disturbance, OwnModel, reader, reading_engine
 
+NO_MEMORY = "not allocate memory"
+"""What an engine says that may have no more memory."""
 POSES = 73
 """Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
 
@@ -80,7 +84,7 @@ def read(request: ModelRequest, limits: Limits) -> Account:
         account = child.call(read_here, request)
     finally:
         child.close()
-    return _unless_lost(account, request)
+    return _unless_lost(account, request, limits)
 
 
 def run_lines(
@@ -104,14 +108,15 @@ def run_lines(
     return lines
 
 
-def _unless_lost(account: Account | Lost, request: ModelRequest) -> Account:
+def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
     if not isinstance(account, Lost):
         return account
-    if isinstance(account.error, CrankcheckError):
+    if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
         raise account.error
+    how = "came to no end" if account.status == "timeout" else account.status
     raise CrankcheckError(
-        f"{request.path}: can not be read: {account.status}: {account.reason}; --limit-s and "
-        "--memory-gb set what it may take"
+        f"{request.path}: reading it {how}: {account.reason}; it may take --limit-s "
+        f"{limits.time_s:g} s and --memory-gb {limits.memory_gb:g}"
     )
 
 
@@ -121,19 +126,20 @@ def read_here(request: ModelRequest) -> Account:
     found = assembled(own, request)
     scene = found.scene
     check_names(scene)
-    given_s = own.dt_s if request.steps_per_turn is None else None
-    given_s = given_s if request.dt_s is None else request.dt_s
-    dt_s, steps = counted(scene, given_s, request.steps_per_turn, request.turns)
-    times = np.linspace(0.0, dt_s * steps, max(POSES, round(POSES * request.turns)))
+    dt_s, steps = _counted(scene, own, request)
+    turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
+    poses = max(POSES, math.ceil(POSES * turns))
+    times = np.linspace(0.0, turns * scene.driver.law.period_s, poses)
     try:
         motion = solve(scene, times, bound=False)
+        refuse_singular(scene, dt_s * steps)
     except ReachError as error:
-        words = in_joint_words(own, scene, request.joint)
+        words = out_of_reach(scene, request, str(error))
+        raise CrankcheckError(f"{request.path}: {words}") from None
+    except CrankcheckError as error:
         raise CrankcheckError(
-            f"{request.path}: {error} {words} Ask for less of a turn with --turns, or start "
-            "elsewhere with --start."
+            f"{request.path}: {error}; --start and --turns set the range of joint {request.joint}"
         ) from None
-    refuse_singular(scene, dt_s * steps)
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
     touching = bool(seen.touching)
     met = [
@@ -147,13 +153,31 @@ def read_here(request: ModelRequest) -> Account:
         dt_s=dt_s,
         steps=steps,
         open_m=own.open_m(),
-        notes=found.notes,
+        notes=[*found.notes, *_passed(motion, request)],
         disturbances=[*met, *own.disturbances],
         touching=touching,
         profiles=list(own.engine(touching=touching).profiles),
         patch=own.patch(dt_s, touching=touching),
         files=own.files,
     )
+
+
+def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
+    """Step [s] and number of steps. Raises CrankcheckError as `counted`."""
+    given_s = request.dt_s
+    if given_s is None and request.steps_per_turn is None:
+        if not 0.0 < own.dt_s < math.inf:
+            raise CrankcheckError(
+                f"{request.path}: its timestep is {own.dt_s:g} s; give it one above 0, or --dt"
+            )
+        given_s = own.dt_s
+    return counted(scene, given_s, request.steps_per_turn, request.turns)
+
+
+def _passed(motion: Motion, request: ModelRequest) -> list[str]:
+    """The change points that a run goes through."""
+    note = continued_note(motion)
+    return [f"joint {request.joint}: {note}"] if note else []
 
 
 def checked_line(line: Line) -> CheckedLine:

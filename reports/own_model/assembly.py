@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.kinematics import reach, solve
 from analytic.structure.mobility import analyse
-from models.errors import CrankcheckError, ReachError
+from models.errors import CrankcheckError, ReachError, few
 from models.laws import ConstantSpeed
 from models.poses import Frame, frames
 from models.scene import Driver, Scene
@@ -26,6 +26,7 @@ ALIKE = 0.1
 """A pose that is nearer to the best assembly than to the next, by less than this share, fits
 both."""
 TURN = math.tau
+SHOWN = 6
 
 
 @dataclass(frozen=True)
@@ -47,12 +48,14 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
         with the range in the coordinate of the joint; a branch that chooses nothing.
     """
-    law = ConstantSpeed(_drawn_angle(own), request.speed_rad_s)
+    if request.start_deg is not None and not math.isfinite(request.start_deg):
+        raise CrankcheckError(f"--start {request.start_deg:g}: give a number of degrees")
+    law = ConstantSpeed(own.coordinate_rad(), request.speed_rad_s)
     bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
     try:
         structure = analyse(bare)
     except CrankcheckError as error:
-        raise CrankcheckError(f"{request.path}: {error}") from None
+        raise CrankcheckError(f"{request.path}: {error}{_why_not_one(own, request)}") from None
     keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
     unknown = [key for key in request.branch if key not in keys]
     if unknown:
@@ -62,7 +65,7 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         )
     ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
     if not ranked:
-        raise CrankcheckError(f"{request.path}: {_out_of_reach(own, bare, request)}")
+        raise CrankcheckError(f"{request.path}: {_not_assembled(own, bare, request)}")
     far, scene = ranked[0]
     if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
         choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
@@ -72,8 +75,8 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         )
     notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
     if request.start_deg is not None:
-        start = law.start_rad + math.radians(request.start_deg) - own.coordinate_rad()
-        scene = replace(scene, driver=Driver(scene.driver.link, replace(law, start_rad=start)))
+        law = replace(law, start_rad=math.radians(request.start_deg))
+        scene = replace(scene, driver=Driver(scene.driver.link, law))
     return Assembled(scene, far, tuple(notes))
 
 
@@ -81,10 +84,14 @@ def _words(branch: Mapping[str, int]) -> str:
     return ", ".join(f"{key} {sign:+d}" for key, sign in branch.items())
 
 
-def _drawn_angle(own: OwnModel) -> float:
-    """The angle of the driver in the pose [rad], in (-pi, pi]."""
-    theta = float(own.drawn().bodies[own.scene.driver.link].theta[0])
-    return math.remainder(theta, TURN)
+def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
+    """What makes the mobility of a model other than 1, by joint and weld."""
+    loose, welds = own.loose(), own.welds()
+    if loose:
+        return f" (with {request.joint} held these still move: {few(loose, SHOWN)})"
+    if welds:
+        return f" (a weld makes two bodies one: {few(welds, SHOWN)}; use <connect> for a pin)"
+    return ""
 
 
 def _fits(
@@ -110,25 +117,44 @@ def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
     return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
 
 
-def _out_of_reach(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
-    """Why no assembly holds at the start, with the range in the coordinate of the joint."""
+def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
+    """Why no assembly holds in the pose."""
     try:
         solve(bare, np.zeros(1), bound=False)
     except ReachError as error:
-        return f"{error} {in_joint_words(own, bare, request.joint)}"
+        return out_of_reach(bare, request, str(error))
     except CrankcheckError as error:
-        return str(error)
-    return "it can not be assembled at the start"
+        return f"{error}{_why_not_one(own, request)}"
+    return "it can not be assembled in this pose"
 
 
-def in_joint_words(own: OwnModel, scene: Scene, joint: str) -> str:
-    """The reachable range of the driver in the coordinate of its joint."""
-    law = scene.driver.law
-    shift = own.coordinate_rad() - _drawn_angle(own)
-    spans = [
-        f"{math.degrees(low + shift):.4g} to {math.degrees(high + shift):.4g} deg"
-        for low, high in reach(replace(scene, driver=Driver(scene.driver.link, law)))
-    ]
+def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
+    """Where the driver would go, and where it can, in words; ``otherwise`` where it can go nowhere.
+
+    The angle of the driver is what its joint reads, so that all is in the joint's own coordinate.
+    """
+    start = float(scene.driver.law.at(np.zeros(1))[0][0])
+    way = math.copysign(TURN, request.speed_rad_s)
+    end = start + way * request.turns
+    spans = [_near(span, start) for span in reach(scene)]
     if not spans:
-        return ""
-    return f"In its own coordinate joint {joint} reaches {' and '.join(spans)}."
+        return otherwise
+    reaches = " and ".join(
+        f"{math.degrees(low):.4g} to {math.degrees(high):.4g} deg" for low, high in spans
+    )
+    inside = next((span for span in spans if span[0] <= start <= span[1]), None)
+    cure = "start in between with --start, and take less of a turn with --turns"
+    if inside is not None:
+        left = (inside[1] if way > 0.0 else inside[0]) - start
+        most = math.floor(1e3 * abs(left) / TURN) / 1e3
+        cure = f"take less of a turn, --turns {most:g} at most, or another --start"
+    return (
+        f"joint {request.joint} would turn from {math.degrees(start):.4g} to "
+        f"{math.degrees(end):.4g} deg, and reaches {reaches}, where the loops close; {cure}"
+    )
+
+
+def _near(span: tuple[float, float], angle: float) -> tuple[float, float]:
+    """The range of whole turns on or back that is nearest to an angle."""
+    turns = round((angle - (span[0] + span[1]) / 2) / TURN) * TURN
+    return span[0] + turns, span[1] + turns

@@ -179,10 +179,12 @@ def compiled(xml: str) -> Any:
         raise EngineError(f"MuJoCo refuses the model: {error}") from error
 
 
-def compiled_file(path: Path) -> Any:
-    """The compiled model of a file. Raises EngineError with MuJoCo's own words."""
+def compiled_file(path: Path, text: bytes | None = None) -> Any:
+    """The compiled model of a file, or of another text in its place. Raises EngineError with
+    MuJoCo's own words."""
     with heard(lambda _: None):
         try:
-            return mujoco.MjModel.from_xml_path(str(path))
+            others = {} if text is None else {str(path): text}
+            return mujoco.MjModel.from_xml_path(str(path), others)
         except ValueError as error:
             raise EngineError(f"MuJoCo refuses the model: {error}") from error

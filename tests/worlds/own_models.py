@@ -6,7 +6,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from reports.own_model.account import Line, checked_line, read_here
+from reports.own_model.account import Account, Line, checked_line, read_here
 from reports.own_model.judged import JudgedModel, judged_model
 from reports.own_model.request import ModelRequest
 
@@ -67,3 +67,8 @@ def judged(text: str, joint: str, turns: float = 1.0, dt_s: float | None = None)
         account = read_here(ModelRequest(path, joint, 10.0, turns=turns, dt_s=dt_s))
         lines = [checked_line(Line(account, name)) for name in account.profiles]
     return judged_model(account, lines)
+
+
+def texts(account: Account) -> list[str]:
+    """What can disturb a model, in words."""
+    return [each.text for each in account.disturbances]

@@ -9,8 +9,12 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from sim.mujoco.own_model.fault import ModelError
+from sim.mujoco.own_model.naming import REMARK
 
 SITE = mujoco.mjtObj.mjOBJ_SITE.value
+IDLE = int(mujoco.mjtDisableBit.mjDSBL_EQUALITY) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+"""Flags of a model that ties nothing."""
 KINDS = {
     kind.value: kind.name.removeprefix("mjEQ_").lower()
     for kind in mujoco.mjtEq.__members__.values()
@@ -49,9 +53,16 @@ def name_of(model: Any, kind: Any, index: int) -> str:
     return mujoco.mj_id2name(model, kind.value, index) or ""
 
 
+def body_name(model: Any, body: int) -> str:
+    """The name of a body, or its number."""
+    return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
+
+
 def equalities(model: Any, data: Any) -> tuple[list[Closure], list[Coupling]]:
     """The active equalities of the model, at the pose of ``data``."""
     closures, couplings = [], []
+    if int(model.opt.disableflags) & IDLE:
+        return [], []
     for index in map(int, np.flatnonzero(model.eq_active0)):
         kind = KINDS[int(model.eq_type[index])]
         name = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)
@@ -72,7 +83,8 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure
         anchors = tuple(data.site_xpos[site].copy() for site in ends)
         frames = [data.site_xmat[site].reshape(3, 3) for site in ends]
         rotation = frames[0] @ frames[1].T @ _rotation(data, second)
-        name = name or "-".join(name_of(model, mujoco.mjtObj.mjOBJ_SITE, site) for site in ends)
+        sites = [name_of(model, mujoco.mjtObj.mjOBJ_SITE, site) for site in ends]
+        name = name or REMARK.join(filter(None, sites))
     else:
         first, second = ends
         # In a weld the anchors stand the other way round.
@@ -84,10 +96,14 @@ def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure
         relative = np.empty(9)
         mujoco.mju_quat2Mat(relative, own[6:10] if kind == "weld" else np.array([1.0, 0, 0, 0]))
         rotation = _rotation(data, first) @ relative.reshape(3, 3)
+    if not name:
+        name = " to ".join(body_name(model, body) for body in (first, second))
+    if not np.isfinite([*anchors, *rotation]).all():
+        raise ModelError(f"<{kind}> {name}: its anchor or pose is not finite")
     turns = kind == "connect" or float(own[10]) == 0.0
     return Closure(
         index,
-        name or f"equality {index}",
+        name,
         "connect" if turns else "weld",
         (first, second),
         (anchors[0], anchors[1]),

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
-from models.array import Array
 from models.errors import few, suggestion
-from sim.mujoco.own_model.closures import Closure, Coupling, equalities, name_of
+from sim.mujoco.own_model.closures import (
+    IDLE,
+    Closure,
+    Coupling,
+    body_name,
+    equalities,
+    name_of,
+)
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.plane import Plane
 
@@ -125,11 +131,6 @@ def _not_drivable(model: Any, index: int) -> str:
     return ""
 
 
-def body_name(model: Any, body: int) -> str:
-    """The name of a body, or its number."""
-    return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
-
-
 def joint_name(model: Any, joint: int) -> str:
     """The name of a joint, or that of its body."""
     name = name_of(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
@@ -165,11 +166,15 @@ def _refuse_couplings(model: Any, couplings: Sequence[Coupling], ids: set[int]) 
 
 def _refuse_open(model: Any, closures: Sequence[Closure]) -> None:
     if not closures:
-        off = int(model.neq - np.count_nonzero(model.eq_active0))
-        idle = f", {off} of them not active" if off else ""
+        idle = int(model.neq - np.count_nonzero(model.eq_active0))
+        if int(model.opt.disableflags) & IDLE:
+            raise ModelError('no loop: <flag equality="disable"/>, or constraint, lets none close')
+        found = "no equality is active" if idle else "the model has no <equality>"
+        if model.neq > idle:
+            found = "no equality ties a body that moves with the driven joint"
+            found += f" ({idle} of {model.neq} are not active)" if idle else ""
         raise ModelError(
-            f"no loop: {model.neq} equalities{idle}, none of which ties a body that moves with the "
-            "driven joint; close the loop with <equality><connect .../></equality>"
+            f"no loop: {found}; close the loop with <equality><connect .../></equality>"
         )
 
 
@@ -207,15 +212,3 @@ def _joint(model: Any, data: Any, plane: Plane, index: int) -> PlanarJoint:
         )
     direction = plane.flat(axis)
     return PlanarJoint(index, name, "slide", anchor, direction / abs(direction), 1.0)
-
-
-def heights(joined: Component) -> Iterator[tuple[str, float]]:
-    """By how much the two copies of each closure are apart across the plane [m]."""
-    for each in joined.closures:
-        first, second = each.anchors
-        yield each.name, abs(joined.plane.height(second - first))
-
-
-def world_of(joined: Component, body: int, local: Array) -> Array:
-    """A point of a body in space, as the model is drawn."""
-    return np.asarray(joined.data.xpos[body] + joined.data.xmat[body].reshape(3, 3) @ local)

@@ -10,19 +10,16 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import few
-from sim.mujoco.own_model.closures import name_of, tendon_bodies
-from sim.mujoco.own_model.component import (
-    JOINTS,
-    PARALLEL_DEG,
-    WORLD,
-    body_name,
-    joint_name,
-    rigid,
-)
+from sim.mujoco.own_model.closures import body_name, equalities, name_of, tendon_bodies
+from sim.mujoco.own_model.component import JOINTS, PARALLEL_DEG, WORLD, joint_name, rigid
 from sim.mujoco.own_model.linkage import Linkage
+from sim.mujoco.own_model.misses import misses
+from sim.mujoco.own_model.points import size
 from sim.own_models import Disturbance
 
 SHOWN = 6
+OPEN = 1e-4
+"""A loop that is open by more in a keyframe, over the size of the linkage, is not just rounded."""
 SOFT_S = 0.02
 """MuJoCo's own time constant of a loop; one that is longer is softer."""
 
@@ -34,6 +31,9 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
     ids = {body.id for body in linkage.component.bodies}
     return [
         *_passive(model, ids, linkage.component.driven),
+        *_readings(model, ids),
+        *_keyframes(linkage),
+        *(Disturbance("missed", text) for text in misses(linkage)),
         *_tendons(model, ids),
         *_actuators(model, ids),
         *_loads(linkage),
@@ -67,10 +67,47 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
             span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
             more = ", and it is the driven one" if joint == driven else ""
             yield Disturbance("limits", f"{at}: limited to {span}{more}")
-        ref = float(model.qpos0[model.jnt_qposadr[joint]])
-        if ref:
-            text = f"{at}: ref makes it read {_reading(ref, hinge)} as it is drawn"
-            yield Disturbance("reading", text)
+            yield from _out_of_range(model, joint, at, hinge)
+
+
+def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Disturbance]:
+    """A joint that is drawn outside its limits: its ref is wrong, or they are."""
+    drawn = float(model.qpos0[model.jnt_qposadr[joint]])
+    low, high = (float(end) for end in model.jnt_range[joint])
+    if not low <= drawn <= high:
+        text = f"{at}: it reads {_reading(drawn, hinge)} as it is drawn, outside its limits"
+        yield Disturbance("reading", f"{text}; is its ref right?")
+
+
+def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+    """The joints that a ref makes read something as they are drawn."""
+    readings = [
+        f"{name} {_reading(ref, JOINTS[int(model.jnt_type[joint])] == 'hinge')}"
+        for joint, _, name in _own(model, ids)
+        if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
+    ]
+    if readings:
+        text = f"ref makes joints read as they are drawn: {few(readings, SHOWN)}"
+        yield Disturbance("reading", text)
+
+
+def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
+    """Keyframes in which the loops are open."""
+    component, extent = linkage.component, size(linkage)
+    model, data = component.model, mujoco.MjData(component.model)
+    own = {each.index for each in component.closures}
+    for key in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, key)
+        mujoco.mj_kinematics(model, data)
+        gaps = [
+            (abs(component.plane.flat(each.anchors[1] - each.anchors[0])), each.name)
+            for each in equalities(model, data)[0]
+            if each.index in own
+        ]
+        gap, name = max(gaps)
+        if gap > OPEN * extent:
+            called = name_of(model, mujoco.mjtObj.mjOBJ_KEY, key) or str(key)
+            yield Disturbance("reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m")
 
 
 def _reading(coordinate: float, hinge: bool) -> str:
@@ -81,7 +118,7 @@ def _reading(coordinate: float, hinge: bool) -> str:
 def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
     for tendon in range(model.ntendon):
         if any(rigid(model, body) in ids for body in tendon_bodies(model, tendon)):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or f"tendon {tendon}"
+            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or str(tendon)
             acts = [
                 kind
                 for kind, value in (
@@ -110,7 +147,7 @@ def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
         else:
             on, where = list(range(model.nbody)), "bodies"
         if any(rigid(model, body) in ids for body in on):
-            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or f"actuator {index}"
+            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or str(index)
             yield Disturbance("actuators", f"actuator {name} acts on {where}")
 
 

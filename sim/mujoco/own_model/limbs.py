@@ -86,10 +86,12 @@ class _Moving:
 STILL = _Moving(0j, 0.0, 0j, 0.0, 0j, 0.0)
 
 
-def coordinates(limbs: Limbs, scene: Scene, state: State) -> tuple[Array, Array, Array]:
+def coordinates(
+    limbs: Limbs, scene: Scene, state: State, near: Array
+) -> tuple[Array, Array, Array]:
     """Joint coordinates with their first and second rates at a state, (n,) each, in the order of
-    the freedoms and in the senses of the scene. Raises ValueError where joints can not reach the
-    state: the scene is not that of the limbs."""
+    the freedoms and in the senses of the scene; hinges read the whole turns that bring them nearest
+    to the coordinates ``near``."""
     moving = {GROUND: STILL} | _moving(scene, state)
     q: list[float] = []
     rate: list[float] = []
@@ -99,7 +101,9 @@ def coordinates(limbs: Limbs, scene: Scene, state: State) -> tuple[Array, Array,
         relative = _seen_from(base, moving[limbs.of[limb.body]])
         for values, found in zip((q, rate, push), _joints(limb, relative), strict=True):
             values.extend(found)
-    return np.array(q), np.array(rate), np.array(push)
+    hinges = [freedom.kind == "hinge" for limb in limbs.limbs for freedom in limb.freedoms]
+    turns = np.where(hinges, np.round((near - np.array(q)) / math.tau), 0.0)
+    return np.array(q) + math.tau * turns, np.array(rate), np.array(push)
 
 
 def _moving(scene: Scene, state: State) -> dict[str, _Moving]:

@@ -16,14 +16,8 @@ import cmath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from sim.mujoco.own_model.closures import Closure
-from sim.mujoco.own_model.component import (
-    PARALLEL_DEG,
-    WORLD,
-    Component,
-    RigidBody,
-    body_name,
-)
+from sim.mujoco.own_model.closures import Closure, body_name
+from sim.mujoco.own_model.component import PARALLEL_DEG, WORLD, Component, RigidBody
 from sim.mujoco.own_model.fault import ModelError
 
 PAIRS = {
@@ -46,6 +40,11 @@ class Placement:
 
     def __call__(self, place: complex) -> complex:
         return self.turn * place + self.shift
+
+    @property
+    def inverse(self) -> Placement:
+        """The way back."""
+        return Placement(1.0 / self.turn, -self.shift / self.turn)
 
     def after(self, first: Placement) -> Placement:
         """This one of what ``first`` gives."""
@@ -72,8 +71,8 @@ class Pivot:
 @dataclass(frozen=True)
 class Guide:
     """``rider`` slides along ``direction`` of link ``on``: the whole link, or, where ``mark`` says
-    so, one point of it, through ``through`` on the link ``on``; ``lean`` is by how much the two
-    have to turn against each other for their welds to hold."""
+    so, one point of it, through ``through`` on the link ``on``. Where the whole link slides
+    ``meets`` says where its places are on the link ``on``, as the pair is drawn."""
 
     name: str
     on: int
@@ -81,7 +80,7 @@ class Guide:
     direction: complex
     through: complex
     mark: Mark | None = None
-    lean: complex = 1.0 + 0.0j
+    meets: Placement = Placement()
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +146,7 @@ def _welded(component: Component) -> dict[int, tuple[int, Placement]]:
                 if body in ends and ends[0] != ends[1]:
                     second = _placement(component, weld)
                     if body == ends[1]:
-                        second = Placement(1 / second.turn, -second.shift / second.turn)
+                        second = second.inverse
                     waiting.append(
                         (ends[1] if body == ends[0] else ends[0], placement.after(second))
                     )
@@ -187,8 +186,14 @@ def _pairs(bare: Linkage, body: RigidBody) -> Iterator[Pivot | Guide]:
     elif slide is not None and hinge is None:
         link, placement = on_parent
         direction = placement.turn * slide.direction
-        lean = bare.placements[body.id][1].turn / placement.turn
-        yield Guide(slide.name, link, own, direction, placement(slide.anchor), lean=lean)
+        yield Guide(
+            slide.name,
+            link,
+            own,
+            direction,
+            placement(slide.anchor),
+            meets=placement.after(bare.placements[body.id][1].inverse),
+        )
     elif slide is not None and hinge is not None:
         upper, lower = (body.parent, body.id) if kind == "point on line" else (body.id, body.parent)
         link, placement = bare.placements[upper]

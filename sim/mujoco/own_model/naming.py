@@ -8,6 +8,7 @@ from collections.abc import Container
 MOST = 40
 SEPARATORS = "./:"
 """What stands between the name of a body and that of a thing on it."""
+REMARK = ": "
 
 
 def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
@@ -24,13 +25,10 @@ def scene_name(name: str, otherwise: str, taken: Container[str]) -> str:
 
 
 def point_of(name: str, bodies: Container[str]) -> str:
-    """What a name says of a point: ``crank.B`` on body ``crank`` is ``B``, and what stands before a
-    colon is all that is meant of it."""
-    for sign in SEPARATORS:
-        head, found, tail = name.partition(sign)
-        if found and tail:
-            if head in bodies:
-                return tail
-            if sign == ":":
-                return head
-    return name
+    """What a name says of a point: ``crank.B`` on body ``crank`` is ``B``, and a remark after a
+    colon is left out."""
+    point = name.partition(REMARK)[0] or name
+    for at, sign in enumerate(point):
+        if sign in SEPARATORS and point[:at] in bodies and point[at + 1 :]:
+            return point[at + 1 :]
+    return point

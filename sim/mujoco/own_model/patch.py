@@ -2,114 +2,154 @@
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from difflib import unified_diff
 from pathlib import Path
+from typing import Any
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import EngineError
-from models.mjcf_options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
-from sim.mujoco.own_model.variants import TOLERANCE
+from sim.mujoco.own_model.variants import STIFF_SOLIMP, TOLERANCE, stiff_solref
+from sim.mujoco.own_model.xml_tags import Tag, tags
+from sim.mujoco.settings import INTEGRATORS
 
-EQUALITIES = ("connect", "weld", "joint", "tendon", "flex", "flexvert", "flexstrain", "distance")
-"""Elements of <equality>, which MuJoCo numbers in the order of the file."""
-COMMENT = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
-BLOCK = re.compile(r"<equality\b[^>]*?(?<!/)>.*?</equality\s*>", re.DOTALL)
+ATTRIBUTE = re.compile(rb"""([\w:.-]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
 
-def attributes(dt_s: float) -> tuple[dict[str, str], dict[str, str]]:
-    """The recommended attributes of <option>, and of each element that closes a loop."""
-    impedance = f"{STIFF_IMPEDANCE:g}"
-    return (
-        {"timestep": f"{dt_s:.9g}", "integrator": "RK4", "tolerance": f"{TOLERANCE:g}"},
+@dataclass(frozen=True)
+class Advice:
+    """Attributes to set: of <option>, of its <flag>, and of each element that closes a loop."""
+
+    option: Mapping[str, str]
+    flag: Mapping[str, str]
+    loop: Mapping[str, str]
+
+    def words(self) -> str:
+        """What to set where, in words."""
+        parts = []
+        for place, attributes in (
+            ("in <option>", self.option),
+            ("in its <flag>", self.flag),
+            ("in each element that closes a loop", self.loop),
+        ):
+            if attributes:
+                each = " ".join(f'{name}="{value}"' for name, value in attributes.items())
+                parts.append(f"{place}: {each}")
+        return "set " + "; ".join(parts)
+
+
+def advice(model: Any, dt_s: float, *, touching: bool) -> Advice:
+    """What is recommended at a step, where the model has not got it; contacts are disabled where
+    links are ``touching``."""
+    option = {}
+    if float(model.opt.timestep) != dt_s:
+        option["timestep"] = repr(dt_s)
+    if INTEGRATORS[int(model.opt.integrator)] != "RK4":
+        option["integrator"] = "RK4"
+    if float(model.opt.tolerance) > TOLERANCE:
+        option["tolerance"] = f"{TOLERANCE:g}"
+    off = int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    return Advice(
+        option,
+        {"contact": "disable"} if touching and not off else {},
         {
-            "solref": f"{STIFF_STEPS * dt_s:.9g} {STIFF_DAMPING:g}",
-            "solimp": f"{impedance} {impedance} 0.001 0.5 2",
+            "solref": " ".join(repr(number) for number in stiff_solref(dt_s)),
+            "solimp": " ".join(f"{number:g}" for number in STIFF_SOLIMP),
         },
     )
 
 
-def in_words(dt_s: float, *, touching: bool) -> str:
-    """The same as attributes to set."""
-    option, loop = (
-        " ".join(f'{name}="{value}"' for name, value in each.items()) for each in attributes(dt_s)
-    )
-    flag = ', <flag contact="disable"/>' if touching else ""
-    return f"set in <option>: {option}{flag}; in each element that closes a loop: {loop}"
-
-
-def patched(text: str, loops: Iterable[int], count: int, dt_s: float, *, touching: bool) -> str:
+def patched(raw: bytes, loops: Iterable[int], count: int, advised: Advice) -> bytes:
     """The text of a model with the recommended attributes in it.
 
-    ``loops`` are the numbers of its ``count`` equalities that close loops. Where ``touching`` links
-    would push one another contacts are disabled.
+    ``loops`` are the numbers of its ``count`` equalities that close loops.
 
     Raises
     ------
     EngineError
         The equalities do not all stand in this text, one by one.
     """
-    option, loop = attributes(dt_s)
-    bare = COMMENT.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
-    element = re.compile(rf"<({'|'.join(EQUALITIES)})\b[^>]*>")
-    tags = [
-        (block.start() + tag.start(), block.start() + tag.end())
-        for block in BLOCK.finditer(bare)
-        for tag in element.finditer(block.group())
+    found = tags(raw)
+    own = [tag for tag in found if len(tag.path) == 3 and tag.path[1] == "equality"]
+    if len(own) != count:
+        raise EngineError(f"{len(own)} of its {count} equalities stand in the file itself")
+    edits = [
+        (tag.start, tag.end, _with(raw, tag, advised.loop)) for tag in map(own.__getitem__, loops)
     ]
-    if len(tags) != count:
-        raise EngineError(f"{len(tags)} of its {count} equalities stand in the file itself")
-    edits = [(*tags[number], _with(text[slice(*tags[number])], loop)) for number in loops]
-    edits += _option(text, bare, option, touching=touching)
+    edits += _options(raw, found, advised)
     for start, end, new in sorted(edits, reverse=True):
-        text = text[:start] + new + text[end:]
-    return text
+        raw = raw[:start] + new + raw[end:]
+    return raw
 
 
-def diff(path: Path, text: str, new: str) -> str:
-    """Both texts as a unified diff, which `patch` takes."""
-    lines = difflib.unified_diff(
-        text.splitlines(keepends=True),
-        new.splitlines(keepends=True),
-        path.name,
-        path.name,
-        n=0,
+def diff(path: Path, raw: bytes, new: bytes) -> str:
+    """Both texts as a unified diff, which `patch` takes. Raises UnicodeDecodeError for what is not
+    UTF-8."""
+    lines = unified_diff(_lines(raw), _lines(new), path.name, path.name, n=0)
+    # A last line without an end has to say so.
+    return "".join(
+        line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
     )
-    return "".join(line if line.endswith("\n") else f"{line}\n" for line in lines)
 
 
-def _option(
-    text: str, bare: str, option: Mapping[str, str], *, touching: bool
-) -> list[tuple[int, int, str]]:
-    """Where <option> and its <flag> change; elements that are not there are put in."""
-    edits = []
-    found = re.search(r"<option\b[^>]*>", bare)
-    flag = re.search(r"<flag\b[^>]*>", bare)
-    own = '<flag contact="disable"/>' if touching else ""
-    if found is None:
-        root = re.search(r"<mujoco\b[^>]*>", bare)
-        if root is None:
-            raise EngineError("no <mujoco> stands in the file itself")
-        tag = _with("<option/>", option)
-        new = f"{tag[:-2]}>{own}</option>" if own else tag
-        return [(root.end(), root.end(), f"\n  {new}")]
-    tag = _with(text[found.start() : found.end()], option)
-    if own and flag is not None:
-        edits.append((flag.start(), flag.end(), _with(flag.group(), {"contact": "disable"})))
-    elif own and tag.endswith("/>"):
-        tag = f"{tag[:-2].rstrip()}>{own}</option>"
-    elif own:
-        tag += own
-    return [*edits, (found.start(), found.end(), tag)]
+def _lines(raw: bytes) -> list[str]:
+    """Lines with their ends; those of Windows keep theirs."""
+    return [line + "\n" for line in raw.decode().split("\n")[:-1]] + [
+        line for line in raw.decode().split("\n")[-1:] if line
+    ]
 
 
-def _with(tag: str, attributes: Mapping[str, str]) -> str:
+def _options(raw: bytes, found: list[Tag], advised: Advice) -> Iterator[tuple[int, int, bytes]]:
+    """Where <option> and its <flag> change, the last of each, as it overrides the ones before;
+    elements that are not there are put in."""
+    if not advised.option and not advised.flag:
+        return
+    flag_tag = _tag(b"flag", advised.flag) if advised.flag else b""
+    options = [tag for tag in found if tag.path[1:] == ("option",)]
+    flags = [tag for tag in found if tag.path[1:] == ("option", "flag")]
+    if not options:
+        root = found[0]
+        inner = _tag(b"option", advised.option)
+        if flag_tag:
+            inner = inner[:-2] + b">" + flag_tag + b"</option>"
+        newline = b"\r\n" if b"\r\n" in raw else b"\n"
+        yield root.end, root.end, newline + b"  " + inner
+        return
+    option = options[-1]
+    tag = _with(raw, option, advised.option)
+    if flag_tag and flags:
+        yield flags[-1].start, flags[-1].end, _with(raw, flags[-1], advised.flag)
+    elif flag_tag and tag.endswith(b"/>"):
+        tag = tag[:-2].rstrip() + b">" + flag_tag + b"</option>"
+    elif flag_tag:
+        tag += flag_tag
+    yield option.start, option.end, tag
+
+
+def _tag(name: bytes, attributes: Mapping[str, str]) -> bytes:
+    """An element without content."""
+    return _set(b"<" + name + b"/>", attributes)
+
+
+def _with(raw: bytes, tag: Tag, attributes: Mapping[str, str]) -> bytes:
+    """A start tag of the text with some attributes set."""
+    return _set(raw[tag.start : tag.end], attributes)
+
+
+def _set(tag: bytes, attributes: Mapping[str, str]) -> bytes:
     """A start tag with some attributes set: what is there is replaced, the rest added."""
-    for name, value in attributes.items():
-        own = re.compile(rf"""(\s{name}\s*=\s*)("[^"]*"|'[^']*')""")
-        if own.search(tag):
-            tag = own.sub(lambda found, value=value: f'{found.group(1)}"{value}"', tag)  # type: ignore[misc]
-        else:
-            end = "/>" if tag.endswith("/>") else ">"
-            tag = f'{tag[: -len(end)].rstrip()} {name}="{value}"{end}'
-    return tag
+    left = dict(attributes)
+
+    def replaced(found: re.Match[bytes]) -> bytes:
+        value = left.pop(found.group(1).decode(errors="replace"), None)
+        if value is None:
+            return found.group()
+        return found.group(1) + found.group(2) + f'"{value}"'.encode()
+
+    tag = ATTRIBUTE.sub(replaced, tag)
+    end = b"/>" if tag.endswith(b"/>") else b">"
+    more = "".join(f' {name}="{value}"' for name, value in left.items()).encode()
+    return tag[: -len(end)].rstrip() + more + end if more else tag

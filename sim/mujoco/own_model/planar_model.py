@@ -10,7 +10,8 @@ import numpy as np
 from models.array import Array
 from sim.mujoco.own_model.limbs import Limbs
 from sim.mujoco.own_model.linkage import Linkage
-from sim.mujoco.own_model.scene import Matter, SceneRead, matter_of
+from sim.mujoco.own_model.matter import Matter
+from sim.mujoco.own_model.scene import SceneRead
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,4 +43,4 @@ class PlanarModel:
     def matter(self, body: str) -> Matter:
         """Mass and inertia of a body of the scene, as its bodies in the model add up to."""
         link = next(link for link, name in self.read.names.items() if name == body and link)
-        return matter_of(self.linkage, link)
+        return self.read.parts.matter[link]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.scene import Point
+from sim.mujoco.own_model.component import WORLD
 from sim.mujoco.own_model.linkage import Linkage, Mark
 from sim.mujoco.own_model.naming import point_of, scene_name
 
@@ -39,7 +40,7 @@ class Near:
     distance_m: float
 
 
-def points(linkage: Linkage, bodies: Container[str], taken: Container[str]) -> list[NamedPoint]:
+def points(linkage: Linkage, bodies: Container[str]) -> list[NamedPoint]:
     """All points of the linkage, in the order of the file."""
     groups: list[tuple[list[str], list[Mark]]] = []
     tolerance = SAME * size(linkage)
@@ -54,24 +55,13 @@ def points(linkage: Linkage, bodies: Container[str], taken: Container[str]) -> l
             )
         )
     named: list[NamedPoint] = []
-    used = _Names(taken)
+    used: set[str] = set()
     for names, marks in groups:
         wished = [point_of(name, bodies) for name in names]
         name = scene_name(min(wished, key=len), "P", used)
         used.add(name)
         named.append(NamedPoint(name, tuple(marks)))
     return named
-
-
-class _Names(set[str]):
-    """Names that are used here, or elsewhere."""
-
-    def __init__(self, elsewhere: Container[str]) -> None:
-        super().__init__()
-        self._elsewhere = elsewhere
-
-    def __contains__(self, name: object) -> bool:
-        return super().__contains__(name) or name in self._elsewhere
 
 
 def nearly(found: Sequence[NamedPoint], linkage: Linkage) -> Iterator[Near]:
@@ -100,12 +90,20 @@ def _extent(places: Sequence[complex]) -> float:
 
 
 def _ties(linkage: Linkage) -> Iterator[tuple[list[str], list[Mark]]]:
-    """The marks of every pin, and of every point on a line."""
+    """The marks of every pin, of every point on a line, and one of each link that carries nothing
+    but lines: a link without a point is none."""
+    marked: set[int] = {WORLD}
     for pivot in linkage.pivots:
+        marked.update(mark.link for mark in pivot.marks)
         yield [pivot.name], list(pivot.marks)
     for guide in linkage.guides:
         if guide.mark is not None:
+            marked.add(guide.mark.link)
             yield [guide.name], [guide.mark]
+    for guide in linkage.guides:
+        if guide.on not in marked:
+            marked.add(guide.on)
+            yield [guide.name], [Mark(guide.on, guide.through)]
 
 
 def _meet(first: Sequence[Mark], second: Sequence[Mark], tolerance: float) -> bool:

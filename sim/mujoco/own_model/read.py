@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,27 +12,27 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.errors import EngineError, suggestion
-from models.files import read_text
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive, Engine, Poses, Session, Settings
 from sim.measure import gaps
-from sim.mujoco.own_model.closures import name_of
+from sim.mujoco.own_model.closures import body_name, name_of
 from sim.mujoco.own_model.component import component
 from sim.mujoco.own_model.disturbing import disturbances
 from sim.mujoco.own_model.fault import ModelError
-from sim.mujoco.own_model.file import files, load
+from sim.mujoco.own_model.file import files, load, text_of
 from sim.mujoco.own_model.limbs import limbs_of
 from sim.mujoco.own_model.linkage import linkage
+from sim.mujoco.own_model.loose import loose_joints
 from sim.mujoco.own_model.naming import scene_name
-from sim.mujoco.own_model.patch import diff, in_words, patched
+from sim.mujoco.own_model.patch import advice, diff, patched
 from sim.mujoco.own_model.planar_model import PlanarModel
 from sim.mujoco.own_model.points import nearly
 from sim.mujoco.own_model.scene import scene_of
 from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.tour import tour
-from sim.mujoco.own_model.variants import OFF, checked, profiles
-from sim.mujoco.stepped import VERSION
+from sim.mujoco.own_model.variants import OFF, RECOMMENDED, applied, checked, held, profiles
+from sim.mujoco.stepped import VERSION, compiled_file
 from sim.own_models import Disturbance, Tour
 from sim.tree_poses import body_poses
 
@@ -93,6 +94,19 @@ class ReadModel:
         """By how much each joint is open in that pose [m]."""
         return {name: float(gap[0]) for name, gap in gaps(self.scene, self.drawn()).items()}
 
+    def loose(self) -> list[str]:
+        """The joints that can still move where the driven one is held."""
+        return loose_joints(self.planar.linkage.component)
+
+    def welds(self) -> list[str]:
+        """The welds that make bodies of the linkage one."""
+        component = self.planar.linkage.component
+        return [
+            f"{' and '.join(body_name(component.model, body) for body in each.bodies)}"
+            for each in component.closures
+            if each.kind == "weld"
+        ]
+
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Hold the model in states of its closed form."""
         return tour(self.planar, scene, states)
@@ -110,14 +124,24 @@ class ReadModel:
         return Engine("mujoco", lines, version=lambda: VERSION, check=checked, open=opened)
 
     def patch(self, dt_s: float, *, touching: bool) -> str:
-        """The recommended settings as a diff; in words, where the file does not hold all loops."""
-        text = read_text(self.path)
-        count = int(self.planar.model.neq)
+        """The recommended settings as a diff, that was applied and compiled; in words, where the
+        file does not hold all that it would change."""
+        planar = self.planar
+        advised = advice(planar.model, dt_s, touching=touching)
         try:
-            new = patched(text, self.planar.loops, count, dt_s, touching=touching)
-        except EngineError as error:
-            return f"{error}: {in_words(dt_s, touching=touching)}\n"
-        return diff(self.path, text, new)
+            raw = text_of(self.path)
+            new = patched(raw, planar.loops, int(planar.model.neq), advised)
+            found = compiled_file(self.path, new)
+            text = diff(self.path, raw, new)
+        except (EngineError, UnicodeDecodeError) as error:
+            return f"{error}: {advised.words()}\n"
+        line = profiles((), touching)[RECOMMENDED]
+        settings = {name: setting.value for name, setting in line.settings.items()}
+        wanted = copy.copy(planar.model)
+        applied(wanted, planar.loops, settings, dt_s)
+        if held(found, planar.loops, settings) != held(wanted, planar.loops, settings):
+            return f"what it includes overrides the file itself: {advised.words()}\n"
+        return text
 
 
 def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
@@ -140,4 +164,6 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
     keyframe = None if key is None else names.index(key)
+    if keyframe is not None and not np.isfinite(model.key_qpos[keyframe]).all():
+        raise ModelError(f"{path}: keyframe {key}: its qpos is not finite")
     return ReadModel(path, PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe))

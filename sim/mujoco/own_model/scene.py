@@ -3,42 +3,37 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from models.joints import block_name
 from models.laws import ConstantSpeed
-from models.scene import GROUND, Driver, Link, Scene, Slider
-from sim.mujoco.own_model.component import WORLD, body_name, rigid
+from models.scene import Driver, Link, Scene, Slider
+from sim.mujoco.own_model.component import WORLD, rigid
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.linkage import Guide, Linkage, Placement
 from sim.mujoco.own_model.naming import scene_name
-from sim.mujoco.own_model.points import NamedPoint, pair, points
-
-CENTRED = 1e-9
-"""A centre of mass that is nearer to a point, over the size of things, is in it."""
-
-
-@dataclass(frozen=True)
-class Matter:
-    """Mass [kg], centre of mass as the link is drawn [m], inertia about it across the plane."""
-
-    mass_kg: float
-    centre: complex
-    inertia_kg_m2: float
+from sim.mujoco.own_model.parts import Parts, parts_of
+from sim.mujoco.own_model.points import NamedPoint, pair
 
 
 @dataclass(frozen=True, eq=False)
 class SceneRead:
-    """The scene, without a branch and at speed 1; ``frames`` say, by link id, where the frame of
-    each of its bodies is drawn (a link or a block), and ``names`` what the body is called there."""
+    """The scene, without a branch and at speed 1, whose driver's angle is what its joint reads;
+    ``frames`` say, by link id, where the frame of each of its bodies is drawn (a link or a block),
+    and ``names`` what the body is called there."""
 
     scene: Scene
     frames: Mapping[int, Placement]
     names: Mapping[int, str]
-    points: Sequence[NamedPoint]
+    parts: Parts
+
+    @property
+    def points(self) -> tuple[NamedPoint, ...]:
+        """The points of the scene, as its links are drawn."""
+        return tuple(self.parts.points)
 
 
 def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
@@ -47,168 +42,104 @@ def scene_of(linkage: Linkage, name: str, source: str) -> SceneRead:
     Raises
     ------
     ModelError
-        A link that nothing but its own joint holds, named with the joint; a driven body that is
-        tied to the ground.
+        As `parts_of`; links that have no length.
     """
-    model = linkage.component.model
-    called: dict[int, str] = {WORLD: GROUND}
-    for link in linkage.links:
-        called[link] = scene_name(body_name(model, link), "link", called.values())
-    bodies = {body_name(model, body) for body in range(model.nbody)} | {GROUND}
-    found = points(linkage, bodies, ())
-    _refuse_loose(linkage, found, called)
-    matter = {link: matter_of(linkage, link) for link in linkage.links}
-    blocks = [link for link in linkage.links if _is_block(linkage, link, found, matter[link])]
-    frames = {link: _frame(linkage, link, found, matter[link]) for link in linkage.links}
-    frames[WORLD] = Placement()
-    links = {
-        called[link]: Link(
-            called[link],
-            {p.name: pair(frames[link](p.places[link])) for p in _own(linkage, link, found)},
-            matter[link].mass_kg,
-            pair(frames[link](matter[link].centre)),
-            matter[link].inertia_kg_m2,
-        )
-        for link in linkage.links
-        if link not in blocks
-    }
+    parts = parts_of(linkage)
+    frames = {link: _frame(parts, link) for link in linkage.links}
+    frames |= {WORLD: Placement(), parts.driver: _reading(parts, frames[parts.driver])}
     sliders: dict[str, Slider] = {}
-    names = dict(called)
+    names = dict(parts.called)
     for guide in linkage.guides:
-        slider = _slider(linkage, guide, found, frames, called, matter, sliders, blocks)
+        slider = _slider(parts, guide, frames, sliders)
         sliders[slider.name] = slider
-        if guide.mark is None and guide.rider in blocks:
+        if guide.mark is None and guide.rider in parts.blocks:
             names[guide.rider] = block_name(slider)
-            unit = cmath.exp(-1j * slider.direction_rad)
-            on = frames[guide.on]
-            point = next(p for p in found if p.name == slider.point).places[guide.rider]
-            # A block has its point at its origin, and its x-axis along the line.
-            turn = unit * on.turn
-            frames[guide.rider] = Placement(turn, -turn * point)
-    driver = linkage.placements[rigid(model, int(model.jnt_bodyid[linkage.component.driven]))][0]
-    if driver == WORLD or driver in blocks:
-        raise ModelError(f"body {called[driver]}: a weld ties the driven body to the ground")
-    start = -cmath.phase(frames[driver].turn)
-    ground = {p.name: pair(p.places[WORLD]) for p in found if WORLD in p.places}
-    gravity = linkage.component.plane.flat(np.array(model.opt.gravity, dtype=np.float64))
+            frames[guide.rider] = _block_frame(parts, guide, slider, frames[guide.on])
+    gravity = np.array(linkage.component.model.opt.gravity, dtype=np.float64)
     scene = Scene(
         name=name,
         source=source,
-        ground=ground,
-        links=links,
+        ground={p.name: pair(p.places[WORLD]) for p in parts.points if WORLD in p.places},
+        links={
+            parts.called[link]: _link(parts, link, frames[link])
+            for link in linkage.links
+            if link not in parts.blocks
+        },
         sliders=sliders,
-        driver=Driver(called[driver], ConstantSpeed(start, 1.0)),
-        gravity_m_s2=pair(gravity),
+        driver=Driver(parts.called[parts.driver], ConstantSpeed(parts.reads, 1.0)),
+        gravity_m_s2=pair(linkage.component.plane.flat(gravity)),
     )
-    return SceneRead(scene, frames, names, found)
-
-
-def matter_of(linkage: Linkage, link: int) -> Matter:
-    """What the bodies of a link weigh together, as the link is drawn."""
-    component = linkage.component
-    model, data, plane = component.model, component.data, component.plane
-    parts = []
-    for body in range(1, model.nbody):
-        root = rigid(model, body)
-        if root == WORLD or linkage.placements.get(root, (WORLD,))[0] != link:
-            continue
-        centre = linkage.placements[root][1](plane.flat(data.xipos[body]))
-        axes = data.ximat[body].reshape(3, 3).T @ plane.normal
-        about = float(axes @ (model.body_inertia[body] * axes))
-        parts.append((float(model.body_mass[body]), centre, about))
-    mass = sum(part[0] for part in parts)
-    centre = sum(m * c for m, c, _ in parts) / mass if mass else 0j
-    inertia = sum(own + m * abs(c - centre) ** 2 for m, c, own in parts)
-    return Matter(mass, centre, inertia)
-
-
-def _own(linkage: Linkage, link: int, found: Sequence[NamedPoint]) -> list[NamedPoint]:
-    """The points of a link; of the driven one its pivot first, which is that of its joint."""
-    own = [point for point in found if link in point.places]
-    return sorted(own, key=lambda point: WORLD not in point.places)
-
-
-def _refuse_loose(linkage: Linkage, found: Sequence[NamedPoint], called: Mapping[int, str]) -> None:
-    """Refuse a link that only one pair holds: it moves as it likes."""
-    held = dict.fromkeys(linkage.links, 0)
-    for pivot in linkage.pivots:
-        for mark in pivot.marks:
-            held[mark.link] = held.get(mark.link, 0) + 1
-    for guide in linkage.guides:
-        for link in (guide.on, guide.rider):
-            held[link] = held.get(link, 0) + 1
-    model = linkage.component.model
-    driver = linkage.placements[rigid(model, int(model.jnt_bodyid[linkage.component.driven]))][0]
-    loose = [link for link in linkage.links if held[link] < 2 and link != driver]
-    if loose:
-        bodies = {body.id: body for body in linkage.component.bodies}
-        words = [
-            f"{called[link]} ({', '.join(j.name for j in bodies[link].joints) or 'no joint'})"
-            for link in loose
-        ]
+    if not scene.longest_m > 0.0:
         raise ModelError(
-            f"more than one freedom: one driver needs mobility 1; loose: {', '.join(words)}; close "
-            "its loop with <connect>, fix it, or take it out"
+            "its links have no length: each has one point, in its centre of mass; an error is told "
+            "over the longest link, so give one of them a second pin, or its mass where it is"
         )
+    return SceneRead(scene, frames, names, parts)
 
 
-def _is_block(linkage: Linkage, link: int, found: Sequence[NamedPoint], matter: Matter) -> bool:
-    """Whether a sliding link is a block: one point, that holds its mass, and nothing on it."""
-    slides = [g for g in linkage.guides if g.rider == link and g.mark is None]
-    guides = [g for g in linkage.guides if g.on == link]
-    own = [point for point in found if link in point.places]
-    if len(slides) != 1 or guides or len(own) != 1:
-        return False
-    size = max(abs(own[0].places[link]), abs(matter.centre), 1e-12)
-    return abs(own[0].places[link] - matter.centre) <= CENTRED * size
+def _link(parts: Parts, link: int, frame: Placement) -> Link:
+    """A link in its own frame."""
+    matter = parts.matter[link]
+    return Link(
+        parts.called[link],
+        {point.name: pair(frame(point.places[link])) for point in parts.points_of(link)},
+        matter.mass_kg,
+        pair(frame(matter.centre)),
+        matter.inertia_kg_m2,
+    )
 
 
-def _frame(linkage: Linkage, link: int, found: Sequence[NamedPoint], matter: Matter) -> Placement:
+def _frame(parts: Parts, link: int) -> Placement:
     """The frame of a link: origin in its first point, x-axis towards its second, along its line,
     or towards its centre of mass."""
-    places = [point.places[link] for point in _own(linkage, link, found)]
-    origin = places[0] if places else matter.centre
+    places = [point.places[link] for point in parts.points_of(link)]
+    centre = parts.matter[link].centre
+    origin = places[0] if places else centre
     ahead = next((place for place in places[1:] if place != origin), None)
-    along = next((guide.direction for guide in linkage.guides if guide.on == link), None)
-    if ahead is None and along is None and abs(matter.centre - origin) > 0.0:
-        ahead = matter.centre
+    along = next((guide.direction for guide in parts.linkage.guides if guide.on == link), None)
+    if ahead is None and along is None and abs(centre - origin) > 0.0:
+        ahead = centre
     direction = ahead - origin if ahead is not None else along if along is not None else 1.0 + 0j
     turn = abs(direction) / direction
     return Placement(turn, -turn * origin)
 
 
+def _reading(parts: Parts, frame: Placement) -> Placement:
+    """The frame of the driven link, turned about its origin so that its angle is what the joint
+    reads: all that is told of the driver's angle is in the joint's own coordinate."""
+    component = parts.linkage.component
+    body = rigid(component.model, int(component.model.jnt_bodyid[component.driven]))
+    turn = cmath.exp(-1j * parts.reads) / parts.linkage.placements[body][1].turn
+    return Placement(turn, turn / frame.turn * frame.shift)
+
+
+def _block_frame(parts: Parts, guide: Guide, slider: Slider, on: Placement) -> Placement:
+    """The frame of a block: its point is its origin, and its x-axis lies along the line."""
+    turn = cmath.exp(-1j * slider.direction_rad) * on.turn * guide.meets.turn
+    return Placement(turn, -turn * parts.point(slider.point).places[guide.rider])
+
+
 def _slider(
-    linkage: Linkage,
-    guide: Guide,
-    found: Sequence[NamedPoint],
-    frames: Mapping[int, Placement],
-    called: Mapping[int, str],
-    matter: Mapping[int, Matter],
-    sliders: Mapping[str, Slider],
-    blocks: Sequence[int],
+    parts: Parts, guide: Guide, frames: Mapping[int, Placement], sliders: Mapping[str, Slider]
 ) -> Slider:
     """A pair that slides."""
     rider, on = guide.rider, frames[guide.on]
     direction = cmath.phase(on.turn * guide.direction)
     if guide.mark is None:
-        own = [point for point in found if rider in point.places]
-        point, through = own[0], own[0].places[rider]
-        name = scene_name(called[rider], "slider", sliders)
+        point = parts.points_of(rider)[0]
+        through, wished = guide.meets(point.places[rider]), parts.called[rider]
     else:
-        point = next(point for point in found if guide.mark in point.marks)
-        through = guide.through
-        name = scene_name(point.name, "slider", sliders)
+        point = next(point for point in parts.points if guide.mark in point.marks)
+        through, wished = guide.through, point.name
     unit = cmath.exp(1j * direction)
-    place = on(through)
-    foot = place - (place * unit.conjugate()).real * unit  # nearest to the origin of the guide
-    common = (name, point.name, called[guide.on], pair(foot), direction)
+    foot = (on(through) * unit.conjugate()).imag * 1j * unit  # nearest to the origin of the guide
+    name = scene_name(wished, "slider", sliders)
+    common = (name, point.name, parts.called[guide.on], pair(foot), direction)
     if guide.mark is not None:
         return Slider(*common)
-    if rider in blocks:
-        return Slider(
-            *common, mass_kg=matter[rider].mass_kg, inertia_kg_m2=matter[rider].inertia_kg_m2
-        )
-    turn = (
-        frames[rider].turn * guide.lean / on.turn
-    )  # from the frame of the guide to that of the link
-    return Slider(*common, link=called[rider], angle_rad=-cmath.phase(turn) - direction)
+    if rider in parts.blocks:
+        matter = parts.matter[rider]
+        return Slider(*common, mass_kg=matter.mass_kg, inertia_kg_m2=matter.inertia_kg_m2)
+    # From the frame of the guide to that of the link.
+    turn = frames[rider].turn / (guide.meets.turn * on.turn)
+    return Slider(*common, link=parts.called[rider], angle_rad=-cmath.phase(turn) - direction)

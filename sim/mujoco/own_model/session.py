@@ -56,7 +56,8 @@ class OwnModelSession(SteppedModel):
 
     def _place(self, scene: Scene, state: State) -> None:
         """Set all joints from the closed form, with the velocities that the integrator wants."""
-        q, rate, push = coordinates(self._own.limbs, scene, state)
+        near = self._senses * self._own.qpos[list(self._own.limbs.positions)]
+        q, rate, push = coordinates(self._own.limbs, scene, state, near)
         rate = rate + self._shift * self._dt * push
         self._data.qpos[list(self._own.limbs.positions)] = self._senses * q
         self._data.qvel[list(self._own.limbs.rates)] = self._senses * rate

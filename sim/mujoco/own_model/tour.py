@@ -11,8 +11,8 @@ import numpy as np
 
 from models.motion import State
 from models.scene import Scene
-from sim.mujoco.own_model.closures import name_of
-from sim.mujoco.own_model.component import JOINTS, body_name, joint_name
+from sim.mujoco.own_model.closures import body_name, name_of
+from sim.mujoco.own_model.component import JOINTS, joint_name
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.limbs import coordinates
 from sim.mujoco.own_model.planar_model import PlanarModel
@@ -38,9 +38,11 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
     touching: dict[tuple[str, str], int] = {}
     low, high = np.full(model.nq, np.inf), np.full(model.nq, -np.inf)
     positions, senses = list(own.limbs.positions), np.array(own.limbs.senses)
+    q = senses * own.qpos[positions]
     with heard(lambda _: None):
         for state in states:
-            data.qpos[positions] = senses * coordinates(own.limbs, scene, state)[0]
+            q = coordinates(own.limbs, scene, state, near=q)[0]
+            data.qpos[positions] = senses * q
             mujoco.mj_fwdPosition(model, data)
             _refuse_misread(own, data, state)
             low, high = np.fmin(low, data.qpos), np.fmax(high, data.qpos)
@@ -57,6 +59,8 @@ def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
     rows = np.flatnonzero(np.array(data.efc_type) == EQUALITY)
     for closure in own.linkage.component.closures:
         mine = [row for row in rows if int(data.efc_id[row]) == closure.index][:3]
+        if not mine:  # MuJoCo leaves out what holds nothing, such as a pin in the axis of a hinge
+            continue
         gap = abs(plane.flat(np.array([data.efc_pos[row] for row in mine])))
         if not gap <= limit:
             raise ModelError(

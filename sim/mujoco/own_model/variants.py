@@ -18,6 +18,7 @@ KEPT, STIFF = "as-written", "stiff"
 TOLERANCE = 1e-16
 """Of the solver, recommended: below it no error falls any more, and it costs no iteration where the
 only constraints are pins, which Newton solves in one."""
+STIFF_SOLIMP = (STIFF_IMPEDANCE, STIFF_IMPEDANCE, 0.001, 0.5, 2.0)
 OFF: Mapping[str, Any] = {
     "contacts": mujoco.mjtDisableBit.mjDSBL_CONTACT,
     "springs": mujoco.mjtDisableBit.mjDSBL_SPRING,
@@ -67,6 +68,12 @@ def _profile(
     )
 
 
+def stiff_solref(dt_s: float) -> tuple[float, float]:
+    """Time constant [s] and damping ratio of a loop, recommended at a step; in six digits, as it is
+    to be pasted."""
+    return float(f"{STIFF_STEPS * dt_s:.6g}"), STIFF_DAMPING
+
+
 def checked(settings: Settings) -> None:
     """Refuse values that mean nothing here. Raises SettingError."""
     check_choices(settings, CHOICES)
@@ -86,8 +93,8 @@ def applied(model: Any, loops: Iterable[int], settings: Settings, dt_s: float) -
     if settings["loops"] == STIFF:
         model.opt.tolerance = min(TOLERANCE, float(model.opt.tolerance))
         for loop in loops:
-            model.eq_solref[loop] = STIFF_STEPS * dt_s, STIFF_DAMPING
-            model.eq_solimp[loop] = STIFF_IMPEDANCE, STIFF_IMPEDANCE, 0.001, 0.5, 2.0
+            model.eq_solref[loop] = stiff_solref(dt_s)
+            model.eq_solimp[loop] = STIFF_SOLIMP
 
 
 def held(model: Any, loops: Iterable[int], settings: Settings) -> dict[str, SettingValue]:

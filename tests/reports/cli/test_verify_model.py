@@ -72,7 +72,7 @@ REFUSED: dict[str, tuple[Sequence[str], str]] = {
     "jobs": ([*DRIVEN, "--jobs", "2"], "--mjcf and --jobs"),
     "a baseline": ([*DRIVEN, "--baseline", "."], "--mjcf and --baseline"),
     "no time": ([*DRIVEN, "--limit-s", "0"], "--limit-s 0: give a number above 0"),
-    "no file": ([*DRIVEN, "--mjcf", "gone.xml"], "gone.xml: No such file"),
+    "no file": ([*DRIVEN, "--mjcf", "gone.xml"], "gone.xml: not there"),
     "the model as output": ([*DRIVEN, "--json", "engine.xml"], "engine.xml, which is read"),
     "a part of it as output": (
         [*DRIVEN, "--mjcf", "whole.xml", "--csv", "parts/option.xml"],
