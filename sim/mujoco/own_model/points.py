@@ -13,6 +13,7 @@ from sim.mujoco.own_model.naming import point_of, scene_name
 
 SAME = 1e-9
 """Marks of one link that are nearer than this, over the size of the linkage, are one point."""
+ROUNDING = 1e-15
 NEAR = 0.02
 """Marks of one link that are nearer, and not the same, may have been meant to be one."""
 
@@ -113,5 +114,7 @@ def _meet(first: Sequence[Mark], second: Sequence[Mark], tolerance: float) -> bo
 
 
 def pair(place: complex) -> Point:
-    """A place as a point of a scene."""
-    return place.real, place.imag
+    """A place as a point of a scene; a coordinate that is rounding of the other one is 0."""
+    least = ROUNDING * abs(place)
+    x, y = (part if abs(part) > least else 0.0 for part in (place.real, place.imag))
+    return x, y

@@ -7,9 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
 import pytest
 
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
+from models.files import load_scene
+from models.mjcf import build
 from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
 from reports.own_model.request import ModelRequest
 from reports.workers.isolated import Limits
@@ -274,3 +278,14 @@ def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
     account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])
     (line,) = run_lines(account, Limits(0.01, 2.0))
     assert (line.verdict, line.status, line.reason) == ("out", "timeout", "no end within 0.01 s")
+
+
+def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
+    tmp_path: Path,
+) -> None:
+    scene = load_scene("tangent")
+    state = solve(scene, np.zeros(1), bound=False).state()
+    with pytest.raises(CrankcheckError) as refused:
+        read_text(tmp_path, build(scene, state), joint="lever.A")
+    assert "at driver 90 deg the dyad of" in str(refused.value)
+    assert "--start and --turns set the range of joint lever.A" in str(refused.value)

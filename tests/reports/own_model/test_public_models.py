@@ -134,3 +134,18 @@ def test_a_part_of_a_turn_runs_both_ways(speed: float) -> None:
     start = -90.0 if speed > 0.0 else 2.0
     account = read("chebyshev", "left-pivot", start_deg=start, turns=0.256, speed_rad_s=speed)
     assert done(account, "recommended").verdict == "within"
+
+
+WAYS = {
+    (280.0, 10.0): "from 280 to 640 deg, and reaches 264.3 to 365.7 deg",
+    (0.0, -10.0): "from 0 to -360 deg, and reaches -95.66 to 5.663 deg, where the loops close; "
+    "take less of a turn, --turns 0.265 at most",
+    (50.0, 10.0): "start in between with --start, and take less of a turn with --turns",
+}
+
+
+@pytest.mark.parametrize(("start", "speed"), WAYS)
+def test_the_reach_is_told_from_where_the_joint_starts(start: float, speed: float) -> None:
+    with pytest.raises(CrankcheckError) as refused:
+        read("chebyshev", "left-pivot", start_deg=start, speed_rad_s=speed)
+    assert WAYS[start, speed] in str(refused.value)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from analytic.kinematics import solve
@@ -170,7 +170,7 @@ APART = """<mujoco>
       <joint type="slide" axis="1 0 0"/>
       <joint type="slide" axis="0 1 0"/>
       <joint/>
-      <geom fromto="0 0 0 0.1 0 0"/>
+      {near}
       <site name="near.C"/>
     </body>
     <body name="crank">
@@ -184,7 +184,7 @@ APART = """<mujoco>
     </body>
     <body name="far" pos="0.4 0 0" euler="0 0 {turned}">
       <joint name="S" type="slide" axis="{axis} 0"/>
-      <geom fromto="0 0 0 0.1 0 0"/>
+      {far}
     </body>
   </worldbody>
   <equality>
@@ -197,9 +197,10 @@ APART = """<mujoco>
 what the weld asks for is that ``far`` is 0.1 m ahead of ``near``, turned by 0.2 rad."""
 
 
+@pytest.mark.parametrize("block", [False, True])
 @pytest.mark.parametrize("turned_round", [False, True])
 def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
-    turned_round: bool, tmp_path: Path
+    turned_round: bool, block: bool, tmp_path: Path
 ) -> None:
     # In the frame of the first body the pose of the second, either way round.
     back = cmath.exp(-0.2j)
@@ -207,12 +208,23 @@ def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
     pose = f"{place.real!r} {place.imag!r} 0 {math.cos(turn / 2)!r} 0 0 {math.sin(turn / 2)!r}"
     names = ("far", "near") if turned_round else ("near", "far")
     weld = f'<weld body1="{names[0]}" body2="{names[1]}" relpose="{pose}"/>'
+    # Both masses are in the pin of a block, which is the origin of the near one.
+    pin = -0.1 * back
+    ball = '<geom type="sphere" size="0.01" pos="{} {} 0"/>'
+    bar = '<geom fromto="0 0 0 0.1 0 0"/>'
     path = tmp_path / "model.xml"
-    text = APART.format(turned=0.3, axis=f"{math.cos(0.3)!r} {-math.sin(0.3)!r}", weld=weld)
+    text = APART.format(
+        turned=0.3,
+        axis=f"{math.cos(0.3)!r} {-math.sin(0.3)!r}",
+        weld=weld,
+        near=ball.format(0, 0) if block else bar,
+        far=ball.format(pin.real, pin.imag) if block else bar,
+    )
     path.write_text(text, encoding="utf-8")
     asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
     account = read_here(asked)
     (slider,) = account.scene.sliders.values()
+    assert (slider.mass_kg > 0.0) == block
     assert math.sin(slider.direction_rad) == pytest.approx(0.0, abs=1e-12)
     assert checked_line(Line(account, "recommended")).verdict == "within"
 
@@ -239,7 +251,7 @@ LINES_ONLY = ("RRR", "RPP block on guide")
 """With a link that carries lines and has no pin."""
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(mechanisms() | mechanisms(LINES_ONLY), st.integers(0, 10**6), st.booleans())
 def test_any_mechanism_is_read_back_off_any_drawing(
     tmp_path_factory: pytest.TempPathFactory, designed: Designed, seed: int, sites: bool

@@ -144,3 +144,11 @@ def test_a_file_in_another_encoding_is_said_in_words(tmp_path: Path) -> None:
 def test_more_equalities_than_the_text_has_are_an_error() -> None:
     with pytest.raises(EngineError, match="1 of its 2 equalities"):
         patched(PLAIN.encode(), [0], 2, Advice({}, {}, {}))
+
+
+def test_the_numbers_to_paste_are_those_that_are_run(tmp_path: Path) -> None:
+    own, dt_s = read(tmp_path / "model.xml", PLAIN), 1.0 / 3000.0
+    text = own.patch(dt_s, touching=False)
+    assert 'solref="0.00166667 0.6"' in text
+    assert f'timestep="{dt_s!r}"' in text
+    assert tuple(wanted(own, dt_s, touching=False).eq_solref[0]) == (0.00166667, 0.6)
