@@ -20,6 +20,8 @@ from sim.own_models import Disturbance
 SHOWN = 6
 OPEN = 1e-4
 """A loop that is open by more in a keyframe, over the size of the linkage, is not just rounded."""
+HEAVY = 1e3
+"""An armature over the largest inertia of a body: from there on soft loops give way first."""
 SOFT_S = 0.02
 """MuJoCo's own time constant of a loop; one that is longer is softer."""
 
@@ -51,7 +53,8 @@ def _own(model: Any, ids: set[int]) -> Iterator[tuple[int, int, str]]:
 
 
 def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
-    """Springs, damping, dry friction and limits of joints; those of the driven one too."""
+    """Springs, damping, dry friction, heavy armatures and limits of joints; of the driven one too,
+    whose armature does not matter."""
     for joint, dof, name in _own(model, ids):
         hinge = JOINTS[int(model.jnt_type[joint])] == "hinge"
         force, length = ("N m", "rad") if hinge else ("N", "m")
@@ -63,6 +66,10 @@ def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
         ):
             if np.any(value):
                 yield Disturbance(kind, f"{at}: {what} of {float(np.ravel(value)[0]):g} {unit}")
+        rotor = float(model.dof_armature[dof])
+        if rotor > HEAVY * float(model.body_inertia[1:].max()) and joint != driven:
+            inertia = f"{rotor:.3g} {'kg m^2' if hinge else 'kg'}"
+            yield Disturbance("armature", f"{at}: an armature of {inertia}, which is hard to move")
         if model.jnt_limited[joint]:
             span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
             more = ", and it is the driven one" if joint == driven else ""

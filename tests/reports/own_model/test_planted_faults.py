@@ -33,6 +33,7 @@ NAMED = {
     ),
     "a spring": (rocker('stiffness="5"'), "joint D: a spring of 5 N m/rad"),
     "damping": (rocker('damping="0.5"'), "joint D: damping of 0.5 N m s/rad"),
+    "a heavy rotor": (rocker('armature="1000"'), "joint D: an armature of 1e+03 kg m^2"),
     "dry friction": (rocker('frictionloss="0.5"'), "joint D: dry friction of 0.5 N m"),
     "solref of a twentieth of a second": (
         ('solref="0.005 0.6"', 'solref="0.05 1"'),
