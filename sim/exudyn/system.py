@@ -20,6 +20,7 @@ from models.joints import (
     joints,
     less,
     local_point,
+    riding_body,
     sliding_angle,
     turned,
 )
@@ -145,7 +146,7 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
             for other in others
         ]
     for slide in ties.slides:
-        slider, rider = slide.slider, _rider(slide)
+        slider, rider = slide.slider, riding_body(slide)
         axis = turned((1.0, 0.0), slider.direction_rad - _kept_angle(slide))
         normal = turned((0.0, 1.0), slider.direction_rad)
         joint = items.ObjectJointPrismatic2D(
@@ -163,18 +164,6 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
 def _kept_angle(slide: Prism | Slot) -> float:
     """The angle that a sliding body keeps to its guide [rad]; any for a point on a line."""
     return sliding_angle(slide.slider) if isinstance(slide, Prism) else 0.0
-
-
-def _rider(slide: Prism | Slot) -> str:
-    """The body whose point runs on the line."""
-    if isinstance(slide, Prism):
-        return slide.body
-    if not slide.bodies:
-        raise EngineError(
-            f"slider {slide.slider.name}: no body carries point {slide.slider.point}; give "
-            f"sliders.{slide.slider.name} a mass_kg above 0"
-        )
-    return slide.bodies[0]
 
 
 def masses(made: PlaneSystem) -> Mapping[str, tuple[float, float]]:
