@@ -61,11 +61,10 @@ class Mark:
 
 @dataclass(frozen=True)
 class Pivot:
-    """A pin between two links: each has its own copy, ``closure`` says whether it closes a loop."""
+    """A pin between two links: each has its own copy."""
 
     name: str
     marks: tuple[Mark, Mark]
-    closure: bool = False
 
 
 @dataclass(frozen=True)
@@ -97,10 +96,6 @@ class Linkage:
         """The moving links, in the order of the file."""
         return tuple(sorted({link for link, _ in self.placements.values()} - {WORLD}))
 
-    def members(self, link: int) -> tuple[int, ...]:
-        """The rigid bodies of a link, its first one first."""
-        return tuple(sorted(body for body, (own, _) in self.placements.items() if own == link))
-
     def mark(self, body: int, place: complex) -> Mark:
         """A place that is drawn on a rigid body, on its link."""
         link, placement = self.placements[body]
@@ -126,7 +121,7 @@ def linkage(component: Component) -> Linkage:
                 bare.mark(component.rigid(body), component.plane.flat(anchor))
                 for body, anchor in zip(each.bodies, each.anchors, strict=True)
             ]
-            pivots.append(Pivot(each.name, (ends[0], ends[1]), closure=True))
+            pivots.append(Pivot(each.name, (ends[0], ends[1])))
     return Linkage(component, bare.placements, tuple(pivots), tuple(guides))
 
 
