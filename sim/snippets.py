@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import cast
@@ -47,6 +48,15 @@ class SnippetWriter:
 def snippet_writer(engine: str) -> SnippetWriter:
     """That of an engine. Raises EngineError where it has none."""
     return cast(SnippetWriter, capability(engine, "snippet"))
+
+
+def comment(paragraphs: Sequence[str], width: int) -> list[str]:
+    """The paragraphs as comment lines of Python, at most so wide."""
+    lines: list[str] = []
+    for paragraph in paragraphs:
+        wrapped = textwrap.wrap(paragraph, width - 2, break_on_hyphens=False)
+        lines += [f"# {line}" for line in wrapped]
+    return lines
 
 
 def snippet(

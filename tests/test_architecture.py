@@ -72,7 +72,8 @@ MENTIONING: Mapping[str, str] = {
     "reports/judge/rules": "what to turn in which engine, as a cure",
     "reports/quantities": "as in the rules",
     "reports/selftest/engines.py": "what a fault is called that one engine has by default",
-    "reports/cli/checking.py": "an example in the help",
+    "reports/cli/changes.py": "an example in the help",
+    "reports/cli/checking.py": "whose files --mjcf takes",
     "reports/cli/commands/sweep.py": "an example in a message",
 }
 """Where sentences mention engines, and why; an engine that is not mentioned works as well."""
@@ -316,10 +317,10 @@ def test_a_name_of_an_engine_is_seen(house: Path) -> None:
     (house / "reports" / "page" / "a.py").write_text(
         '"""About MuJoCo."""\nif name == "mujoco":\n    from sim import pymunk\n    pymunk_work()\n'
     )
-    (house / "reports" / "cli" / "checking.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
+    (house / "reports" / "cli" / "changes.py").write_text('a = "such as mujoco"\nb = "mujoco"\n')
     (house / "sim" / "pymunk" / "a.py").write_text('name = "pymunk"\n')
     assert [fault.partition(" ")[0] for fault in namings(house) if " names " in fault] == [
-        "reports/cli/checking.py:2",
+        "reports/cli/changes.py:2",
         "reports/page/a.py:2",
         "reports/page/a.py:3",
         "reports/page/a.py:4",

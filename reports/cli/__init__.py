@@ -1,9 +1,12 @@
 """The command line. What a command needs is imported inside it: `--help` loads no engine."""
 
-from reports.cli import checking, measuring
+from reports.cli import checking
+
+# isort: split
+from reports.cli import changes, measuring
 
 # isort: split
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 from reports.cli.application import app, guarded, main
 
-__all__ = ["app", "checking", "guarded", "judging", "main", "measuring", "showing"]
+__all__ = ["app", "changes", "checking", "guarded", "judging", "main", "measuring", "showing"]

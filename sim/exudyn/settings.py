@@ -30,8 +30,6 @@ RANGES = {
     "servo_gain": (1e-9, 1e15),
 }
 """What exudyn takes, and the ways round it that make sense."""
-OF_SERVO = ("servo_gain",)
-"""What only that drive has."""
 
 AS_SHIPPED = Profile(
     "as-shipped",

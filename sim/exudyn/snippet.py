@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE
-from sim.snippets import SnippetWriter, Stepping
+from sim.snippets import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -34,7 +33,7 @@ def exudyn_snippet(
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
     lines = [
-        *_comment(head),
+        *comment(head, WIDTH),
         "stepping = simulationSettings.timeIntegration",
         *_steps(stepping),
         f"stepping.solverType = exu.DynamicSolverType.{complete['integrator']}",
@@ -46,7 +45,7 @@ def exudyn_snippet(
     lines += _newton(complete, defaults)
     lines += _alone(complete, defaults)
     driven = DRIVES[drive].format(gain=float(complete["servo_gain"]))
-    return "\n".join([*lines, *_comment([driven])]) + "\n"
+    return "\n".join([*lines, *comment([driven], WIDTH)]) + "\n"
 
 
 def _steps(stepping: Stepping) -> list[str]:
@@ -63,7 +62,7 @@ def _steps(stepping: Stepping) -> list[str]:
             "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
         ]
     return [
-        *_comment(told),
+        *comment(told, WIDTH),
         f"dt = {stepping.dt_s!r}",
         "stepping.numberOfSteps = round((stepping.endTime - stepping.startTime) / dt)",
     ]
@@ -113,19 +112,10 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
         f"Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
     )
     return [
-        *(_comment([title]) if lines else []),
+        *(comment([title], WIDTH) if lines else []),
         *lines,
-        *(_comment([redundant]) if by_need else []),
+        *(comment([redundant], WIDTH) if by_need else []),
     ]
-
-
-def _comment(paragraphs: Sequence[str]) -> list[str]:
-    lines: list[str] = []
-    for paragraph in paragraphs:
-        lines += [
-            f"# {line}" for line in textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
-        ]
-    return lines
 
 
 SNIPPET = SnippetWriter("python", exudyn_snippet)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
 from sim.pymunk.settings import AS_SHIPPED
-from sim.snippets import SnippetWriter, Stepping
+from sim.snippets import SnippetWriter, Stepping, comment
 
 WIDTH = 96
 DRIVES: Mapping[Drive, str] = {
@@ -31,19 +30,19 @@ def pymunk_snippet(
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
     complete = defaults | dict(settings)
-    lines = _comment(head)
+    lines = comment(head, WIDTH)
     if complete["error_bias"] != defaults["error_bias"]:
         lines += [
             "for joint in joints:  # those that hold the mechanism together, and no others",
             f"    joint.error_bias = {float(complete['error_bias'])!r}",
         ]
-    lines += _comment(_notes(complete, defaults))
+    lines += comment(_notes(complete, defaults), WIDTH)
     if (iterations := int(complete["iterations"])) > int(defaults["iterations"]):
         lines.append(
             f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
             "contacts' too"
         )
-    lines += [*_alone(complete, defaults), *_steps(stepping), *_comment([DRIVES[drive]])]
+    lines += [*_alone(complete, defaults), *_steps(stepping), *comment([DRIVES[drive]], WIDTH)]
     return "\n".join(lines) + "\n"
 
 
@@ -60,11 +59,12 @@ def _steps(stepping: Stepping) -> list[str]:
         f"dt = {stepping.dt_s!r}  # {frame}" + f" / {number}" * (number > 1),
         f"for _ in range({number}):  # in every frame; steps all that the space holds",
         "    space.step(dt)",
-        *_comment(
+        *comment(
             [
                 f"A crank at {speed} has {per_turn} of these steps in a turn; a faster one needs "
                 "more of them in a frame, in proportion."
-            ]
+            ],
+            WIDTH,
         ),
     ]
 
@@ -95,16 +95,7 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
     if complete["damping"] != defaults["damping"]:
         lines.append(f"#   space.damping = {complete['damping']!r}")
     title = "ONLY TO MEASURE AS WE DID, in a space with nothing else in it:"
-    return [*_comment([title]), *lines] if lines else []
-
-
-def _comment(paragraphs: Sequence[str]) -> list[str]:
-    lines: list[str] = []
-    for paragraph in paragraphs:
-        lines += [
-            f"# {line}" for line in textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
-        ]
-    return lines
+    return [*comment([title], WIDTH), *lines] if lines else []
 
 
 SNIPPET = SnippetWriter("python", pymunk_snippet)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cli.checking import DiffRequest
+from reports.cli.changes import DiffRequest
 from reports.cli.commands.stored_files import stored_files
 from reports.diff.junit import suite
 from reports.diff.markdown import markdown

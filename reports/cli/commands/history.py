@@ -10,7 +10,8 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files import find_scene
-from reports.cli.checking import HistoryRequest, VerifyRequest
+from reports.cli.changes import HistoryRequest
+from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text

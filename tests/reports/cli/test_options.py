@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from reports.cli import app, checking, measuring, showing
+from reports.cli import app, changes, checking, measuring, showing
 
 LEAST = {
     "verify": ("verify", checking.VerifyRequest()),
-    "diff old new": ("run_diff", checking.DiffRequest(Path("old"), Path("new"))),
-    "history mujoco 1 2": ("run_history", checking.HistoryRequest("mujoco", ["1", "2"])),
+    "diff old new": ("run_diff", changes.DiffRequest(Path("old"), Path("new"))),
+    "history mujoco 1 2": ("run_history", changes.HistoryRequest("mujoco", ["1", "2"])),
     "selftest": ("selftest", checking.SelftestRequest()),
     "sweep -o out": ("sweep", measuring.SweepRequest(Path("out"))),
     "tune a b --engine mujoco --target 1": (

@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cli.checking import DiffRequest
+from reports.cli.changes import DiffRequest
 from reports.cli.commands.diff import run_diff
 
 Copy = Callable[..., Path]

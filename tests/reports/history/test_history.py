@@ -16,7 +16,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from models.files import shipped
-from reports.cli.checking import HistoryRequest
+from reports.cli.changes import HistoryRequest
 from reports.cli.commands.history import run_history
 from reports.history import verification
 from tests.worlds.command import COMMAND, PYTHON, script, shadows
@@ -306,7 +306,7 @@ if __name__ == "__main__":
     threading.Thread(target=stop, daemon=True).start()
     with guarded():
         install()
-        from reports.cli.checking import HistoryRequest
+        from reports.cli.changes import HistoryRequest
         from reports.cli.commands.history import run_history
         from reports.history.verification import patient
         patient.keywords["patience_s"] = 60.0  # the other program ends without being killed

@@ -16,7 +16,8 @@ import pytest
 from rich.console import Console
 
 from models.errors import CrankcheckError
-from reports.cli.checking import DiffRequest, VerifyRequest
+from reports.cli.changes import DiffRequest
+from reports.cli.checking import VerifyRequest
 from reports.cli.commands import diff, report, verify
 from reports.store.damage import notice
 from reports.store.examine import UNASKED, examine

@@ -11,7 +11,7 @@ import pytest
 from filelock import FileLock
 
 from models.errors import CrankcheckError
-from reports.cli.checking import DiffRequest
+from reports.cli.changes import DiffRequest
 from reports.cli.commands import diff, report
 from reports.store import lock
 from reports.store.damage import BUSY
