@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -158,12 +159,33 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         there = [name for name in names if name]
         hint = suggestion(key, there, "it has") if there else "the model has none with a name"
         raise ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
+    keyframe = None if key is None else names.index(key)
+    if keyframe is not None:
+        _refuse_not_finite(path, model, keyframe)
+        model = _moved(model, keyframe)
     try:
         joined = linkage(component(model, joint))
         scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
-    keyframe = None if key is None else names.index(key)
-    if keyframe is not None and not np.isfinite(model.key_qpos[keyframe]).all():
-        raise ModelError(f"{path}: keyframe {key}: its qpos is not finite")
     return ReadModel(path, PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe))
+
+
+def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
+    for what in ("qpos", "mpos", "mquat"):
+        if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
+            name = name_of(model, mujoco.mjtObj.mjOBJ_KEY, keyframe)
+            raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
+
+
+def _moved(model: Any, keyframe: int) -> Any:
+    """The model with its mocap bodies where the keyframe has them: they are ground."""
+    moved = copy.copy(model)
+    places = model.key_mpos[keyframe].reshape(-1, 3)
+    turns = model.key_mquat[keyframe].reshape(-1, 4)
+    for body in np.flatnonzero(model.body_mocapid >= 0):
+        mocap = int(model.body_mocapid[body])
+        turn = np.array(turns[mocap])
+        mujoco.mju_normalize4(turn)
+        moved.body_pos[body], moved.body_quat[body] = places[mocap], turn
+    return moved
