@@ -17,7 +17,7 @@ from models.poses import Frame, frames
 from models.scene import Driver, Scene
 from reports.own_model.request import ModelRequest
 from sim.engine import BodyPose
-from sim.own_models import OwnModel
+from sim.own_models import MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
 """Assemblies are tried one by one up to so many choices, two to the power of it; the dyads after
@@ -45,11 +45,15 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     Raises
     ------
     CrankcheckError
-        No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
-        with the range in the coordinate of the joint; a branch that chooses nothing.
+        A start many turns away; no closed form; a pose that two assemblies fit as well, or a driver
+        angle that none reaches, with the range in the coordinate of the joint; a branch that
+        chooses nothing.
     """
-    if request.start_deg is not None and not math.isfinite(request.start_deg):
-        raise CrankcheckError(f"--start {request.start_deg:g}: give a number of degrees")
+    if request.start_deg is not None and abs(request.start_deg) > 360.0 * MOST_TURNS:
+        raise CrankcheckError(
+            f"--start {request.start_deg:g}: that is more than {MOST_TURNS} turns; give an angle "
+            f"between {-360 * MOST_TURNS} and {360 * MOST_TURNS} deg"
+        )
     law = ConstantSpeed(own.coordinate_rad(), request.speed_rad_s)
     bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
     try:

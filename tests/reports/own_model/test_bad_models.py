@@ -142,6 +142,10 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
                 '<equality><tendon tendon1="t"/>'),
         "a <tendon> equality couples coordinates",
     ),
+    "a hinge far round": (
+        planted(ROCKER_JOINT, '<joint name="D" ref="1e12"/>'),
+        "model.xml: joint D reads 1.59e+11 turns in this pose; take whole turns off it",
+    ),
     "no step": (planted('timestep="0.001"', 'timestep="0"'), "its timestep is 0 s; give it one"),
     "two cranks": (FIVE, "(with A held these still move: B, E, D)"),
     "no closed form": (TRIAD, "form an Assur group of 4 links"),
@@ -200,6 +204,8 @@ ASKED = {
     "not against the ground": ({"joint": "B"}, "it turns against body crank; drivable: A, D"),
     "no such keyframe": ({"key": "home"}, "--key 'home': no keyframe of that name"),
     "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
+    "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
+    "far round, at once": ({"start_deg": -1e12}, "--start -1e+12: that is more than 100 turns"),
     "no number": ({"start_deg": float("nan")}, "--start nan"),
     "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
     "too short": ({"turns": 0.1}, "take 0.127 turns or more"),
@@ -250,6 +256,14 @@ def test_both_assemblies_of_a_flat_pose_may_be_chosen(tmp_path: Path) -> None:
     with pytest.raises(CrankcheckError, match="two assemblies equally well, C"):
         read_text(tmp_path, flat)
     assert read_text(tmp_path, flat, branch={"C": -1}).scene.branch == {"C": -1}
+
+
+@pytest.mark.parametrize("start_deg", [36000.0, -36000.0])
+def test_a_start_many_turns_away_is_held_to_what_one_nearby_is(
+    start_deg: float, tmp_path: Path
+) -> None:
+    account = read_text(tmp_path, HEALTHY, start_deg=start_deg, converge=False, turns=0.3)
+    assert checked_line(Line(account, "recommended")).verdict == "within"
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])
