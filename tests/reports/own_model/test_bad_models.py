@@ -15,6 +15,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
 from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
+from reports.own_model.assembly import MOST_CHOICES
 from reports.own_model.request import ModelRequest
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
@@ -256,6 +257,31 @@ def test_both_assemblies_of_a_flat_pose_may_be_chosen(tmp_path: Path) -> None:
     with pytest.raises(CrankcheckError, match="two assemblies equally well, C"):
         read_text(tmp_path, flat)
     assert read_text(tmp_path, flat, branch={"C": -1}).scene.branch == {"C": -1}
+
+
+def driving(rockers: int) -> str:
+    """A crank with a coupler to each of so many rockers, all four-bars assembled alike."""
+    coupler = '<body name="c{0}" pos="0 0 0.1"><joint/><geom fromto="0 0 0 0.23 0 0.09"/></body>'
+    rocker = '<body name="r{0}" pos="0.3 0 0"><joint/><geom fromto="0 0 0 -0.07 0 0.19"/></body>'
+    pin = '<connect name="C{0}" body1="c{0}" body2="r{0}" anchor="0.23 0 0.09"/>'
+    parts = ["".join(part.format(n) for n in range(rockers)) for part in (coupler, rocker, pin)]
+    return f"""<mujoco>
+  <default><geom type="capsule" size="0.004"/><joint axis="0 -1 0"/></default>
+  <worldbody>
+    <body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0 0.1"/>{parts[0]}</body>{parts[1]}
+  </worldbody>
+  <equality>{parts[2]}</equality>
+</mujoco>
+"""
+
+
+def test_more_choices_than_are_tried_are_asked_for(tmp_path: Path) -> None:
+    many = driving(MOST_CHOICES + 1)
+    with pytest.raises(CrankcheckError, match=r"9 choices .* choose 1 or more .*, of C0, C1, "):
+        read_text(tmp_path, many)
+    found = read_text(tmp_path, many, branch={"C8": 1}).scene.branch
+    assert set(found.values()) == {1}
+    assert len(found) == MOST_CHOICES + 1
 
 
 @pytest.mark.parametrize("start_deg", [36000.0, -36000.0])
