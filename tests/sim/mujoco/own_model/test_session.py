@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from models.errors import EngineError
+from models.motion import State
 from reports.own_model.assembly import assembled
 from reports.own_model.request import ModelRequest
+from sim.mujoco.own_model import session
 from sim.mujoco.own_model.read import read_model
 from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.settings import INTEGRATORS
@@ -49,21 +52,37 @@ CRANKS = {
 BARE = {"beside": "", "weld": "", "more": "", "crank_end": "crank"}
 
 
-@pytest.mark.parametrize(
-    ("crank", "integrator"),
-    [*itertools.product(CRANKS, ["as-written"]), *itertools.product(["a disc"], INTEGRATORS)],
-)
-def test_the_driven_hinge_keeps_its_speed(crank: str, integrator: str, tmp_path: Path) -> None:
-    path = tmp_path / "model.xml"
+def started(
+    path: Path, crank: str, integrator: str = "as-written"
+) -> tuple[OwnModelSession, State]:
+    """A model with one of the cranks at its start, as written."""
     path.write_text(MODEL.format(rocker=ROCKER, **BARE | CRANKS[crank]), encoding="utf-8")
     own = read_model(path, "motor")
     scene = assembled(own, ModelRequest(path, "motor", 10.0)).scene
     start = solve(scene, np.zeros(1), bound=False).state()
     profile = own.engine(touching=False).profiles["as-written"]
     settings = {name: each.value for name, each in profile.settings.items()}
-    run = OwnModelSession(
-        own.planar, scene, start, {**settings, "integrator": integrator}, 0.002, "prescribed"
-    )
+    settings["integrator"] = integrator
+    return OwnModelSession(own.planar, scene, start, settings, 0.002, "prescribed"), start
+
+
+@pytest.mark.parametrize(
+    ("crank", "integrator"),
+    [*itertools.product(CRANKS, ["as-written"]), *itertools.product(["a disc"], INTEGRATORS)],
+)
+def test_the_driven_hinge_keeps_its_speed(crank: str, integrator: str, tmp_path: Path) -> None:
+    run, start = started(tmp_path / "model.xml", crank, integrator)
     run.step(315)
     turned = float(run.read().bodies["crank"].theta[0]) - start.theta["crank"]
     assert turned == pytest.approx(6.3, abs=1e-9)
+
+
+def test_a_drive_that_is_lost_is_no_verdict_on_the_model(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "FLYWHEEL_RATIO", 1e3)
+    run, _ = started(tmp_path / "model.xml", "a bar")
+    with pytest.raises(
+        EngineError, match=r"the driven joint is off by .* says nothing of the loops"
+    ):
+        run.record(315, 1)
