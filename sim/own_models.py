@@ -14,6 +14,10 @@ from models.scene import Scene
 from sim.engine import Engine, Poses
 from sim.registry import capability, offering
 
+MOST_TURNS = 100
+"""A joint may read so many turns either way at the start; at more, the rounding of its angle nears
+what a run is held to."""
+
 
 @dataclass(frozen=True)
 class Tour:

@@ -17,11 +17,10 @@ from models.poses import Frame, frames
 from models.scene import Driver, Scene
 from reports.own_model.request import ModelRequest
 from sim.engine import BodyPose
-from sim.own_models import OwnModel
+from sim.own_models import MOST_TURNS, OwnModel
 
 MOST_CHOICES = 8
-"""Assemblies are tried one by one up to so many choices, two to the power of it; the dyads after
-these keep the first."""
+"""Assemblies are tried one by one, two to the power of the choices; more of these are asked for."""
 ALIKE = 0.1
 """A pose that is nearer to the best assembly than to the next, by less than this share, fits
 both."""
@@ -45,11 +44,15 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
     Raises
     ------
     CrankcheckError
-        No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
-        with the range in the coordinate of the joint; a branch that chooses nothing.
+        A start many turns away; no closed form; a pose that two assemblies fit as well, or a driver
+        angle that none reaches, with the range in the coordinate of the joint; more choices than
+        are tried; a branch that chooses nothing.
     """
-    if request.start_deg is not None and not math.isfinite(request.start_deg):
-        raise CrankcheckError(f"--start {request.start_deg:g}: give a number of degrees")
+    if request.start_deg is not None and abs(request.start_deg) > 360.0 * MOST_TURNS:
+        raise CrankcheckError(
+            f"--start {request.start_deg:g}: that is more than {MOST_TURNS} turns; give an angle "
+            f"between {-360 * MOST_TURNS} and {360 * MOST_TURNS} deg"
+        )
     law = ConstantSpeed(own.coordinate_rad(), request.speed_rad_s)
     bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
     try:
@@ -62,6 +65,13 @@ def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
         have = f"it has {', '.join(keys)}" if keys else "it has none"
         raise CrankcheckError(
             f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
+        )
+    free = [key for key in keys if key not in request.branch]
+    if len(free) > MOST_CHOICES:
+        raise CrankcheckError(
+            f"{request.path}: {len(free)} choices between two assemblies, of which {MOST_CHOICES} "
+            f"are found by trying; choose {len(free) - MOST_CHOICES} or more with --branch NAME=1 "
+            f"or NAME=-1, of {', '.join(free)}"
         )
     ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
     if not ranked:
@@ -98,7 +108,7 @@ def _fits(
     own: OwnModel, bare: Scene, keys: list[str], chosen: Mapping[str, int]
 ) -> Iterator[tuple[float, Scene]]:
     """Every assembly, with how far the pose is from it."""
-    free = [key for key in keys if key not in chosen][:MOST_CHOICES]
+    free = [key for key in keys if key not in chosen]
     drawn = own.drawn().bodies
     for signs in itertools.product((1, -1), repeat=len(free)):
         branch = dict.fromkeys(keys, 1) | dict(chosen) | dict(zip(free, signs, strict=True))

@@ -34,7 +34,8 @@ class Drawing:
     frame of each body and the order of siblings are random, and so is the sense of each hinge that
     is not driven. Loops are closed between sites or between bodies. ``free`` bodies hang on the
     world, two slides and a hinge each, and nothing but closures ties them. The link ``cut`` is two
-    bodies that a weld ties. ``reads`` gives the joints another zero.
+    bodies that a weld ties. ``reads`` gives the joints another zero. A ``balanced`` driver has its
+    centre of mass on its hinge, whatever the scene says.
     """
 
     turn: Array | None = None
@@ -45,6 +46,7 @@ class Drawing:
     cut: str | None = None
     degrees: bool = False
     reads: float = 0.0
+    balanced: bool = False
     option: str = ""
 
 
@@ -169,7 +171,10 @@ class _Writer:
         )
 
     def _inertial(self, made: _Body, body: str, mass: float, inertia: float) -> str:
-        place = self.placed[body].at(centre_of(self.scene, body))
+        centre = centre_of(self.scene, body)
+        if self.drawing.balanced and body == self.scene.driver.link:
+            centre = local_point(self.scene, body, self.scene.driver_pivot)
+        place = self.placed[body].at(centre)
         # About other axes it is less: only that across the plane is the scene's.
         across = " ".join(repr(part * inertia) for part in (0.6, 0.7, 1.0))
         quat = quaternion(made.axes.T @ self.turn)

@@ -24,6 +24,8 @@ HEAVY = 1e3
 """An armature over the largest inertia of a body: from there on soft loops give way first."""
 SOFT_S = 0.02
 """MuJoCo's own time constant of a loop; one that is longer is softer."""
+STIFFNESS, DAMPING = 1.0 / SOFT_S**2, 2.0 / SOFT_S
+"""Of MuJoCo's own loop [1/s^2] and [1/s], as a solref with both numbers below 0 gives them."""
 
 
 def disturbances(linkage: Linkage) -> list[Disturbance]:
@@ -39,6 +41,7 @@ def disturbances(linkage: Linkage) -> list[Disturbance]:
         *_tendons(model, ids),
         *_actuators(model, ids),
         *_loads(linkage),
+        *_carried(model, ids),
         *_loops(linkage),
         *_apart(linkage),
         *_others(model, ids),
@@ -138,6 +141,10 @@ def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
             ]
             for kind in acts:
                 yield Disturbance(kind, f"tendon {name} goes over the linkage: {kind}")
+            rotor = float(model.tendon_armature[tendon])
+            if rotor:
+                text = f"tendon {name} goes over the linkage: an armature of {rotor:g}"
+                yield Disturbance("armature", f"{text}, which moves with it")
 
 
 def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
@@ -178,16 +185,35 @@ def _loads(linkage: Linkage) -> Iterator[Disturbance]:
         )
 
 
+def _carried(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+    """Bodies of the linkage whose weight is taken off or added to, where there is gravity."""
+    if not np.any(model.opt.gravity):
+        return
+    for body in np.flatnonzero(model.body_gravcomp):
+        if rigid(model, int(body)) in ids:
+            share, name = float(model.body_gravcomp[body]), body_name(model, int(body))
+            text = f"body {name}: gravcomp lifts it by {share:g} x its weight"
+            yield Disturbance("gravity", text)
+
+
 def _loops(linkage: Linkage) -> Iterator[Disturbance]:
     """Loops that are softer than MuJoCo's own."""
     model = linkage.component.model
     for each in linkage.component.closures:
-        time_s = float(model.eq_solref[each.index, 0])
-        if time_s > SOFT_S * (1 + 1e-9):
+        first, second = (float(number) for number in model.eq_solref[each.index])
+        # Both above 0 are a time constant and a damping ratio, both below a stiffness and a damping
+        # with the sign changed; for others MuJoCo takes its own.
+        if first > SOFT_S * (1 + 1e-9) and second > 0.0:
             yield Disturbance(
                 "softness",
-                f"loop {each.name}: solref gives it a time constant of {time_s:g} s, "
-                f"{time_s / SOFT_S:.2g} times MuJoCo's own",
+                f"loop {each.name}: solref gives it a time constant of {first:g} s, "
+                f"{first / SOFT_S:.2g} times MuJoCo's own",
+            )
+        elif max(first, second) <= 0.0 and (-first < STIFFNESS or -second < DAMPING):
+            yield Disturbance(
+                "softness",
+                f"loop {each.name}: solref gives it a stiffness of {abs(first):g} 1/s^2 and a "
+                f"damping of {abs(second):g} 1/s; MuJoCo's own are {STIFFNESS:g} and {DAMPING:g}",
             )
 
 

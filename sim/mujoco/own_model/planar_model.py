@@ -11,6 +11,7 @@ from models.array import Array
 from sim.mujoco.own_model.limbs import Limbs
 from sim.mujoco.own_model.linkage import Linkage
 from sim.mujoco.own_model.matter import Matter
+from sim.mujoco.own_model.points import size
 from sim.mujoco.own_model.scene import SceneRead
 
 
@@ -33,6 +34,18 @@ class PlanarModel:
     def loops(self) -> list[int]:
         """The equalities that close loops, or are part of a link."""
         return [each.index for each in self.linkage.component.closures]
+
+    @property
+    def inertia_kg_m2(self) -> float:
+        """The largest that a joint of the linkage has to move as the model is drawn; the mass on a
+        slide counts at the size of the linkage."""
+        model, extent = self.model, size(self.linkage)
+        return max(
+            float(model.dof_M0[model.jnt_dofadr[joint.index]])
+            * (1.0 if joint.kind == "hinge" else extent**2)
+            for body in self.linkage.component.bodies
+            for joint in body.joints
+        )
 
     @property
     def qpos(self) -> Array:

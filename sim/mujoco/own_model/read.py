@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
@@ -33,7 +35,7 @@ from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.tour import tour
 from sim.mujoco.own_model.variants import OFF, RECOMMENDED, applied, checked, held, profiles
 from sim.mujoco.stepped import VERSION, compiled_file
-from sim.own_models import Disturbance, Tour
+from sim.own_models import MOST_TURNS, Disturbance, Tour
 from sim.tree_poses import body_poses
 
 
@@ -109,7 +111,10 @@ class ReadModel:
 
     def tour(self, scene: Scene, states: Sequence[State]) -> Tour:
         """Hold the model in states of its closed form."""
-        return tour(self.planar, scene, states)
+        try:
+            return tour(self.planar, scene, states)
+        except ModelError as error:
+            raise ModelError(f"{self.path}: {error}") from None
 
     def engine(self, *, touching: bool) -> Engine:
         """MuJoCo with this model, and the lines to tell of it as profiles."""
@@ -150,7 +155,8 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
     Raises
     ------
     ModelError
-        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name.
+        See `load`, `component`, `linkage` and `scene_of`; no keyframe of that name, or one that is
+        not finite, or a hinge that is many turns away.
     """
     model = load(path)
     names = [name_of(model, mujoco.mjtObj.mjOBJ_KEY, index) for index in range(model.nkey)]
@@ -158,12 +164,47 @@ def read_model(path: Path, joint: str, key: str | None = None) -> ReadModel:
         there = [name for name in names if name]
         hint = suggestion(key, there, "it has") if there else "the model has none with a name"
         raise ModelError(f"--key {key!r}: no keyframe of that name; {hint}")
+    keyframe = None if key is None else names.index(key)
+    if keyframe is not None:
+        _refuse_not_finite(path, model, keyframe)
+        model = _moved(model, keyframe)
     try:
         joined = linkage(component(model, joint))
         scene = scene_of(joined, scene_name(path.stem, "model", ()), f"read off {path.name}")
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
-    keyframe = None if key is None else names.index(key)
-    if keyframe is not None and not np.isfinite(model.key_qpos[keyframe]).all():
-        raise ModelError(f"{path}: keyframe {key}: its qpos is not finite")
-    return ReadModel(path, PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe))
+    planar = PlanarModel(model, joined, scene, limbs_of(joined, scene), keyframe)
+    _refuse_many_turns(path, planar)
+    return ReadModel(path, planar)
+
+
+def _refuse_many_turns(path: Path, planar: PlanarModel) -> None:
+    """Refuse a pose with hinges so far round that the rounding of their angles would be judged."""
+    for body in planar.linkage.component.bodies:
+        for joint in body.joints:
+            turns = float(planar.qpos[planar.model.jnt_qposadr[joint.index]]) / math.tau
+            if joint.kind == "hinge" and not abs(turns) <= MOST_TURNS:
+                raise ModelError(
+                    f"{path}: joint {joint.name} reads {turns:.3g} turns in this pose; take whole "
+                    f"turns off it, to within {MOST_TURNS}"
+                )
+
+
+def _refuse_not_finite(path: Path, model: Any, keyframe: int) -> None:
+    for what in ("qpos", "mpos", "mquat"):
+        if not np.isfinite(getattr(model, f"key_{what}")[keyframe]).all():
+            name = name_of(model, mujoco.mjtObj.mjOBJ_KEY, keyframe)
+            raise ModelError(f"{path}: keyframe {name}: its {what} is not finite")
+
+
+def _moved(model: Any, keyframe: int) -> Any:
+    """The model with its mocap bodies where the keyframe has them: they are ground."""
+    moved = copy.copy(model)
+    places = model.key_mpos[keyframe].reshape(-1, 3)
+    turns = model.key_mquat[keyframe].reshape(-1, 4)
+    for body in np.flatnonzero(model.body_mocapid >= 0):
+        mocap = int(model.body_mocapid[body])
+        turn = np.array(turns[mocap])
+        mujoco.mju_normalize4(turn)
+        moved.body_pos[body], moved.body_quat[body] = places[mocap], turn
+    return moved

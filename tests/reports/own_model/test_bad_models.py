@@ -15,6 +15,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
 from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
+from reports.own_model.assembly import MOST_CHOICES
 from reports.own_model.request import ModelRequest
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
@@ -142,6 +143,10 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
                 '<equality><tendon tendon1="t"/>'),
         "a <tendon> equality couples coordinates",
     ),
+    "a hinge far round": (
+        planted(ROCKER_JOINT, '<joint name="D" ref="1e12"/>'),
+        "model.xml: joint D reads 1.59e+11 turns in this pose; take whole turns off it",
+    ),
     "no step": (planted('timestep="0.001"', 'timestep="0"'), "its timestep is 0 s; give it one"),
     "two cranks": (FIVE, "(with A held these still move: B, E, D)"),
     "no closed form": (TRIAD, "form an Assur group of 4 links"),
@@ -200,6 +205,8 @@ ASKED = {
     "not against the ground": ({"joint": "B"}, "it turns against body crank; drivable: A, D"),
     "no such keyframe": ({"key": "home"}, "--key 'home': no keyframe of that name"),
     "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
+    "far round": ({"start_deg": 36001.0}, "--start 36001: that is more than 100 turns"),
+    "far round, at once": ({"start_deg": -1e12}, "--start -1e+12: that is more than 100 turns"),
     "no number": ({"start_deg": float("nan")}, "--start nan"),
     "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
     "too short": ({"turns": 0.1}, "take 0.127 turns or more"),
@@ -250,6 +257,39 @@ def test_both_assemblies_of_a_flat_pose_may_be_chosen(tmp_path: Path) -> None:
     with pytest.raises(CrankcheckError, match="two assemblies equally well, C"):
         read_text(tmp_path, flat)
     assert read_text(tmp_path, flat, branch={"C": -1}).scene.branch == {"C": -1}
+
+
+def driving(rockers: int) -> str:
+    """A crank with a coupler to each of so many rockers, all four-bars assembled alike."""
+    coupler = '<body name="c{0}" pos="0 0 0.1"><joint/><geom fromto="0 0 0 0.23 0 0.09"/></body>'
+    rocker = '<body name="r{0}" pos="0.3 0 0"><joint/><geom fromto="0 0 0 -0.07 0 0.19"/></body>'
+    pin = '<connect name="C{0}" body1="c{0}" body2="r{0}" anchor="0.23 0 0.09"/>'
+    parts = ["".join(part.format(n) for n in range(rockers)) for part in (coupler, rocker, pin)]
+    return f"""<mujoco>
+  <default><geom type="capsule" size="0.004"/><joint axis="0 -1 0"/></default>
+  <worldbody>
+    <body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0 0.1"/>{parts[0]}</body>{parts[1]}
+  </worldbody>
+  <equality>{parts[2]}</equality>
+</mujoco>
+"""
+
+
+def test_more_choices_than_are_tried_are_asked_for(tmp_path: Path) -> None:
+    many = driving(MOST_CHOICES + 1)
+    with pytest.raises(CrankcheckError, match=r"9 choices .* choose 1 or more .*, of C0, C1, "):
+        read_text(tmp_path, many)
+    found = read_text(tmp_path, many, branch={"C8": 1}).scene.branch
+    assert set(found.values()) == {1}
+    assert len(found) == MOST_CHOICES + 1
+
+
+@pytest.mark.parametrize("start_deg", [36000.0, -36000.0])
+def test_a_start_many_turns_away_is_held_to_what_one_nearby_is(
+    start_deg: float, tmp_path: Path
+) -> None:
+    account = read_text(tmp_path, HEALTHY, start_deg=start_deg, converge=False, turns=0.3)
+    assert checked_line(Line(account, "recommended")).verdict == "within"
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])

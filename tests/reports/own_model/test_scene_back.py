@@ -45,6 +45,7 @@ DRAWINGS = {
     "closed between bodies, anyhow": Drawing(turn=UPRIGHT, askew=2, sites=False),
     "all bodies free": Drawing(free=True),
     "all bodies free, anyhow": Drawing(turn=TILTED, askew=4, free=True),
+    "balanced": Drawing(free=True, balanced=True),
     "another zero, in degrees": Drawing(degrees=True, reads=1.0),
     "another zero, anyhow": Drawing(reads=0.3, askew=7),
 }
@@ -231,7 +232,13 @@ def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
 
 @pytest.mark.parametrize(
     ("kind", "error"),
-    [("tilted", 2e-6), ("far away", 2e-6), ("all bodies free", 5e-6), ("cut", 2e-6)],
+    [
+        ("tilted", 2e-6),
+        ("far away", 2e-6),
+        ("all bodies free", 5e-6),
+        ("balanced", 5e-6),
+        ("cut", 2e-6),
+    ],
 )
 def test_it_runs_as_recommended_however_it_is_drawn(
     kind: str, error: float, tmp_path: Path

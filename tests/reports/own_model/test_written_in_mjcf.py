@@ -10,13 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.own_model.account import Account, read_here
+from models.errors import CrankcheckError
+from reports.own_model.account import Account, Line, checked_line, read_here
 from reports.own_model.request import ModelRequest
 from tests.worlds.own_four_bar import BY_SITES, CLOSED, HEALTHY, ROCKER_JOINT, planted
 from tests.worlds.own_models import texts
 
 LENGTHS = {"crank": 0.1, "coupler": 0.25, "rocker": 0.2}
 BASE = '<body name="crank">'
+SLIDING = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
 BALL = '<geom size="0.1" type="sphere"/>'
 
 
@@ -94,18 +96,48 @@ def test_it_is_the_same_four_bar(edits: tuple[str, ...], tmp_path: Path) -> None
 
 
 def test_a_mocap_body_is_ground(tmp_path: Path) -> None:
-    free = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>' + ROCKER_JOINT
     text = planted(
         BASE,
         f'<body name="stand" mocap="true" pos="0.3 0 0">{BALL}</body>{BASE}',
         ROCKER_JOINT,
-        free,
+        SLIDING + ROCKER_JOINT,
         "</equality>",
         '<connect name="D" body1="stand" body2="rocker" anchor="0 0 0"/></equality>',
     )
     found = account(tmp_path, text)
     assert_four_bar(found)
     assert "mocap bodies count as ground" in texts(found)
+
+
+@pytest.mark.parametrize(("place", "pivot_m"), [("", 0.3), ('mpos="0.35 0 0"', 0.35)])
+def test_a_mocap_body_is_where_the_keyframe_has_it(
+    place: str, pivot_m: float, tmp_path: Path
+) -> None:
+    text = planted(
+        BASE,
+        f'<body name="stand" mocap="true" pos="0.3 0 0">{BALL}</body>{BASE}',
+        ROCKER_JOINT,
+        SLIDING + ROCKER_JOINT,
+        "</equality>",
+        '<connect name="D" body1="stand" body2="rocker" anchor="0 0 0"/></equality>',
+        "</mujoco>",
+        f'<keyframe><key name="moved" qpos="0 0 0 0 0" {place} mquat="2 0 0 0"/></keyframe>'
+        "</mujoco>",
+    )
+    found = account(tmp_path, text, key="moved", turns=0.2, converge=False)
+    assert math.dist(*found.scene.ground.values()) == pytest.approx(pivot_m)
+    assert checked_line(Line(found, "recommended")).verdict == "within"
+
+
+def test_a_keyframe_that_puts_a_mocap_body_nowhere_is_refused(tmp_path: Path) -> None:
+    text = planted(
+        BASE,
+        f'<body name="stand" mocap="true">{BALL}</body>{BASE}',
+        "</mujoco>",
+        '<keyframe><key name="off" qpos="0 0 0" mpos="nan 0 0"/></keyframe></mujoco>',
+    )
+    with pytest.raises(CrankcheckError, match="keyframe off: its mpos is not finite"):
+        account(tmp_path, text, key="off")
 
 
 def test_masses_and_inertias_come_from_geoms(tmp_path: Path) -> None:

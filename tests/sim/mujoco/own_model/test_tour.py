@@ -30,5 +30,5 @@ def test_a_model_that_was_misread_is_not_run(tmp_path: Path) -> None:
     (x, y) = coupler.points["C"]
     longer = replace(coupler, points={**coupler.points, "C": (x + 1e-5, y)})
     other = replace(own.scene, links={**own.scene.links, "coupler": longer})
-    with pytest.raises(ModelError, match=r"loop C: closed in the closed form .* misread"):
+    with pytest.raises(ModelError, match=r"model.xml: loop C: closed in the .* misread"):
         held(own, other)
