@@ -17,10 +17,11 @@ from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
-from reports.own_model.account import read, run_lines
+from reports.own_model.account import read
 from reports.own_model.document import document
-from reports.own_model.judged import JudgedModel, judged_model
+from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
+from reports.own_model.running import run_lines
 from reports.own_model.table import show
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
@@ -58,8 +59,7 @@ def verify_model(request: VerifyRequest, console: Console, progress: Console) ->
     _check_outputs(request, account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
-        lines = run_lines(account, limits, lambda _: bar.advance(task))
-    judged = judged_model(account, lines)
+        judged = run_lines(account, limits, lambda _: bar.advance(task))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     try:

@@ -12,9 +12,18 @@ from typing import Any
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import EngineError
-from sim.mujoco.own_model.variants import STIFF_SOLIMP, TOLERANCE, stiff_solref
+from sim.mujoco.own_model.variants import (
+    INTEGRATOR,
+    LEAST,
+    SOLVER,
+    SOLVERS,
+    STIFF_SOLIMP,
+    TOLERANCE,
+    stiff_solref,
+)
 from sim.mujoco.own_model.xml_tags import Tag, tags
 from sim.mujoco.settings import INTEGRATORS
+from sim.own_models import Advised
 
 ATTRIBUTE = re.compile(rb"""([\w:.-]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
@@ -41,20 +50,24 @@ class Advice:
         return "set " + "; ".join(parts)
 
 
-def advice(model: Any, dt_s: float, *, touching: bool) -> Advice:
-    """What is recommended at a step, where the model has not got it; contacts are disabled where
-    links are ``touching``."""
+def advice(model: Any, dt_s: float, advised: Advised) -> Advice:
+    """What is recommended at a step, where the model has not got it."""
     option = {}
     if float(model.opt.timestep) != dt_s:
         option["timestep"] = repr(dt_s)
-    if INTEGRATORS[int(model.opt.integrator)] != "RK4":
-        option["integrator"] = "RK4"
+    if advised.integrator and INTEGRATORS[int(model.opt.integrator)] != INTEGRATOR:
+        option["integrator"] = INTEGRATOR
+    if SOLVERS[int(model.opt.solver)] != SOLVER:
+        option["solver"] = SOLVER
+    for name, least in LEAST.items():
+        if int(getattr(model.opt, name)) < least:
+            option[name] = str(least)
     if float(model.opt.tolerance) > TOLERANCE:
         option["tolerance"] = f"{TOLERANCE:g}"
     off = int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     return Advice(
         option,
-        {"contact": "disable"} if touching and not off else {},
+        {"contact": "disable"} if advised.contacts_off and not off else {},
         {
             "solref": " ".join(repr(number) for number in stiff_solref(dt_s)),
             "solimp": " ".join(f"{number:g}" for number in STIFF_SOLIMP),

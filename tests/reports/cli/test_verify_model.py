@@ -20,20 +20,19 @@ from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify_model
 from reports.cli.commands.verify_model import IN_FOLDER
-from reports.own_model.account import Account, Line, checked_line, read_here
+from reports.own_model.account import Account, checked_line, read_here
 from reports.own_model.checked_line import CheckedLine
+from reports.own_model.judged import JudgedModel
+from reports.own_model.running import judged_lines
 from tests.worlds.own_models import SLIDER_CRANK
 
 DRIVEN = ["verify", "--mjcf", "engine.xml", "--drive", "motor", "--speed", "10", "--turns", "1"]
 INCLUDING = SLIDER_CRANK.replace('<option timestep="0.002"/>', '<include file="parts/option.xml"/>')
 
 
-def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> list[CheckedLine]:
+def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> JudgedModel:
     """All lines in this process."""
-    lines = [checked_line(Line(account, name)) for name in account.profiles]
-    for line in lines:
-        done(line)
-    return lines
+    return judged_lines(account, checked_line, done)
 
 
 @pytest.fixture(autouse=True)
