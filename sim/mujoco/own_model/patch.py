@@ -99,9 +99,12 @@ def patched(raw: bytes, loops: Iterable[int], count: int, advised: Advice) -> by
 
 
 def diff(path: Path, raw: bytes, new: bytes) -> str:
-    """Both texts as a unified diff, which `patch` takes. Raises UnicodeDecodeError for what is not
-    UTF-8."""
-    lines = unified_diff(_lines(raw), _lines(new), path.name, path.name, n=0)
+    """Both texts as a unified diff. Without the lines around a change `git apply` refuses it, and
+    `patch` changes any other file. Raises EngineError for what is not UTF-8."""
+    try:
+        lines = list(unified_diff(_lines(raw), _lines(new), path.name, path.name, n=3))
+    except UnicodeDecodeError:
+        raise EngineError("the file is not UTF-8") from None
     # A last line without an end has to say so.
     return "".join(
         line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines

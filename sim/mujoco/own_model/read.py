@@ -133,7 +133,7 @@ class ReadModel:
             new = patched(raw, planar.loops, int(planar.model.neq), told)
             found = compiled_file(self.path, new)
             text = diff(self.path, raw, new)
-        except (EngineError, UnicodeDecodeError) as error:
+        except EngineError as error:
             return f"{error}: {told.words()}\n"
         line = profiles((), advised)[RECOMMENDED]
         settings = {name: setting.value for name, setting in line.settings.items()}

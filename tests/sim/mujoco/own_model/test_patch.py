@@ -94,6 +94,20 @@ def test_the_program_patch_takes_it(form: str, off: bool, tmp_path: Path) -> Non
     assert ("\r\n" in FORMS[form]) == (b"\r\n" in own.path.read_bytes())
 
 
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not there")
+def test_git_takes_it_and_another_file_is_refused(tmp_path: Path) -> None:
+    own = read(tmp_path / "model.xml", PLAIN)
+    text = own.patch(0.001, Advised())
+    expected = wanted(own, 0.001, Advised())
+    apply = ["git", "apply", "-"]
+    subprocess.run(apply, input=text.encode(), cwd=tmp_path, check=True, capture_output=True)
+    assert_alike(mujoco.MjModel.from_xml_path(str(own.path)), expected)
+    again = subprocess.run(
+        apply, input=text.encode(), cwd=tmp_path, check=False, capture_output=True
+    )
+    assert again.returncode != 0
+
+
 def test_nothing_else_of_the_file_changes(tmp_path: Path) -> None:
     own = read(tmp_path / "model.xml", PLAIN)
     lines = own.patch(0.001, Advised()).splitlines()
@@ -139,7 +153,8 @@ def test_a_file_in_another_encoding_is_said_in_words(tmp_path: Path) -> None:
     path = tmp_path / "model.xml"
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
     path.write_bytes((head + PLAIN.replace('"four-bar"', '"viergl\u00e9"')).encode("latin-1"))
-    assert "set in <option>" in read_model(path, "A").patch(0.001, Advised())
+    said = read_model(path, "A").patch(0.001, Advised())
+    assert said.startswith("the file is not UTF-8: set in <option>")
 
 
 def test_more_equalities_than_the_text_has_are_an_error() -> None:
