@@ -46,16 +46,19 @@ def test_the_integrator_stays_where_another_one_diverges() -> None:
 
 
 @pytest.mark.parametrize(
-    ("collide", "off"),
-    [('contype="0" conaffinity="0"', False), ('contype="1" conaffinity="1"', True)],
+    ("soft", "off"), [('solref="100 1" solimp="1e-4 1e-4 1"', False), ('solref="0.02 1"', True)]
 )
-def test_contacts_are_off_only_where_that_gains(collide: str, off: bool) -> None:
-    """A ball in the way of the rocker, which pushes it or does not."""
-    ball = f'<geom name="ball" type="sphere" size="0.02" pos="0.3 0 0.2" {collide}/>'
+def test_contacts_are_off_only_where_that_gains(soft: str, off: bool) -> None:
+    """A ball in the way of the rocker that pushes it, or gives way."""
+    ball = (
+        '<geom name="ball" type="sphere" size="0.02" pos="0.3 0 0.2" contype="1" conaffinity="1" '
+        f'priority="1" {soft}/>'
+    )
     one = of(
         "<worldbody>", f"<worldbody>{ball}",
         'name="rocker-bar"', 'name="rocker-bar" contype="1" conaffinity="1"',
     )  # fmt: skip
+    assert "contacts" in {each.kind for each in one.account.disturbances}
     assert one.account.recommended.advised.contacts_off == off
     assert ('contact="disable"' in one.patch) == off
 
