@@ -22,6 +22,7 @@ from reports.own_model.document import document
 from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
 from reports.own_model.running import run_lines
+from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import show
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
@@ -35,6 +36,7 @@ IN_FOLDER = (
     "errors.parquet",
     "scene.toml",
     "recommended.diff",
+    "recommended.txt",
     "page.html",
 )
 NOT_OF_MODELS = {
@@ -146,8 +148,10 @@ def _content(name: str, judged: JudgedModel, facts: Mapping[str, str]) -> str | 
             return parquet(error_frame(judged.lines))
         case "scene.toml":
             return scene_text(judged.scene)
-        case "recommended.diff":
-            return judged.patch
+        case "recommended.diff":  # empty where there is none: one of an earlier run must not stay
+            return judged.patch if is_diff(judged.patch) else ""
+        case "recommended.txt":
+            return f"{recommended_head(judged)}\n{judged.patch}"
         case _:
             # It brings the drawings, which nothing else here needs.
             from reports.page.model_page import model_page

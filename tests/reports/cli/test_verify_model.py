@@ -145,6 +145,31 @@ def test_every_output_is_written_and_holds_what_it_should() -> None:
     assert "<title>crankcheck: engine.xml</title>" in (out / "page.html").read_text()
 
 
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (
+            SLIDER_CRANK.replace(
+                "<mujoco", '<?xml version="1.0" encoding="ISO-8859-1"?><!-- \xe9 --><mujoco', 1
+            ),
+            "the file is not UTF-8: set in <option>: ",
+        ),
+        (
+            SLIDER_CRANK.replace("</worldbody>", "</worldbody><include file='parts/late.xml'/>"),
+            "what it includes overrides the file itself: set in <option>: ",
+        ),
+    ],
+)
+def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why: str) -> None:
+    Path("parts/late.xml").write_text('<mujoco><option integrator="Euler"/></mujoco>')
+    Path("engine.xml").write_bytes(text.encode("latin-1"))
+    Path("out").mkdir()
+    Path("out/recommended.diff").write_text("--- of an earlier run\n")
+    assert ran(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
+    assert Path("out/recommended.diff").read_text() == ""
+    assert Path("out/recommended.txt").read_text().startswith(f"Recommended:\n{why}")
+
+
 def test_a_second_run_replaces_the_first_and_leaves_the_rest() -> None:
     out = Path("out")
     out.mkdir()
