@@ -38,6 +38,15 @@ class Disturbance:
     text: str
 
 
+@dataclass(frozen=True)
+class Advised:
+    """What the recommended settings set beside stiff loops and a tight solver: the integrator (the
+    file's own where not), contacts off."""
+
+    integrator: bool = True
+    contacts_off: bool = False
+
+
 class OwnModel(Protocol):
     """A model as it was read.
 
@@ -86,13 +95,12 @@ class OwnModel(Protocol):
         loop open that is shut there."""
         ...
 
-    def engine(self, *, touching: bool) -> Engine:
+    def engine(self, advised: Advised) -> Engine:
         """The engine, which runs this model whatever scene it is given: its profiles are the lines
-        to tell, as written first and recommended last, which avoids contacts where links are
-        ``touching``."""
+        to tell, as written first and recommended last."""
         ...
 
-    def patch(self, dt_s: float, *, touching: bool) -> str:
+    def patch(self, dt_s: float, advised: Advised) -> str:
         """The recommended settings at a step as a diff of the file, or in words."""
         ...
 

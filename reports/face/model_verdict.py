@@ -14,9 +14,10 @@ from reports.face.arguments import is_true, kind_of, path_of, text_of, tolerance
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
 from reports.output.provenance import provenance
-from reports.own_model.account import read, run_lines
-from reports.own_model.judged import JudgedModel, judged_model
+from reports.own_model.account import read
+from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
+from reports.own_model.running import run_lines
 from reports.plan.steps import positive
 from reports.workers.isolated import LIMIT_S, MEMORY_GB, checked_limits
 
@@ -120,11 +121,10 @@ def check_model(
     limits = checked_limits(
         positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
     )
-    account = read(request, limits)
-    judged = judged_model(account, run_lines(account, limits))
+    judged = run_lines(read(request, limits), limits)
     version = judged.own.version
     engines = {judged.own.cell.engine: version} if version else {}
-    return ModelVerdict(account=account, lines=judged.lines, facts=provenance(engines))
+    return ModelVerdict(account=judged.account, lines=judged.lines, facts=provenance(engines))
 
 
 def _number(value: object, name: str, unit: str) -> float:

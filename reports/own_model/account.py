@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,15 +13,15 @@ from analytic.kinematics import repeats_after, solve
 from models.errors import CrankcheckError, ReachError
 from models.motion import Motion
 from models.scene import Scene
-from reports.judge.cell import Cell, unfinished
+from reports.judge.cell import Cell
 from reports.judge.tolerance import check_names
 from reports.own_model.assembly import assembled, out_of_reach
-from reports.own_model.checked_line import CheckedLine, checked, without_run
+from reports.own_model.checked_line import CheckedLine, checked
 from reports.own_model.request import ModelRequest
 from reports.plan.singular import continued_note, refuse_singular
 from reports.plan.steps import counted
 from reports.workers.isolated import Isolated, Limits, Lost
-from sim.own_models import Disturbance, OwnModel, reader, reading_engine
+from sim.own_models import Advised, Disturbance, OwnModel, reader, reading_engine
 
 NO_MEMORY = "not allocate memory"
 """What an engine says that may have no more memory."""
@@ -30,10 +30,19 @@ POSES = 73
 
 
 @dataclass(frozen=True)
+class Proposal:
+    """Settings that may be recommended, and what they change of the file: a diff, or words; ""
+    where that is nothing."""
+
+    advised: Advised
+    patch: str
+
+
+@dataclass(frozen=True)
 class Account:
     """A model as it was read, from its ``files``: its scene, how far open its own pose is by joint
-    [m], what can disturb a comparison, the lines to run, and the recommended settings as a diff, or
-    in words."""
+    [m], what can disturb a comparison, the lines to run, what may be recommended, the first choice
+    first, and what is; ``helps`` is false where none of these was seen to gain anything."""
 
     request: ModelRequest
     scene: Scene
@@ -42,10 +51,11 @@ class Account:
     open_m: Mapping[str, float]
     notes: Sequence[str]
     disturbances: Sequence[Disturbance]
-    touching: bool
     profiles: Sequence[str]
-    patch: str
+    proposals: Sequence[Proposal]
+    recommended: Proposal
     files: Sequence[Path]
+    helps: bool = True
 
 
 @dataclass(frozen=True)
@@ -87,27 +97,6 @@ def read(request: ModelRequest, limits: Limits) -> Account:
     return _unless_lost(account, request, limits)
 
 
-def run_lines(
-    account: Account, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
-) -> list[CheckedLine]:
-    """Run all lines of an account, each in a process that is ended when it fails or hangs."""
-    child: Isolated[CheckedLine] = Isolated(limits)
-    lines = []
-    try:
-        for profile in account.profiles:
-            line = Line(account, profile)
-            result = child.call(checked_line, line)
-            if isinstance(result, Lost):
-                if isinstance(result.error, CrankcheckError):
-                    raise result.error
-                result = without_run(unfinished(line.cell, result.status, result.reason))
-            lines.append(result)
-            done(result)
-    finally:
-        child.close()
-    return lines
-
-
 def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
     if not isinstance(account, Lost):
         return account
@@ -141,7 +130,9 @@ def read_here(request: ModelRequest) -> Account:
             f"{request.path}: {error}; --start and --turns set the range of joint {request.joint}"
         ) from None
     seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
-    touching = bool(seen.touching)
+    proposals = [
+        Proposal(advised, own.patch(dt_s, advised)) for advised in _proposed(bool(seen.touching))
+    ]
     met = [
         Disturbance("contacts", f"{first} touches {second} in {share:.0%} of the poses")
         for (first, second), share in seen.touching.items()
@@ -155,11 +146,21 @@ def read_here(request: ModelRequest) -> Account:
         open_m=own.open_m(),
         notes=[*found.notes, *_passed(motion, request)],
         disturbances=[*met, *own.disturbances],
-        touching=touching,
-        profiles=list(own.engine(touching=touching).profiles),
-        patch=own.patch(dt_s, touching=touching),
+        profiles=list(own.engine(proposals[0].advised).profiles),
+        proposals=proposals,
+        recommended=proposals[0],
         files=own.files,
     )
+
+
+def _proposed(touching: bool) -> list[Advised]:
+    """What may be recommended: contacts off only where links are ``touching``, and the file's own
+    integrator where another one is no help."""
+    return [
+        Advised(integrator, contacts_off)
+        for integrator in (True, False)
+        for contacts_off in ((True, False) if touching else (False,))
+    ]
 
 
 def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
@@ -184,4 +185,4 @@ def checked_line(line: Line) -> CheckedLine:
     """Run and judge one line, in this process."""
     account, request = line.account, line.account.request
     own = reader()(request.path, request.joint, request.key)
-    return checked(line.cell, own.engine(touching=account.touching))
+    return checked(line.cell, own.engine(account.recommended.advised))

@@ -28,7 +28,8 @@ def document(judged: JudgedModel, facts: Mapping[str, str]) -> str:
             "scene": scene_text(account.scene),
             "notes": list(account.notes),
             "disturbances": [vars(group) for group in groups(judged)],
-            "recommended": account.patch,
+            "recommended": judged.patch,
+            "helps": account.helps,
         },
         "joints": [
             {

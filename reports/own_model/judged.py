@@ -67,8 +67,9 @@ class JudgedModel:
 
     @property
     def patch(self) -> str:
-        """The recommended settings as a diff of the file; in words where that can not be."""
-        return self.account.patch
+        """The recommended settings as a diff of the file; in words where that can not be; "" where
+        the file has them, or where they do not help."""
+        return self.account.recommended.patch if self.account.helps else ""
 
     @property
     def three(self) -> list[CheckedLine]:
@@ -163,7 +164,7 @@ def judged_model(account: Account, lines: Sequence[CheckedLine]) -> JudgedModel:
 def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
     """A line whose cures are the recommended settings, where these help."""
     last = judged.lines[-1]
-    if one is last or one.verdict == "within" or last.status != "ok":
+    if one is last or one.verdict == "within" or not judged.account.helps:
         return one
     error, best = errors_of(one)[0], errors_of(last)[0]
     if error < HELPS * best:

@@ -17,6 +17,7 @@ from reports.own_model.judged import PARTS, JudgedModel
 OPEN = 1e-9
 """A joint that is open by more, over the longest link, is told."""
 SHOWN = 6
+NO_HELP = "no settings that were tried here help"
 EACH = 3
 """Disturbances of a kind that are told on a terminal."""
 
@@ -169,6 +170,8 @@ def verdict_text(judged: JudgedModel) -> str:
         head = f"NOT RUN as written: {own.reason}"
     else:
         head = f"OUT OF TOLERANCE as written{_why(judged)}"
+    if not judged.account.helps:
+        return f"{head}; {NO_HELP}"
     better = "within" if last.verdict == "within" else last.verdict
     gain = judged.gains(last)[0]
     words = f", {factor_words(gain)}" if math.isfinite(gain) else ""
@@ -215,6 +218,15 @@ def step_heads(judged: JudgedModel) -> list[str]:
     if not judged.account.request.converge:
         return ["dt"]
     return ["dt" if parts == 1 else f"dt/{parts}" for parts in PARTS]
+
+
+def recommended_head(judged: JudgedModel) -> str:
+    """What is said of the recommended settings, before they follow, if there are any."""
+    if not judged.account.helps:
+        return f"{NO_HELP.capitalize()}: stiff loops run no better, nor with fourth-order steps."
+    if not judged.patch:
+        return "The file has the recommended settings already."
+    return f"Recommended{', as a diff of the file' * is_diff(judged.patch)}:"
 
 
 def is_diff(patch: str) -> bool:

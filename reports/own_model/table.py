@@ -23,8 +23,8 @@ from reports.own_model.sentences import (
     footer,
     gaps,
     groups,
-    is_diff,
     reading,
+    recommended_head,
     step_heads,
     steps_text,
     still_out,
@@ -145,10 +145,6 @@ def _disturbing(console: Console, judged: JudgedModel) -> None:
 
 
 def _recommended(console: Console, judged: JudgedModel) -> None:
-    """The recommended settings."""
-    patch = judged.patch
-    if not patch:
-        console.print("The file has the recommended settings already.\n", style="bold")
-        return
-    console.print(Text(f"Recommended{', as a diff of the file' * is_diff(patch)}:", "bold"))
-    console.print(harmless(patch), markup=False, highlight=False, soft_wrap=True)
+    """The recommended settings, or why there are none."""
+    console.print(Text(recommended_head(judged), "bold"))
+    console.print(harmless(judged.patch), markup=False, highlight=False, soft_wrap=True)

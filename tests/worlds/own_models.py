@@ -6,9 +6,10 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from reports.own_model.account import Account, Line, checked_line, read_here
-from reports.own_model.judged import JudgedModel, judged_model
+from reports.own_model.account import Account, checked_line, read_here
+from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
+from reports.own_model.running import judged_lines
 
 FACTS = {"crankcheck": "0.0.0", "made": "2026-01-02T03:04:05+00:00"}
 SLIDER_CRANK = """<mujoco model="engine">
@@ -65,8 +66,7 @@ def judged(text: str, joint: str, turns: float = 1.0, dt_s: float | None = None)
         path = Path(folder) / "mine.xml"
         path.write_text(text)
         account = read_here(ModelRequest(path, joint, 10.0, turns=turns, dt_s=dt_s))
-        lines = [checked_line(Line(account, name)) for name in account.profiles]
-    return judged_model(account, lines)
+        return judged_lines(account, checked_line, lambda _: None)
 
 
 def texts(account: Account) -> list[str]:

@@ -17,10 +17,12 @@ from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
-from reports.own_model.account import read, run_lines
+from reports.own_model.account import read
 from reports.own_model.document import document
-from reports.own_model.judged import JudgedModel, judged_model
+from reports.own_model.judged import JudgedModel
 from reports.own_model.request import ModelRequest
+from reports.own_model.running import run_lines
+from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import show
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
@@ -34,6 +36,7 @@ IN_FOLDER = (
     "errors.parquet",
     "scene.toml",
     "recommended.diff",
+    "recommended.txt",
     "page.html",
 )
 NOT_OF_MODELS = {
@@ -58,8 +61,7 @@ def verify_model(request: VerifyRequest, console: Console, progress: Console) ->
     _check_outputs(request, account.files)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("running", total=len(account.profiles))
-        lines = run_lines(account, limits, lambda _: bar.advance(task))
-    judged = judged_model(account, lines)
+        judged = run_lines(account, limits, lambda _: bar.advance(task))
     name = reading_engine()
     facts = provenance({name: engine(name).version()})
     try:
@@ -146,8 +148,10 @@ def _content(name: str, judged: JudgedModel, facts: Mapping[str, str]) -> str | 
             return parquet(error_frame(judged.lines))
         case "scene.toml":
             return scene_text(judged.scene)
-        case "recommended.diff":
-            return judged.patch
+        case "recommended.diff":  # empty where there is none: one of an earlier run must not stay
+            return judged.patch if is_diff(judged.patch) else ""
+        case "recommended.txt":
+            return f"{recommended_head(judged)}\n{judged.patch}"
         case _:
             # It brings the drawings, which nothing else here needs.
             from reports.page.model_page import model_page

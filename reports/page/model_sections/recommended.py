@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from models.errors import harmless
 from reports.own_model.judged import JudgedModel
-from reports.own_model.sentences import factor_words, is_diff
+from reports.own_model.sentences import factor_words, is_diff, recommended_head
 from reports.page.log_sections.foreign_text import name_text
 from reports.page.sections.section import Section
 
@@ -15,9 +15,10 @@ def build(judged: JudgedModel) -> Section:
     gain = judged.gains(last)[0]
     return Section(
         anchor="recommended",
-        title="Recommended settings",
+        title="Recommended settings" if judged.account.helps else "No settings help",
         template="model_recommended.html",
         words={
+            "head": recommended_head(judged),
             "patch": harmless(judged.patch),
             "is_diff": is_diff(judged.patch),
             "file": name_text(judged.account.request.path.name),

@@ -12,9 +12,18 @@ from typing import Any
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 
 from models.errors import EngineError
-from sim.mujoco.own_model.variants import STIFF_SOLIMP, TOLERANCE, stiff_solref
+from sim.mujoco.own_model.variants import (
+    INTEGRATOR,
+    LEAST,
+    SOLVER,
+    SOLVERS,
+    STIFF_SOLIMP,
+    TOLERANCE,
+    stiff_solref,
+)
 from sim.mujoco.own_model.xml_tags import Tag, tags
 from sim.mujoco.settings import INTEGRATORS
+from sim.own_models import Advised
 
 ATTRIBUTE = re.compile(rb"""([\w:.-]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
@@ -41,20 +50,24 @@ class Advice:
         return "set " + "; ".join(parts)
 
 
-def advice(model: Any, dt_s: float, *, touching: bool) -> Advice:
-    """What is recommended at a step, where the model has not got it; contacts are disabled where
-    links are ``touching``."""
+def advice(model: Any, dt_s: float, advised: Advised) -> Advice:
+    """What is recommended at a step, where the model has not got it."""
     option = {}
     if float(model.opt.timestep) != dt_s:
         option["timestep"] = repr(dt_s)
-    if INTEGRATORS[int(model.opt.integrator)] != "RK4":
-        option["integrator"] = "RK4"
+    if advised.integrator and INTEGRATORS[int(model.opt.integrator)] != INTEGRATOR:
+        option["integrator"] = INTEGRATOR
+    if SOLVERS[int(model.opt.solver)] != SOLVER:
+        option["solver"] = SOLVER
+    for name, least in LEAST.items():
+        if int(getattr(model.opt, name)) < least:
+            option[name] = str(least)
     if float(model.opt.tolerance) > TOLERANCE:
         option["tolerance"] = f"{TOLERANCE:g}"
     off = int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     return Advice(
         option,
-        {"contact": "disable"} if touching and not off else {},
+        {"contact": "disable"} if advised.contacts_off and not off else {},
         {
             "solref": " ".join(repr(number) for number in stiff_solref(dt_s)),
             "solimp": " ".join(f"{number:g}" for number in STIFF_SOLIMP),
@@ -86,9 +99,12 @@ def patched(raw: bytes, loops: Iterable[int], count: int, advised: Advice) -> by
 
 
 def diff(path: Path, raw: bytes, new: bytes) -> str:
-    """Both texts as a unified diff, which `patch` takes. Raises UnicodeDecodeError for what is not
-    UTF-8."""
-    lines = unified_diff(_lines(raw), _lines(new), path.name, path.name, n=0)
+    """Both texts as a unified diff. Without the lines around a change `git apply` refuses it, and
+    `patch` changes any other file. Raises EngineError for what is not UTF-8."""
+    try:
+        lines = list(unified_diff(_lines(raw), _lines(new), path.name, path.name, n=3))
+    except UnicodeDecodeError:
+        raise EngineError("the file is not UTF-8") from None
     # A last line without an end has to say so.
     return "".join(
         line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines

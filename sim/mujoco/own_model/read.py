@@ -35,7 +35,7 @@ from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.own_model.tour import tour
 from sim.mujoco.own_model.variants import OFF, RECOMMENDED, applied, checked, held, profiles
 from sim.mujoco.stepped import VERSION, compiled_file
-from sim.own_models import MOST_TURNS, Disturbance, Tour
+from sim.own_models import MOST_TURNS, Advised, Disturbance, Tour
 from sim.tree_poses import body_poses
 
 
@@ -116,7 +116,7 @@ class ReadModel:
         except ModelError as error:
             raise ModelError(f"{self.path}: {error}") from None
 
-    def engine(self, *, touching: bool) -> Engine:
+    def engine(self, advised: Advised) -> Engine:
         """MuJoCo with this model, and the lines to tell of it as profiles."""
 
         def opened(
@@ -125,27 +125,27 @@ class ReadModel:
             return OwnModelSession(self.planar, scene, state, settings, dt_s, drive)
 
         present = dict.fromkeys(each.kind for each in self._present if each.kind in OFF)
-        lines = profiles(present, touching)
+        lines = profiles(present, advised)
         return Engine("mujoco", lines, version=lambda: VERSION, check=checked, open=opened)
 
-    def patch(self, dt_s: float, *, touching: bool) -> str:
+    def patch(self, dt_s: float, advised: Advised) -> str:
         """The recommended settings as a diff, that was applied and compiled; in words, where the
         file does not hold all that it would change."""
         planar = self.planar
-        advised = advice(planar.model, dt_s, touching=touching)
+        told = advice(planar.model, dt_s, advised)
         try:
             raw = text_of(self.path)
-            new = patched(raw, planar.loops, int(planar.model.neq), advised)
+            new = patched(raw, planar.loops, int(planar.model.neq), told)
             found = compiled_file(self.path, new)
             text = diff(self.path, raw, new)
-        except (EngineError, UnicodeDecodeError) as error:
-            return f"{error}: {advised.words()}\n"
-        line = profiles((), touching)[RECOMMENDED]
+        except EngineError as error:
+            return f"{error}: {told.words()}\n"
+        line = profiles((), advised)[RECOMMENDED]
         settings = {name: setting.value for name, setting in line.settings.items()}
         wanted = copy.copy(planar.model)
         applied(wanted, planar.loops, settings, dt_s)
         if held(found, planar.loops, settings) != held(wanted, planar.loops, settings):
-            return f"what it includes overrides the file itself: {advised.words()}\n"
+            return f"what it includes overrides the file itself: {told.words()}\n"
         return text
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from models.motion import State
 from models.scene import Scene
 from sim.mujoco.own_model.closures import body_name, name_of
-from sim.mujoco.own_model.component import JOINTS, joint_name
+from sim.mujoco.own_model.component import JOINTS, joint_name, rigid
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.limbs import coordinates
 from sim.mujoco.own_model.planar_model import PlanarModel
@@ -46,7 +46,7 @@ def tour(own: PlanarModel, scene: Scene, states: Sequence[State]) -> Tour:
             mujoco.mj_fwdPosition(model, data)
             _refuse_misread(own, data, state)
             low, high = np.fmin(low, data.qpos), np.fmax(high, data.qpos)
-            for pair in _touching(model, data):
+            for pair in _touching(own, data):
                 touching[pair] = touching.get(pair, 0) + 1
     shares = {pair: count / len(states) for pair, count in touching.items()}
     most_first = sorted(shares.items(), key=lambda item: (-item[1], item[0]))
@@ -69,12 +69,16 @@ def _refuse_misread(own: PlanarModel, data: Any, state: State) -> None:
             )
 
 
-def _touching(model: Any, data: Any) -> set[tuple[str, str]]:
-    """The pairs of geoms that push one another."""
-    pairs = set()
+def _touching(own: PlanarModel, data: Any) -> set[tuple[str, str]]:
+    """The pairs of geoms that push one another, one of them on the linkage: a body beside it may
+    rest on its floor."""
+    model, pairs = own.model, set()
+    moving = {body.id for body in own.linkage.component.bodies}
     for index in range(int(data.ncon)):
         contact = data.contact[index]
-        if int(contact.exclude) == 0 and int(contact.efc_address) >= 0:
+        bodies = {rigid(model, int(model.geom_bodyid[g])) for g in contact.geom if g >= 0}
+        pushes = int(contact.exclude) == 0 and int(contact.efc_address) >= 0
+        if pushes and not moving.isdisjoint(bodies):
             first, second = sorted(_geom(model, int(geom)) for geom in contact.geom)
             pairs.add((first, second))
     return pairs

@@ -11,10 +11,12 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 from models.mjcf_options import STIFF_DAMPING, STIFF_IMPEDANCE, STIFF_STEPS
 from sim.engine import Profile, Setting, Settings, SettingValue
 from sim.mujoco.settings import INTEGRATORS
+from sim.own_models import Advised
 from sim.settings import SettingError, check_choices
 
 AS_WRITTEN, RECOMMENDED = "as-written", "recommended"
 KEPT, STIFF = "as-written", "stiff"
+INTEGRATOR = "RK4"
 TOLERANCE = 1e-16
 """Of the solver, recommended: below it no error falls any more, and it costs no iteration where the
 only constraints are pins, which Newton solves in one."""
@@ -30,12 +32,14 @@ OFF: Mapping[str, Any] = {
 }
 """What can be off, and MuJoCo's flag for it."""
 SOLVERS = ("PGS", "CG", "Newton")
+SOLVER = "Newton"
+LEAST: Mapping[str, int] = {"iterations": 100, "ls_iterations": 50}
+"""Iterations of the solver, recommended: MuJoCo's own; a model that allows more keeps them."""
 CHOICES = {"integrator": (KEPT, *INTEGRATORS), "loops": (KEPT, STIFF)}
 
 
-def profiles(present: Iterable[str], touching: bool) -> dict[str, Profile]:
-    """The lines of a model: as written, without each of what is ``present``, and recommended, which
-    leaves contacts out where some are ``touching``."""
+def profiles(present: Iterable[str], advised: Advised) -> dict[str, Profile]:
+    """The lines of a model: as written, without each of what is ``present``, and recommended."""
     lines = [
         _profile(AS_WRITTEN, "the file as it is"),
         *(
@@ -44,10 +48,10 @@ def profiles(present: Iterable[str], touching: bool) -> dict[str, Profile]:
         ),
         _profile(
             RECOMMENDED,
-            "fourth-order steps, and loops as stiff as the step allows",
-            integrator="RK4",
+            f"{'fourth-order steps, and ' * advised.integrator}loops as stiff as the step allows",
+            integrator=INTEGRATOR if advised.integrator else KEPT,
             loops=STIFF,
-            off="contacts" if touching else "",
+            off="contacts" if advised.contacts_off else "",
         ),
     ]
     return {line.name: line for line in lines}
@@ -62,7 +66,7 @@ def _profile(
         summary,
         {
             "integrator": Setting(integrator, "the file's own, or the recommended one"),
-            "loops": Setting(loops, "solref and solimp of the loops, and the solver's tolerance"),
+            "loops": Setting(loops, "solref and solimp of the loops, and the solver"),
             "off": Setting(off, "what is switched off, with + between"),
         },
     )
@@ -92,6 +96,9 @@ def applied(model: Any, loops: Iterable[int], settings: Settings, dt_s: float) -
         model.opt.disableflags |= int(OFF[name])
     if settings["loops"] == STIFF:
         model.opt.tolerance = min(TOLERANCE, float(model.opt.tolerance))
+        model.opt.solver = SOLVERS.index(SOLVER)
+        for name, least in LEAST.items():
+            setattr(model.opt, name, max(least, int(getattr(model.opt, name))))
         for loop in loops:
             model.eq_solref[loop] = stiff_solref(dt_s)
             model.eq_solimp[loop] = STIFF_SOLIMP
@@ -105,7 +112,7 @@ def held(model: Any, loops: Iterable[int], settings: Settings) -> dict[str, Sett
         "timestep_s": float(opt.timestep),
         "integrator_held": INTEGRATORS[int(opt.integrator)],
         "solver": SOLVERS[int(opt.solver)],
-        "iterations": int(opt.iterations),
+        **{name: int(getattr(opt, name)) for name in LEAST},
         "tolerance": float(opt.tolerance),
         "disableflags": int(opt.disableflags),
     }

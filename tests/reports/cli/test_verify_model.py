@@ -20,20 +20,19 @@ from reports.cli import app
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify_model
 from reports.cli.commands.verify_model import IN_FOLDER
-from reports.own_model.account import Account, Line, checked_line, read_here
+from reports.own_model.account import Account, checked_line, read_here
 from reports.own_model.checked_line import CheckedLine
+from reports.own_model.judged import JudgedModel
+from reports.own_model.running import judged_lines
 from tests.worlds.own_models import SLIDER_CRANK
 
 DRIVEN = ["verify", "--mjcf", "engine.xml", "--drive", "motor", "--speed", "10", "--turns", "1"]
 INCLUDING = SLIDER_CRANK.replace('<option timestep="0.002"/>', '<include file="parts/option.xml"/>')
 
 
-def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> list[CheckedLine]:
+def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> JudgedModel:
     """All lines in this process."""
-    lines = [checked_line(Line(account, name)) for name in account.profiles]
-    for line in lines:
-        done(line)
-    return lines
+    return judged_lines(account, checked_line, done)
 
 
 @pytest.fixture(autouse=True)
@@ -144,6 +143,31 @@ def test_every_output_is_written_and_holds_what_it_should() -> None:
     }
     assert (out / "recommended.diff").read_text().startswith("--- engine.xml\n+++ engine.xml\n")
     assert "<title>crankcheck: engine.xml</title>" in (out / "page.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (
+            SLIDER_CRANK.replace(
+                "<mujoco", '<?xml version="1.0" encoding="ISO-8859-1"?><!-- \xe9 --><mujoco', 1
+            ),
+            "the file is not UTF-8: set in <option>: ",
+        ),
+        (
+            SLIDER_CRANK.replace("</worldbody>", "</worldbody><include file='parts/late.xml'/>"),
+            "what it includes overrides the file itself: set in <option>: ",
+        ),
+    ],
+)
+def test_what_can_not_be_a_diff_is_in_a_text_and_no_diff_is_left(text: str, why: str) -> None:
+    Path("parts/late.xml").write_text('<mujoco><option integrator="Euler"/></mujoco>')
+    Path("engine.xml").write_bytes(text.encode("latin-1"))
+    Path("out").mkdir()
+    Path("out/recommended.diff").write_text("--- of an earlier run\n")
+    assert ran(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
+    assert Path("out/recommended.diff").read_text() == ""
+    assert Path("out/recommended.txt").read_text().startswith(f"Recommended:\n{why}")
 
 
 def test_a_second_run_replaces_the_first_and_leaves_the_rest() -> None:

@@ -14,9 +14,10 @@ from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.mjcf import build
-from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
+from reports.own_model.account import Account, Line, checked_line, read, read_here
 from reports.own_model.assembly import MOST_CHOICES
 from reports.own_model.request import ModelRequest
+from reports.own_model.running import run_lines
 from reports.workers.isolated import Limits
 from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
 
@@ -316,7 +317,7 @@ def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
 def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
     """In a process of its own (0.4 s), which is ended."""
     account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])
-    (line,) = run_lines(account, Limits(0.01, 2.0))
+    (line,) = run_lines(account, Limits(0.01, 2.0)).lines
     assert (line.verdict, line.status, line.reason) == ("out", "timeout", "no end within 0.01 s")
 
 

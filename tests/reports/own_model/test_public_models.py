@@ -72,7 +72,7 @@ def test_the_rhombus_touches_the_floor_and_itself_and_passes_change_points() -> 
     for name in ("motor", "position-servo", "velocity-servo"):
         assert f"actuator {name} acts on joint drive" in told
     assert "change points of far-corner at driver 90, 270 deg" in account.notes[-1]
-    assert '<flag contact="disable"/>' in account.patch
+    assert '<flag contact="disable"/>' in account.recommended.patch
 
 
 def test_the_slider_crank_starts_at_a_dead_point_with_its_rod_in_the_slider() -> None:

@@ -29,6 +29,7 @@ from reports.own_model.request import ModelRequest
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.patch import advice, patched
 from sim.mujoco.own_model.read import read_model
+from sim.own_models import Advised
 from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
 from tests.worlds.own_four_bar import planted
 from tests.worlds.strategies import Designed, mechanisms
@@ -288,7 +289,7 @@ def test_the_patched_file_runs_as_the_line_recommended(tmp_path: Path) -> None:
     asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
     account = read_here(asked)
     own = read_model(path, "A")
-    advised = advice(own.planar.model, account.dt_s, touching=False)
+    advised = advice(own.planar.model, account.dt_s, Advised())
     recommended = checked_line(Line(account, "recommended"))
     path.write_bytes(patched(path.read_bytes(), [0], 1, advised))
     written = checked_line(Line(read_here(asked), "as-written"))

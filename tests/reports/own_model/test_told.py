@@ -149,7 +149,8 @@ def test_settings_that_are_there_already_and_those_in_words_are_told(rubbing: Ju
         ("", "The file has the recommended settings already."),
         ("set in <option>: [bold]x", "Recommended:"),
     ):
-        one = replace(rubbing, account=replace(rubbing.account, patch=patch))
+        proposal = replace(rubbing.account.recommended, patch=patch)
+        one = replace(rubbing, account=replace(rubbing.account, recommended=proposal))
         lines = printed(one)
         assert told in lines
         assert not patch or patch in lines

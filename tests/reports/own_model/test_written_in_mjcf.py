@@ -178,7 +178,8 @@ def test_includes_are_read_from_the_main_folder_or_that_of_the_includer(
     text = HEALTHY[: HEALTHY.index("  <equality>\n")] + '<include file="parts/all.xml"/></mujoco>'
     found = account(tmp_path, text)
     assert_four_bar(found)
-    assert found.patch.startswith("0 of its 1 equalities stand in the file itself: set in each")
+    said = found.recommended.patch
+    assert said.startswith("0 of its 1 equalities stand in the file itself: set in each")
 
 
 def test_an_attached_model_is_read(tmp_path: Path) -> None:

@@ -95,7 +95,7 @@ def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
         request=request,
         notes=[NASTY],
         disturbances=[Disturbance("contacts", NASTY)],
-        patch=f"--- {NASTY}\n",
+        recommended=replace(account.recommended, patch=f"--- {NASTY}\n"),
         open_m={NASTY: 1.0, **account.open_m},
     )
     text = model_page(JudgedModel(account=hostile, lines=lost(rubbing).lines), FACTS)

@@ -17,6 +17,7 @@ from sim.mujoco.own_model import session
 from sim.mujoco.own_model.read import read_model
 from sim.mujoco.own_model.session import OwnModelSession
 from sim.mujoco.settings import INTEGRATORS
+from sim.own_models import Advised
 
 BAR = '<geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.01"/>'
 ROCKER = f"""<body name="rocker" pos="0.4 0 0" euler="0 0 110"><joint axis="0 0 1"/>{BAR}
@@ -60,7 +61,7 @@ def started(
     own = read_model(path, "motor")
     scene = assembled(own, ModelRequest(path, "motor", 10.0)).scene
     start = solve(scene, np.zeros(1), bound=False).state()
-    profile = own.engine(touching=False).profiles["as-written"]
+    profile = own.engine(Advised()).profiles["as-written"]
     settings = {name: each.value for name, each in profile.settings.items()}
     settings["integrator"] = integrator
     return OwnModelSession(own.planar, scene, start, settings, 0.002, "prescribed"), start

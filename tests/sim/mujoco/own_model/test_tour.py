@@ -13,7 +13,7 @@ from models.scene import Scene
 from sim.mujoco.own_model.fault import ModelError
 from sim.mujoco.own_model.read import ReadModel, read_model
 from sim.own_models import Tour
-from tests.worlds.own_four_bar import HEALTHY
+from tests.worlds.own_four_bar import HEALTHY, planted
 
 
 def held(own: ReadModel, scene: Scene) -> Tour:
@@ -32,3 +32,29 @@ def test_a_model_that_was_misread_is_not_run(tmp_path: Path) -> None:
     other = replace(own.scene, links={**own.scene.links, "coupler": longer})
     with pytest.raises(ModelError, match=r"model.xml: loop C: closed in the .* misread"):
         held(own, other)
+
+
+BALL = (
+    '<geom name="floor" type="plane" size="5 5 0.1" pos="0 0 {z}" contype="1" conaffinity="1"/>'
+    '<body name="ball" pos="3 3 {at}"><freejoint/>'
+    '<geom name="ball" type="sphere" size="0.2" contype="1" conaffinity="1"/></body>'
+)
+
+
+@pytest.mark.parametrize(
+    ("bars", "touching"), [("0", set()), ("1", {("floor", "rocker-bar"), ("coupler-bar", "floor")})]
+)
+def test_what_touches_beside_the_linkage_is_not_told(
+    bars: str, touching: set[tuple[str, str]], tmp_path: Path
+) -> None:
+    beside = BALL.format(z=-2 if bars == "0" else 0.05, at=-1.8 if bars == "0" else 0.25)
+    path = tmp_path / "model.xml"
+    path.write_text(
+        planted(
+            "<worldbody>", f"<worldbody>{beside}",
+            'conaffinity="0"/>\n    <joint', f'conaffinity="{bars}"/>\n    <joint',
+        )
+    )  # fmt: skip
+    own = read_model(path, "A")
+    assert touching <= held(own, own.scene).touching.keys()
+    assert not any("ball" in pair for pair in held(own, own.scene).touching)
