@@ -8,9 +8,11 @@ may be a link, those of ours in it may not.
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import sys
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -68,8 +70,18 @@ def _check_place(path: Path, option: str) -> None:
         folder = path.parent
         if not folder.is_dir():
             raise CrankcheckError(f"{option} {path}: there is no folder {folder}; create it first")
-        if not (_is_stream(path) or os.access(folder, os.W_OK | os.X_OK)):
+        if _is_stream(path):
+            return
+        if not os.access(folder, os.W_OK | os.X_OK):
             raise CrankcheckError(f"{option} {path}: no right to write in {folder}; choose another")
+        _try_in(folder)
+
+
+def _try_in(folder: Path) -> None:
+    """Have a file there for a moment: in some folders (/proc) none can be, whatever the rights.
+    Raises OSError."""
+    with tempfile.TemporaryFile(dir=folder):
+        pass
 
 
 def _is_stream(path: Path) -> bool:
@@ -117,6 +129,7 @@ def check_folder(
             raise CrankcheckError(
                 f"{option} {path}: no right to write in {nearest}; choose another"
             )
+        _try_in(nearest)
     for name in files if nearest == path else ():
         _check_place(path / name, option)
         _refuse_input(path / name, option, read)
@@ -201,8 +214,9 @@ def write(path: Path, content: bytes | str) -> None:
                 aside.unlink(missing_ok=True)
     except OSError as error:
         why = error.strerror or str(error)
+        space = "free some space there, or " * (error.errno in (errno.ENOSPC, errno.EDQUOT))
         raise CrankcheckError(
-            f"{path}: can not be written: {why}; free some space there, or choose another place"
+            f"{path}: can not be written: {why}; {space}choose another place"
         ) from None
 
 

@@ -177,6 +177,28 @@ def test_a_folder_that_has_to_be_made_is_fine_and_is_not_made_yet(tmp_path: Path
     assert not (tmp_path / "a").exists()
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no such folder here")
+def test_a_folder_that_takes_no_file_is_found_out_before_the_work() -> None:
+    """Its rights say nothing: those of root are all."""
+    with pytest.raises(CrankcheckError, match=r"--json /proc/x\.json: "):
+        check_file(Path("/proc/x.json"), "--json")
+    with pytest.raises(CrankcheckError, match=r"-o /proc/x: "):
+        check_folder(Path("/proc/x"), "-o")
+
+
+@pytest.mark.parametrize(("number", "space"), [(28, True), (5, False)])
+def test_space_is_named_only_where_there_is_none(
+    number: int, space: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(self: Path, target: Path) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(Path, "replace", refused)
+    with pytest.raises(CrankcheckError, match="choose another place") as told:
+        write(tmp_path / "out.csv", "new")
+    assert ("free some space there" in str(told.value)) == space
+
+
 def test_a_place_that_may_not_be_looked_at_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

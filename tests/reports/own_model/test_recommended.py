@@ -10,6 +10,7 @@ from rich.console import Console
 from reports.own_model.judged import JudgedModel
 from reports.own_model.sentences import NO_HELP, verdict_text
 from reports.own_model.table import show
+from reports.page.model_page import model_page
 from tests.worlds.own_four_bar import CLOSED, planted
 from tests.worlds.own_models import FACTS, judged
 
@@ -75,6 +76,9 @@ def test_where_nothing_helps_nothing_is_recommended() -> None:
     text = printed(one)
     assert "Recommended" not in text
     assert NO_HELP.capitalize() in text
+    page = model_page(one, FACTS)
+    assert "No settings help" in page
+    assert "With them the model" not in page
 
 
 @pytest.mark.parametrize("solver", ['solver="CG" iterations="1"', 'solver="PGS" iterations="2"'])
