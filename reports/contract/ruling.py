@@ -29,6 +29,9 @@ SCENES = (
     "scotch-yoke",
 )
 """One of each kind of joint; the first is what every engine is held to."""
+THE_SCENE = "EC21"
+"""The clause that a session is the scene: where it is held nowhere, there is no session that the
+others could say anything of."""
 Answer = Literal["held", "broken", "not tried"]
 
 
@@ -78,6 +81,12 @@ def _raised(error: Exception) -> str:
     if isinstance(error, BrokenContractError):
         return error.fault
     return str(error) if isinstance(error, EngineError) else f"raised {failure(error)}"
+
+
+def refuses_all(rulings: Sequence[Ruling]) -> bool:
+    """Whether nothing could be tried: no clause is held, or the scene itself was tried nowhere."""
+    by_id = {ruling.id: ruling.answer for ruling in rulings}
+    return by_id.get(THE_SCENE) == "not tried" or set(by_id.values()) == {"not tried"}
 
 
 def put_to_all(

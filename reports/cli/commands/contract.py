@@ -7,7 +7,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, suggestion
 from reports.cli.showing import EngineCheckRequest
 from reports.contract.clauses import CLAUSES
-from reports.contract.ruling import SCENES, put_to_all
+from reports.contract.ruling import SCENES, put_to_all, refuses_all
 from reports.contract.table import show
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar
@@ -19,7 +19,7 @@ MEMORY_GB = 4.0
 
 def run_check(request: EngineCheckRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 where every clause that can be tried is held, 1 where one is
-    broken or none can be tried. Raises CrankcheckError for an engine that is not there, or none,
+    broken, 2 where nothing can be tried. Raises CrankcheckError for an engine that is not there, or none,
     and for an unknown clause."""
     limits = checked_limits(request.limit_s, MEMORY_GB)
     for clause in request.clauses:
@@ -32,5 +32,6 @@ def run_check(request: EngineCheckRequest, console: Console, progress: Console) 
     with progress_bar(progress, "clauses", len(clauses)) as advance:
         rulings = put_to_all(adapter.name, clauses, request.jobs, limits, lambda _: advance())
     show(console, f"{adapter.name} {version}", rulings, SCENES)
-    answers = {ruling.answer for ruling in rulings}
-    return int("broken" in answers or "held" not in answers)
+    if any(ruling.answer == "broken" for ruling in rulings):
+        return 1
+    return 2 if refuses_all(rulings) else 0

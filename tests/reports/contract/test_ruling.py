@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.contract.ruling import SCENES, Ruling, put_to_all
+from reports.contract.ruling import SCENES, Ruling, put_to_all, refuses_all
 from reports.contract.table import show
 from reports.workers.isolated import Limits
 from sim.registry import engine
@@ -67,3 +67,12 @@ def test_what_was_refused_is_told_once() -> None:
     nothing = told(Ruling("EC21", untried=("shaper: it has no joints",)))
     assert "-   EC21" in nothing
     assert "NOTHING COULD BE TRIED: mine 1.0 refuses every scene" in nothing
+
+
+def test_what_refuses_every_scene_holds_nothing() -> None:
+    refused = Ruling("EC21", untried=tuple(f"{name}: no" for name in SCENES))
+    rulings = [Ruling("EC11", SCENES[:1]), refused, Ruling("EC71", SCENES[:1])]
+    assert refuses_all(rulings)
+    assert "NOTHING COULD BE TRIED: mine 1.0 refuses every scene" in told(*rulings)
+    assert not refuses_all([Ruling("EC11", SCENES[:1])])
+    assert not refuses_all([Ruling("EC21", SCENES[:1]), Ruling("EC54", untried=("shaper: no",))])
