@@ -203,19 +203,31 @@ def _a_little_fast(
     return replace(scene, driver=driver), state, settings, dt_s, drive
 
 
-def _weightless(sound: Engine) -> Engine:
-    """Free, it has no gravity, and says that it has."""
+def _pulled(share_x: float, share_y: float) -> Callable[[Engine], Engine]:
+    """Free, it has a share of gravity, and says that it has all."""
 
-    def opened(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        if drive != "free":
-            return sound.open(scene, state, settings, dt_s, drive)
-        level = replace(scene, gravity_m_s2=(0.0, 0.0))
-        session = sound.open(level, state, settings, dt_s, drive)
-        return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
+    def changed(sound: Engine) -> Engine:
+        def opened(
+            scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+        ) -> Session:
+            if drive != "free":
+                return sound.open(scene, state, settings, dt_s, drive)
+            x, y = scene.gravity_m_s2
+            other = replace(scene, gravity_m_s2=(share_x * x, share_y * y))
+            session = sound.open(other, state, settings, dt_s, drive)
+            return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
 
-    return replace(sound, open=opened)
+        return replace(sound, open=opened)
+
+    return changed
+
+
+def _slowed(
+    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+) -> tuple[Any, ...]:
+    """Free, it loses speed."""
+    lossy = {**settings, "damping": 1e-9} if drive == "free" else settings
+    return scene, state, lossy, dt_s, drive
 
 
 def _in_seconds(sound: Engine) -> Engine:
@@ -370,7 +382,16 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
     ),
     "handed back": ("EC53", "placing is integrated with order 2", _exact, set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
-    "weightless": ("EC55", "falls 0 of what", _weightless, set()),
+    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), set()),
+    "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), set()),
+    "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), set()),
+    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), set()),
+    "slowed": (
+        "EC55",
+        "without gravity, the centres of mass move",
+        lambda e: opening(e, _slowed),
+        set(),
+    ),
     "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
     "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
 }

@@ -19,8 +19,8 @@ MEMORY_GB = 4.0
 
 def run_check(request: EngineCheckRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 where every clause that can be tried is held, 1 where one is
-    broken, 2 where nothing can be tried. Raises CrankcheckError for an engine that is not there, or none,
-    and for an unknown clause."""
+    broken, 2 where nothing can be tried. Raises CrankcheckError for an engine that is not there, or
+    none, and for an unknown clause."""
     limits = checked_limits(request.limit_s, MEMORY_GB)
     for clause in request.clauses:
         if clause not in CLAUSES:
