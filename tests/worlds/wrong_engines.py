@@ -24,6 +24,7 @@ from sim.engine import (
     Setting,
     Settings,
 )
+from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
 Opened = Callable[[Scene, State, Settings, float, Drive], Session]
@@ -101,6 +102,37 @@ def _careless(sound: Engine) -> Engine:
     return replace(opening(sound, healed), check=lambda settings: None)
 
 
+def _boundless(sound: Engine) -> Engine:
+    """It refuses what is no number, and takes every number, 1 in place of it."""
+
+    def checked(settings: Settings) -> None:
+        if any(value != value or value == "no-such-choice" for value in settings.values()):
+            raise SettingError("no number")
+
+    def healed(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> tuple[Any, ...]:
+        checked(settings)
+        own = {"iterations": 1, "error_bias": 1.0, "damping": 1.0}
+        return scene, state, {**settings, **own}, dt_s, drive
+
+    return replace(opening(sound, healed), check=checked)
+
+
+def _deaf(sound: Engine) -> Engine:
+    """It runs as it always does, and says that it has what was asked for."""
+    own = {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> Session:
+        sound.check(settings)
+        session = sound.open(scene, state, own, dt_s, drive)
+        return Meddled(session, facts_=lambda f: replace(f, settings={**f.settings, **settings}))
+
+    return replace(sound, open=opened)
+
+
 def _another_setting(facts: Facts) -> Facts:
     return replace(facts, settings={**facts.settings, "iterations": 7})
 
@@ -175,6 +207,18 @@ def _late_rates(poses: Poses) -> Poses:
         return replace(body, omega=omega)
 
     return poses.changed(late)
+
+
+def _slow_one(change: float) -> Callable[[Poses], Poses]:
+    """The speed of the body that turns least, times a number."""
+
+    def changed(poses: Poses) -> Poses:
+        slow = min(poses.bodies, key=lambda name: float(np.abs(poses.bodies[name].omega).max()))
+        body = poses.bodies[slow]
+        turned = {slow: replace(body, omega=change * body.omega)}
+        return replace(poses, bodies={**poses.bodies, **turned})
+
+    return changed
 
 
 def _zero_accelerations(poses: Poses) -> Poses:
@@ -298,6 +342,14 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         set(),
     ),
     "takes everything": ("EC13", "error_bias = nan is taken", _careless, set()),
+    "boundless": ("EC13", "error_bias = -inf is taken", _boundless, {"EC14", "EC52", "EC54"}),
+    "takes every count": (
+        "EC13",
+        "iterations takes each of 0, -1, 0.5",
+        _boundless,
+        {"EC14", "EC52", "EC54"},
+    ),
+    "deaf": ("EC14", "differ in iterations, error_bias", _deaf, {"EC53", "EC54"}),
     "other setting held": (
         "EC14",
         "iterations is asked to be 150, held 7",
@@ -359,6 +411,12 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         "EC41",
         "is that of -0.50 steps, and velocity_shift says +0.50",
         lambda e: meddled(e, record_=of_log(_late_rates, 700)),
+        set(),
+    ),
+    "slow one is off": (
+        "EC41",
+        "is not that of its places",
+        lambda e: meddled(e, record_=of_log(_slow_one(1.08), 700)),
         set(),
     ),
     "lag unsaid": (
