@@ -105,6 +105,32 @@ def put_to_all(
     return [results[index] for index in range(len(clauses))]
 
 
+def named(name: str, limits: Limits) -> tuple[str, str]:
+    """What an engine calls itself, and its version, looked for in a process apart.
+
+    Raises
+    ------
+    CrankcheckError
+        An engine that is not there, or none; one that hangs, or ends its process, when it is
+        imported.
+    """
+    with closing(Isolated[tuple[str, str]](limits)) as child:
+        answer = child.call(_name_and_version, name)
+    if not isinstance(answer, Lost):
+        return answer
+    if answer.error is not None:
+        raise answer.error
+    raise EngineError(
+        f"engine {name}: it can not be imported and asked for its version: {answer.reason}; mend "
+        "that first"
+    )
+
+
+def _name_and_version(name: str) -> tuple[str, str]:
+    adapter = engine(name)
+    return adapter.name, adapter.version()
+
+
 def by_name(name: str, clause: str) -> Ruling:
     """As `put_to`, in a process that knows neither the engine nor the clause."""
     return put_to(engine(name), CLAUSES[clause])

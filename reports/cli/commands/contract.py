@@ -7,11 +7,10 @@ from rich.console import Console
 from models.errors import CrankcheckError, suggestion
 from reports.cli.showing import EngineCheckRequest
 from reports.contract.clauses import CLAUSES
-from reports.contract.ruling import SCENES, put_to_all, refuses_all
+from reports.contract.ruling import SCENES, named, put_to_all, refuses_all
 from reports.contract.table import show
 from reports.workers.isolated import checked_limits
 from reports.workers.progress import progress_bar
-from sim.registry import engine
 
 MEMORY_GB = 4.0
 """What a clause may take: far more than any session does."""
@@ -27,11 +26,10 @@ def run_check(request: EngineCheckRequest, console: Console, progress: Console) 
             hint = suggestion(clause, CLAUSES, "use")
             raise CrankcheckError(f"--clause {clause!r}: there is none of that name; {hint}")
     clauses = list(dict.fromkeys(request.clauses or CLAUSES))
-    adapter = engine(request.name)
-    version = adapter.version()
+    called, version = named(request.name, limits)
     with progress_bar(progress, "clauses", len(clauses)) as advance:
-        rulings = put_to_all(adapter.name, clauses, request.jobs, limits, lambda _: advance())
-    show(console, f"{adapter.name} {version}", rulings, SCENES)
+        rulings = put_to_all(request.name, clauses, request.jobs, limits, lambda _: advance())
+    show(console, f"{called} {version}", rulings, SCENES)
     if any(ruling.answer == "broken" for ruling in rulings):
         return 1
     return 2 if refuses_all(rulings) else 0
