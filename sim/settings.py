@@ -52,11 +52,12 @@ def check_choices(settings: Settings, choices: Mapping[str, tuple[str, ...]]) ->
 
 
 def check_ranges(settings: Settings, ranges: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse a number outside its range, both ends included. Raises SettingError."""
+    """Refuse a number outside its range, both ends included, and a word. Raises SettingError."""
     for name, (least, most) in ranges.items():
-        if not least <= float(settings[name]) <= most:
+        value = settings[name]
+        if isinstance(value, str) or not least <= value <= most:
             raise SettingError(
-                f"setting {name}: found {shown(settings[name])}; it takes {least:g} to {most:g}"
+                f"setting {name}: found {shown(value)}; it takes {least:g} to {most:g}"
             )
 
 

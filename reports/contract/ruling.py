@@ -29,6 +29,9 @@ SCENES = (
     "scotch-yoke",
 )
 """One of each kind of joint; the first is what every engine is held to."""
+THE_SCENE = "EC21"
+"""The clause that a session is the scene: where it is held nowhere, there is no session that the
+others could say anything of."""
 Answer = Literal["held", "broken", "not tried"]
 
 
@@ -80,6 +83,12 @@ def _raised(error: Exception) -> str:
     return str(error) if isinstance(error, EngineError) else f"raised {failure(error)}"
 
 
+def refuses_all(rulings: Sequence[Ruling]) -> bool:
+    """Whether nothing could be tried: no clause is held, or the scene itself was tried nowhere."""
+    by_id = {ruling.id: ruling.answer for ruling in rulings}
+    return by_id.get(THE_SCENE) == "not tried" or set(by_id.values()) == {"not tried"}
+
+
 def put_to_all(
     name: str,
     clauses: Sequence[str],
@@ -94,6 +103,32 @@ def put_to_all(
             results[index] = result
             done(result)
     return [results[index] for index in range(len(clauses))]
+
+
+def named(name: str, limits: Limits) -> tuple[str, str]:
+    """What an engine calls itself, and its version, looked for in a process apart.
+
+    Raises
+    ------
+    CrankcheckError
+        An engine that is not there, or none; one that hangs, or ends its process, when it is
+        imported.
+    """
+    with closing(Isolated[tuple[str, str]](limits)) as child:
+        answer = child.call(_name_and_version, name)
+    if not isinstance(answer, Lost):
+        return answer
+    if answer.error is not None:
+        raise answer.error
+    raise EngineError(
+        f"engine {name}: it can not be imported and asked for its version: {answer.reason}; mend "
+        "that first"
+    )
+
+
+def _name_and_version(name: str) -> tuple[str, str]:
+    adapter = engine(name)
+    return adapter.name, adapter.version()
 
 
 def by_name(name: str, clause: str) -> Ruling:

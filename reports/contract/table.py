@@ -9,7 +9,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from models.errors import few, harmless
-from reports.contract.ruling import Ruling
+from reports.contract.ruling import Ruling, refuses_all
 from reports.output.numbers import count
 
 MARKS = {"held": ("ok ", "green"), "broken": ("OUT", "bold red"), "not tried": ("-  ", "dim")}
@@ -54,7 +54,7 @@ def _verdict(called: str, rulings: Sequence[Ruling]) -> Text:
     if broken:
         told = f"{count(len(broken), 'clause')} of {len(rulings)}: {few(broken, 8)}"
         return Text(f"BREAKS THE CONTRACT: {called}, {told}", "bold red")
-    if not held:
+    if refuses_all(rulings):
         return Text(f"NOTHING COULD BE TRIED: {called} refuses every scene", "bold red")
     return Text(f"HOLDS THE CONTRACT: {called}, {held} of {count(held, 'clause')}", "bold green")
 

@@ -149,7 +149,8 @@ def tried_all(
     names: Sequence[str], engines: Sequence[str], jobs: int, done: Callable[[Verdict], None]
 ) -> list[Verdict]:
     """Plant all faults, in ``jobs`` processes (0: one per processor)."""
-    return run_all(partial(tried, engines=engines), names, jobs, LIMITS, _lost, done)
+    apart = any(name not in ENGINES for name in engines)
+    return run_all(partial(tried, engines=engines), names, jobs, LIMITS, _lost, done, apart)
 
 
 def _lost(name: str, lost: Lost) -> Verdict:

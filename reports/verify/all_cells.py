@@ -8,6 +8,7 @@ from reports.judge.cell import Cell, Checked, unfinished
 from reports.verify.advised import advised
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
+from sim.registry import ENGINES
 
 LIMITS = Limits(3600.0, 16.0)
 """Far beyond what any sound cell takes: one that hangs, or fills the memory, is a row all the
@@ -24,7 +25,8 @@ def check_all(
     jobs : int
         Processes; 0 for one per processor.
     """
-    return run_all(advised, cells, jobs, LIMITS, _lost, done)
+    apart = any(cell.engine not in ENGINES for cell in cells)
+    return run_all(advised, cells, jobs, LIMITS, _lost, done, apart)
 
 
 def _lost(cell: Cell, lost: Lost) -> Checked:

@@ -10,13 +10,14 @@ from functools import partial
 from queue import SimpleQueue
 from typing import TypeVar
 
-from reports.workers.isolated import Isolated, Limits, Lost
+from reports.workers.isolated import MOST_GB, MOST_S, Isolated, Limits, Lost
 
 FEW = 4
 """Up to so many items are done in this process: a second one takes longer to start."""
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 Answer = TypeVar("Answer")
+BOUNDLESS = Limits(MOST_S, MOST_GB)
 
 
 def run_all(
@@ -26,14 +27,19 @@ def run_all(
     limits: Limits,
     lost: Callable[[Item, Lost], Result],
     done: Callable[[Result], None] = lambda _: None,
+    apart: bool = False,
 ) -> list[Result]:
     """``work`` on all items, in their order; ``done`` hears of each result as it comes.
 
-    What is few, or asked for with one job, is done in this process, without limits. ``lost`` gives
-    the result of an item that ends the process which works on it, or takes too much; what ``work``,
-    which another process can import, raises itself is raised here. 0 ``jobs``: one per processor.
+    One job has no limits. What is few, or asked for with one job, is done in this process, unless
+    it has to be ``apart``: what somebody else wrote may end the process without a word. ``lost``
+    gives the result of an item that ends the process which works on it, or takes too much; what
+    ``work``, which another process can import, raises itself is raised here. 0 ``jobs``: one per
+    processor.
     """
-    if (jobs or processors()) == 1 or len(items) <= FEW:
+    if apart and jobs == 1:
+        limits = BOUNDLESS
+    if not apart and ((jobs or processors()) == 1 or len(items) <= FEW):
         ends = ((index, work(item)) for index, item in enumerate(items))
     else:
         ends = as_they_end(partial(_one, work, lost), items, jobs, limits)

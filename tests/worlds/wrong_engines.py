@@ -24,6 +24,7 @@ from sim.engine import (
     Setting,
     Settings,
 )
+from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
 Opened = Callable[[Scene, State, Settings, float, Drive], Session]
@@ -99,6 +100,37 @@ def _careless(sound: Engine) -> Engine:
         return scene, state, healthy, dt_s, drive
 
     return replace(opening(sound, healed), check=lambda settings: None)
+
+
+def _boundless(sound: Engine) -> Engine:
+    """It refuses what is no number, and takes every number, 1 in place of it."""
+
+    def checked(settings: Settings) -> None:
+        if any(value != value or value == "no-such-choice" for value in settings.values()):
+            raise SettingError("no number")
+
+    def healed(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> tuple[Any, ...]:
+        checked(settings)
+        own = {"iterations": 1, "error_bias": 1.0, "damping": 1.0}
+        return scene, state, {**settings, **own}, dt_s, drive
+
+    return replace(opening(sound, healed), check=checked)
+
+
+def _deaf(sound: Engine) -> Engine:
+    """It runs as it always does, and says that it has what was asked for."""
+    own = {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> Session:
+        sound.check(settings)
+        session = sound.open(scene, state, own, dt_s, drive)
+        return Meddled(session, facts_=lambda f: replace(f, settings={**f.settings, **settings}))
+
+    return replace(sound, open=opened)
 
 
 def _another_setting(facts: Facts) -> Facts:
@@ -177,6 +209,18 @@ def _late_rates(poses: Poses) -> Poses:
     return poses.changed(late)
 
 
+def _slow_one(change: float) -> Callable[[Poses], Poses]:
+    """The speed of the body that turns least, times a number."""
+
+    def changed(poses: Poses) -> Poses:
+        slow = min(poses.bodies, key=lambda name: float(np.abs(poses.bodies[name].omega).max()))
+        body = poses.bodies[slow]
+        turned = {slow: replace(body, omega=change * body.omega)}
+        return replace(poses, bodies={**poses.bodies, **turned})
+
+    return changed
+
+
 def _zero_accelerations(poses: Poses) -> Poses:
     return poses.changed(
         lambda body: replace(
@@ -203,19 +247,31 @@ def _a_little_fast(
     return replace(scene, driver=driver), state, settings, dt_s, drive
 
 
-def _weightless(sound: Engine) -> Engine:
-    """Free, it has no gravity, and says that it has."""
+def _pulled(share_x: float, share_y: float) -> Callable[[Engine], Engine]:
+    """Free, it has a share of gravity, and says that it has all."""
 
-    def opened(
-        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
-    ) -> Session:
-        if drive != "free":
-            return sound.open(scene, state, settings, dt_s, drive)
-        level = replace(scene, gravity_m_s2=(0.0, 0.0))
-        session = sound.open(level, state, settings, dt_s, drive)
-        return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
+    def changed(sound: Engine) -> Engine:
+        def opened(
+            scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+        ) -> Session:
+            if drive != "free":
+                return sound.open(scene, state, settings, dt_s, drive)
+            x, y = scene.gravity_m_s2
+            other = replace(scene, gravity_m_s2=(share_x * x, share_y * y))
+            session = sound.open(other, state, settings, dt_s, drive)
+            return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
 
-    return replace(sound, open=opened)
+        return replace(sound, open=opened)
+
+    return changed
+
+
+def _slowed(
+    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+) -> tuple[Any, ...]:
+    """Free, it loses speed."""
+    lossy = {**settings, "damping": 1e-9} if drive == "free" else settings
+    return scene, state, lossy, dt_s, drive
 
 
 def _in_seconds(sound: Engine) -> Engine:
@@ -286,6 +342,14 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         set(),
     ),
     "takes everything": ("EC13", "error_bias = nan is taken", _careless, set()),
+    "boundless": ("EC13", "error_bias = -inf is taken", _boundless, {"EC14", "EC52", "EC54"}),
+    "takes every count": (
+        "EC13",
+        "iterations takes each of 0, -1, 0.5",
+        _boundless,
+        {"EC14", "EC52", "EC54"},
+    ),
+    "deaf": ("EC14", "differ in iterations, error_bias", _deaf, {"EC53", "EC54"}),
     "other setting held": (
         "EC14",
         "iterations is asked to be 150, held 7",
@@ -349,6 +413,12 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         lambda e: meddled(e, record_=of_log(_late_rates, 700)),
         set(),
     ),
+    "slow one is off": (
+        "EC41",
+        "is not that of its places",
+        lambda e: meddled(e, record_=of_log(_slow_one(1.08), 700)),
+        set(),
+    ),
     "lag unsaid": (
         "EC41",
         "Poses.lag_s is 0 steps",
@@ -370,7 +440,16 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
     ),
     "handed back": ("EC53", "placing is integrated with order 2", _exact, set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
-    "weightless": ("EC55", "falls 0 of what", _weightless, set()),
+    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), set()),
+    "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), set()),
+    "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), set()),
+    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), set()),
+    "slowed": (
+        "EC55",
+        "without gravity, the centres of mass move",
+        lambda e: opening(e, _slowed),
+        set(),
+    ),
     "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
     "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
 }

@@ -5,16 +5,21 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from itertools import combinations
 
-from models.errors import EngineError, shown
+import numpy as np
+
+from models.errors import EngineError, few, shown
 from reports.contract.clause import Clause
-from reports.contract.subject import Subject
+from reports.contract.subject import STEPS, Subject, numbers
 from sim.engine import SettingValue
 from sim.settings import SettingError, profile_of, resolved
 
 PROFILES = ("as-shipped", "tuned")
 NAME = re.compile(r"[A-Za-z_]\w{0,59}")
 NONSENSE = "no-such-choice"
+UNLIKELY = (0, -1, 0.5)
+"""Whole numbers that one setting or another may have, and a broken one: none has them all."""
 
 
 def _profiles(subject: Subject) -> Iterator[str]:
@@ -55,16 +60,22 @@ def _settings(subject: Subject) -> Iterator[str]:
     settings = subject.settings()
     for name, value in settings.items():
         for wrong in _wrong(value):
-            changed = {**settings, name: wrong}
-            if not _refusal(subject, changed) and not _refused_at_open(subject, changed):
+            if _taken(subject, {**settings, name: wrong}):
                 yield f"{name} = {shown(wrong)} is taken"
+        if type(value) is int and all(_taken(subject, {**settings, name: n}) for n in UNLIKELY):
+            yield f"{name} takes each of {', '.join(map(shown, UNLIKELY))}"
 
 
 def _wrong(value: SettingValue) -> list[SettingValue]:
     """What no setting of that kind can be."""
     if isinstance(value, float):
-        return [float("nan")]
-    return [NONSENSE] if isinstance(value, str) else []
+        return [math.nan, math.inf, -math.inf, NONSENSE]
+    return [NONSENSE]
+
+
+def _taken(subject: Subject, settings: dict[str, SettingValue]) -> bool:
+    """Whether settings are refused neither at once nor with the scene."""
+    return not _refusal(subject, settings) and not _refused_at_open(subject, settings)
 
 
 def _refusal(subject: Subject, settings: dict[str, SettingValue]) -> str:
@@ -97,6 +108,23 @@ def _told_back(subject: Subject) -> Iterator[str]:
             held = facts.settings.get(setting)
             if not _same(held, value):
                 yield f"profile {name}: {setting} is asked to be {shown(value)}, held {shown(held)}"
+    for one, other in combinations(subject.engine.profiles, 2):
+        yield from _felt(subject, one, other)
+
+
+def _felt(subject: Subject, one: str, other: str) -> Iterator[str]:
+    """Whether two profiles that have an engine hold something else have it do something else."""
+    asked, others = subject.settings(one), subject.settings(other)
+    kept = [subject.engine.holds(s, subject.dt_s(), "prescribed") for s in (asked, others)]
+    if kept[0] == kept[1]:
+        return
+    first, second = (numbers(subject.opened(name).record(STEPS, 1).poses) for name in (one, other))
+    if np.array_equal(first, second, equal_nan=True):
+        names = [name for name in asked if asked[name] != others[name]]
+        yield (
+            f"profiles {one} and {other} differ in {few(names, 4)}, and {STEPS} steps are the same "
+            "to the bit"
+        )
 
 
 def _same(held: object, asked: SettingValue) -> bool:
@@ -134,10 +162,10 @@ CLAUSES = (
     ),
     Clause(
         "EC14",
-        "the settings told back are those asked for",
+        "the settings told back are those asked for, and profiles that differ run otherwise",
         "A setting that did not arrive makes two results of one, or one of two.",
-        "Read Facts.settings from the engine itself; where it holds something else than was asked, "
-        "say so in Engine.holds.",
+        "Read Facts.settings from the engine itself, and see that open hands each of them on; "
+        "where it holds something else than was asked, say so in Engine.holds.",
         _told_back,
     ),
 )

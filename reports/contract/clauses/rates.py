@@ -23,7 +23,10 @@ STEPS = 800
 LATE = 0.25
 """Steps that a rate may be from the instant that it is said to be of."""
 OFF = 0.05
-"""How far a rate may be from the path's own, over the largest of all."""
+"""How far a rate may be from the path's own, over the largest of that body."""
+SLOW = 1e-2
+"""Below this, over the scale of the scene, a rate is none: what it differs by is rounding, or
+what joints give way."""
 STILL = 1e-3
 """Below this, over the largest of all, a rate changes too little to tell when it is of."""
 
@@ -31,18 +34,25 @@ STILL = 1e-3
 @dataclass(frozen=True)
 class _Rate:
     """A rate of a body (T, n) as it is reported, by its path's differences, and how that changes in
-    the reference; without the start, in which an engine may settle."""
+    the reference; without the start, in which an engine may settle. ``scale`` is that of a body as
+    fast as the driver, as long as the longest link."""
 
     body: str
     reported: Array
     own: Array
     change: Array
+    scale: float
 
     def late_s(self) -> float:
         """How much later than the path's own it is [s]."""
         return float((self.reported - self.own).ravel() @ self.change.ravel()) / float(
             (self.change**2).sum()
         )
+
+    def off(self, shift_s: float) -> float:
+        """How far it is from the path's own, of an instant so much later, over its own largest."""
+        size = max(float(np.abs(self.own).max()), SLOW * self.scale)
+        return float(np.abs(self.reported - self.own - shift_s * self.change).max()) / size
 
 
 def _velocities(subject: Subject) -> Iterator[str]:
@@ -75,25 +85,31 @@ def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
     held = motion(subject.scene, session.record(STEPS, 1).poses)
     truth = solve(subject.scene, held.time_s, bound=False)
     dt_s, rates = subject.dt_s(STEPS), []
+    turning = subject.scene.driver.law.peak_speed_rad_s**order
     for name, link in held.links.items():
         true = truth.links[name].alpha
         reported = link.omega if order == 1 else link.alpha
-        rates.append(_rate(f"link {name}", link.theta, reported, true, dt_s, order))
+        paths = _differences(link.theta, reported, true, dt_s, order)
+        rates.append(_Rate(f"link {name}", *paths, turning))
     for name, point in held.points.items():
         true = truth.points[name].acceleration
         reported = point.velocity if order == 1 else point.acceleration
-        rates.append(_rate(f"point {name}", point.position, reported, true, dt_s, order))
+        paths = _differences(point.position, reported, true, dt_s, order)
+        rates.append(_Rate(f"point {name}", *paths, subject.scene.longest_m * turning))
     return rates
 
 
-def _rate(body: str, place: Array, reported: Array, true: Array, dt_s: float, order: int) -> _Rate:
+def _differences(
+    place: Array, reported: Array, true: Array, dt_s: float, order: int
+) -> tuple[Array, Array, Array]:
+    """What is reported, the path's own, and how that changes in the reference."""
     own = (place[2:] - place[:-2]) / (2 * dt_s)
     change = true[1:-1]
     if order == 2:
         own = (place[2:] - 2 * place[1:-1] + place[:-2]) / dt_s**2
         change = (true[2:] - true[:-2]) / (2 * dt_s)
     later = slice(len(own) // 8, None)
-    return _Rate(body, reported[1:-1][later], own[later], change[later])
+    return reported[1:-1][later], own[later], change[later]
 
 
 def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str) -> Iterator[str]:
@@ -101,24 +117,18 @@ def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str)
     is farthest from the path."""
     for kind in ("link", "point"):
         same = [rate for rate in rates if rate.body.startswith(kind)]
-        largest = max(float(np.abs(rate.own).max()) for rate in same)
         change = max(float(np.sqrt((rate.change**2).mean())) for rate in same)
         moving = [r for r in same if np.sqrt((r.change**2).mean()) > STILL * change]
-        if not moving or not change:
-            continue
-        late = {rate.body: rate.late_s() / dt_s for rate in moving}
-        worst = max(late, key=lambda body: abs(late[body] - said))
-        if not abs(late[worst] - said) <= LATE:
-            yield (
-                f"the {what} of {worst} is that of {late[worst]:+.2f} steps, "
-                f"and {where} says {said:+.2f}"
-            )
-            return
-        off = {
-            rate.body: float(np.abs(rate.reported - rate.own - said * dt_s * rate.change).max())
-            / largest
-            for rate in same
-        }
+        if moving and change:
+            late = {rate.body: rate.late_s() / dt_s for rate in moving}
+            worst = max(late, key=lambda body: abs(late[body] - said))
+            if not abs(late[worst] - said) <= LATE:
+                yield (
+                    f"the {what} of {worst} is that of {late[worst]:+.2f} steps, "
+                    f"and {where} says {said:+.2f}"
+                )
+                return
+        off = {rate.body: rate.off(said * dt_s) for rate in same}
         worst = max(off, key=lambda body: off[body])
         if not off[worst] <= OFF:
             yield f"the {what} of {worst} is not that of its places: off by {off[worst]:.2g}"

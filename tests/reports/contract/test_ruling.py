@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.contract.ruling import SCENES, Ruling, put_to_all
+from models.errors import EngineError
+from reports.contract.ruling import SCENES, Ruling, named, put_to_all, refuses_all
 from reports.contract.table import show
 from reports.workers.isolated import Limits
 from sim.registry import engine
@@ -67,3 +68,30 @@ def test_what_was_refused_is_told_once() -> None:
     nothing = told(Ruling("EC21", untried=("shaper: it has no joints",)))
     assert "-   EC21" in nothing
     assert "NOTHING COULD BE TRIED: mine 1.0 refuses every scene" in nothing
+
+
+def test_what_refuses_every_scene_holds_nothing() -> None:
+    refused = Ruling("EC21", untried=tuple(f"{name}: no" for name in SCENES))
+    rulings = [Ruling("EC11", SCENES[:1]), refused, Ruling("EC71", SCENES[:1])]
+    assert refuses_all(rulings)
+    assert "NOTHING COULD BE TRIED: mine 1.0 refuses every scene" in told(*rulings)
+    assert not refuses_all([Ruling("EC11", SCENES[:1])])
+    assert not refuses_all([Ruling("EC21", SCENES[:1]), Ruling("EC54", untried=("shaper: no",))])
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        ("import os\nos._exit(3)\n", "the engine ended its process (exit code 3)"),
+        ("while True:\n    pass\n", "no end within 0.5 s"),
+        ("1 / 0\n", "ZeroDivisionError"),
+    ],
+)
+def test_what_ends_or_hangs_when_it_is_imported_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: str, reason: str
+) -> None:
+    (tmp_path / "dire.py").write_text(code)
+    with fresh(tmp_path, monkeypatch), pytest.raises(EngineError) as told_of:
+        named("dire:ENGINE", Limits(0.5, 4.0))
+    assert reason in str(told_of.value)
+    assert "mend that first" in str(told_of.value)

@@ -197,6 +197,15 @@ def test_a_cell_that_kills_its_process_costs_that_cell_alone(
     assert [one.status for one in found] == ["ok", "ok", "crashed", "ok", "ok", "ok"]
 
 
+def test_a_cell_of_an_engine_that_is_not_ours_is_apart_by_itself(
+    fourbar: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = replace(cell(fourbar, "penalty", "deadly"), converge=False)
+    monkeypatch.setattr("reports.verify.all_cells.advised", deadly_check)
+    (found,) = check_all([one], 2)
+    assert found.reason == "the engine ended its process (exit code 1)"
+
+
 def deadly_check(cell: Cell) -> object:
     """As `check`, except that one profile ends its process as a fault in native code does."""
     if cell.profile == "deadly":

@@ -37,6 +37,12 @@ def test_what_takes_too_long_is_lost_and_few_are_done_here() -> None:
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
+def test_what_has_to_be_apart_is_however_few_there_are(jobs: int) -> None:
+    results = run_all(unlucky, [1, 2], jobs, Limits(), lost, apart=True)
+    assert results == ["1", "2: the engine ended its process (exit code 3)"]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
 def test_what_the_work_raises_is_raised_here(jobs: int) -> None:
     with pytest.raises(CrankcheckError, match="no 3"):
         run_all(refuse, MANY, jobs, Limits(), lost)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import get_args
@@ -17,6 +18,7 @@ from models.motion import Motion, State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
 from sim.engine import BodyPose, Drive, Facts, Log, Placing, Poses, Profile, Setting, Settings
+from sim.settings import check_ranges
 from sim.spoil import rounded
 
 TUNED = Profile("tuned", "fake", "as exact as told", {"knob": Setting(1, "there has to be one")})
@@ -54,7 +56,8 @@ class FakeEngine:
         return "1.0"
 
     def check(self, settings: Settings) -> None:
-        """It takes everything."""
+        """Its knob is a number from 0 on."""
+        check_ranges(settings, {name: (0, math.inf) for name in settings if name == "knob"})
 
     def holds(self, settings: Settings, dt_s: float, drive: Drive) -> Settings:
         """And keeps it as it is."""
