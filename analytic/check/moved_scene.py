@@ -8,11 +8,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from models.joints import turned
+from models.loads import Load
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
-    """The scene turned about the origin, its gravity with it."""
+    """The scene turned about the origin, its gravity and its loads with it.
+
+    Not for loads over the driver's angle, which is another one then.
+    """
 
     def turn(place: Point) -> Point:
         return turned(place, angle_rad)
@@ -24,6 +28,11 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             direction_rad=slider.direction_rad + angle_rad,
         )
 
+    def in_ground(load: Load) -> Load:
+        if load.frame == "body":
+            return load
+        return replace(load, direction_rad=load.direction_rad + angle_rad)
+
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -31,6 +40,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         sliders={n: on_ground(s) if s.on == GROUND else s for n, s in scene.sliders.items()},
         driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
         gravity_m_s2=turn(scene.gravity_m_s2),
+        loads={n: in_ground(one) for n, one in scene.loads.items()},
     )
 
 
@@ -54,7 +64,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with every length times ``factor``, made of rods of the same mass per length.
 
     Masses grow with the factor, inertias with its cube; gravity with the factor, so that the
-    motion stays similar at the same speed.
+    motion stays similar at the same speed. Loads stay as they are.
     """
 
     def grow(p: Point) -> Point:
