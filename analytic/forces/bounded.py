@@ -128,7 +128,7 @@ class BoundedVec:
 def _sum(v: Vec, one: BoundedVec, other: BoundedVec) -> BoundedVec:
     if one.error is None or other.error is None:
         return BoundedVec(v, 0.0, None)
-    size = one.size + other.size
+    size = v.norm()
     return BoundedVec(v, size, one.error + other.error + EPS * size)
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
 from analytic.dyads.plane import Real
 from analytic.forces.bounded import Bounded, BoundedVec
 from analytic.structure.mobility import Structure
-from models.array import Array
+from models.array import Array, Mask
 from models.forces import ForceBound, Forces, SliderForces
 
 
@@ -58,12 +58,9 @@ class ForceArrays:
             for array, each in zip((most.normal, most.moment), sliders[name], strict=True):
                 _put(array[span], each.error)
 
-    def not_finite(self, span: slice) -> int | None:
-        """The first sample of a chunk at which a force is no number, if there is one.
-
-        Every group passes what it bears on to the driver or the ground, so that one sum over the
-        torque and the pins shows them all.
-        """
+    def not_finite(self, span: slice) -> Mask:
+        """The samples of a chunk at which a force is no number, by the sum of them; two forces of a
+        pin that are opposite count once."""
         total = self.torque[span].copy()
         for by_body in self.pins.values():
             array = next(iter(by_body.values()))
@@ -72,13 +69,30 @@ class ForceArrays:
         for one in self.sliders.values():
             total += one.normal[span]
             total += one.moment[span]
-        finite = np.isfinite(total)
-        return None if finite.all() else int(np.argmin(finite))
+        return np.asarray(~np.isfinite(total))
+
+    def leave_out(self, span: slice, samples: Mask) -> None:
+        """Have no numbers at some samples of a chunk, and infinite bounds."""
+        for array in _arrays(self.torque, self.pins, self.sliders):
+            array[span][samples] = np.nan
+        if self.certified:
+            for array in _arrays(self.bound.torque, self.bound.pins, self.bound.sliders):
+                array[span][samples] = np.inf
 
     def forces(self, undetermined: str) -> Forces:
         """The filled arrays as forces."""
         bound = self.bound if self.certified else None
         return Forces(self.time_s, self.pins, self.sliders, self.torque, bound, undetermined)
+
+
+def _arrays(
+    torque: Array, pins: Mapping[str, Mapping[str, Array]], sliders: Mapping[str, SliderForces]
+) -> Iterator[Array]:
+    yield torque
+    for by_body in pins.values():
+        yield from by_body.values()
+    for one in sliders.values():
+        yield from (one.normal, one.moment)
 
 
 def _put(into: Array, error: Real) -> None:

@@ -42,7 +42,7 @@ def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[sl
 
 
 def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
-    points = {*scene.pins, *(slider.point for slider in scene.sliders.values())}
+    points = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
     for what, wanted, found in (
         ("link", scene.links, motion.links),
         ("point", points, motion.points),
@@ -55,7 +55,7 @@ def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
                     "solve it without a choice of links, points and sliders"
                 )
     for name, link in motion.links.items():
-        if np.all(np.isnan(link.alpha)):
+        if not motion.conditioning and np.all(np.isnan(link.alpha)):
             raise CrankcheckError(
                 f"{scene.name}: the motion has no acceleration of link {name}, which forces "
                 "follow from; give one that has"
@@ -83,6 +83,7 @@ class _Span:
                 bodies[block_name(slider)] = self._block(slider, bodies[slider.on])
         chunk = Chunk(self.scene, certified, False, bodies)
         chunk.points.update({name: self._point(name) for name in self.motion.points})
+        chunk.sines.update({key: s[self.span] for key, s in self.motion.conditioning.items()})
         chunk.sliders.update({name: self._sliding(name) for name in self.scene.sliders})
         return chunk
 

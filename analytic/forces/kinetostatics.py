@@ -31,7 +31,13 @@ from models.samples import samples
 from models.scene import Scene
 
 
-def forces(scene: Scene, when: ArrayLike | Motion, *, bound: bool = True) -> Forces:
+def forces(
+    scene: Scene,
+    when: ArrayLike | Motion,
+    *,
+    bound: bool = True,
+    skip_dead_points: bool = False,
+) -> Forces:
     """The driving torque, and the reaction in every pin and slider.
 
     Parameters
@@ -43,6 +49,8 @@ def forces(scene: Scene, when: ArrayLike | Motion, *, bound: bool = True) -> For
         accelerations: one by `analytic.kinematics.solve_driven`, say.
     bound : bool
         Carry error bounds, which go on from those of the motion.
+    skip_dead_points : bool
+        Have no numbers (NaN), and infinite bounds, in dead points instead of raising.
 
     Returns
     -------
@@ -71,8 +79,13 @@ def forces(scene: Scene, when: ArrayLike | Motion, *, bound: bool = True) -> For
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # singular positions
             _write(result, span, scene, structure, chunk)
         dead = result.not_finite(span)
-        if dead is not None:
-            raise CrankcheckError(_dead_point(scene, chunk, time_s[span], dead))
+        if not structure.redundant:
+            for sine in chunk.sines.values():
+                dead |= sine == 0.0
+        if skip_dead_points:
+            result.leave_out(span, dead)
+        elif dead.any():
+            raise CrankcheckError(_dead_point(scene, chunk, time_s[span], int(np.argmax(dead))))
     return result.forces(_undetermined(structure))
 
 
