@@ -181,7 +181,7 @@ def _line(
 ) -> str:
     """One fault in one line: key, what was found, what would work."""
     parts = [str(part) for part in loc if part != "[key]"]
-    key = prefix + ".".join(map(cut, parts))
+    key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":
         return f"{key}: missing; add it"
     if kind == "extra_forbidden":

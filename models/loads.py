@@ -191,7 +191,8 @@ class Table(Characteristic):
         turned = 0.0 if self.period is None else 2 * EPS * np.abs(x) * self.steepest(x, 0.0)
         size = float(np.max(np.abs(self.values)))
         reach = max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)
-        return np.asarray(16 * EPS * size + 4 * EPS * reach * self.steepest(x, 0.0) + turned)
+        own = 16 * EPS if self.interpolation == "linear" else 128 * EPS  # slopes are rounded too
+        return np.asarray(own * size + 4 * EPS * reach * self.steepest(x, 0.0) + turned)
 
 
 @dataclass(frozen=True)

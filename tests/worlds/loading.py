@@ -11,7 +11,16 @@ import numpy as np
 from analytic.kinematics import reach
 from models.joints import block_name
 from models.laws import Accelerating, Oscillating
-from models.loads import Characteristic, Constant, Load, Over, Polynomial, Sine, Table
+from models.loads import (
+    Characteristic,
+    Constant,
+    Interpolation,
+    Load,
+    Over,
+    Polynomial,
+    Sine,
+    Table,
+)
 from models.scene import GROUND, Driver, Point, Scene
 from tests.worlds.layouts import Layout
 from tests.worlds.strategies import FORMS, SWINGS, Designed, swinging, with_dyads
@@ -122,18 +131,20 @@ def _load(scene: Scene, name: str, chance: random.Random) -> Load:
 
 
 def characteristic(over: Over, chance: random.Random) -> Characteristic:
-    """Of any kind; tables are wide enough for every stroke, straight, and over the angle a turn."""
+    """Of any kind; tables are wide enough for every stroke, or repeat with a turn."""
     size = 10 ** chance.uniform(0.0, 2.0)
     kind = chance.choice(("constant", "sine", "polynomial", "table"))
     if kind == "sine":
         return Sine(size, chance.uniform(0.5, 5.0), chance.uniform(-3.0, 3.0))
     if kind == "polynomial":
         return Polynomial(tuple(chance.uniform(-size, size) for _ in range(chance.randrange(1, 5))))
+    interpolation: Interpolation = chance.choice(("linear", "pchip"))
     if kind == "table" and over == "angle":
         places = sorted(chance.uniform(0.0, math.tau) for _ in range(6))
         values = tuple(chance.uniform(-size, size) for _ in places)
-        return Table(tuple(places), values, "linear", math.tau)
+        return Table(tuple(places), values, interpolation, math.tau)
     if kind == "table" and over == "displacement":
         rows = range(-40, 41, 4)
-        return Table(tuple(map(float, rows)), tuple(chance.uniform(-size, size) for _ in rows))
+        values = tuple(chance.uniform(-size, size) for _ in rows)
+        return Table(tuple(map(float, rows)), values, interpolation)
     return Constant(size)

@@ -177,7 +177,7 @@ def _apply(
     elif load.over == "displacement":
         assert slider is not None
         x = slider.value
-    size = _value(load.characteristic, x)
+    size = value_of(load.characteristic, x)
     if load.stroke != "both":
         assert slider is not None
         size = size if slider.rate * (1 if load.stroke == "forward" else -1) > 0 else mpf(0)
@@ -193,7 +193,7 @@ def _apply(
     b[row + 2] -= ax * fy - ay * fx
 
 
-def _value(own: Characteristic, x: Number) -> Number:
+def value_of(own: Characteristic, x: Number) -> Number:
     if isinstance(own, Constant):
         return mpf(own.value)
     if isinstance(own, Sine):
@@ -201,13 +201,51 @@ def _value(own: Characteristic, x: Number) -> Number:
     if isinstance(own, Polynomial):
         return sum((mpf(c) * x**k for k, c in enumerate(own.coefficients)), mpf(0))
     assert isinstance(own, Table)
-    assert own.interpolation == "linear"
     rows = [(mpf(p), mpf(v)) for p, v in zip(own.places, own.values, strict=True)]
     if own.period is not None:
         period = mpf(own.period)
         x -= period * mp.floor((x - rows[0][0]) / period)
         rows.append((rows[0][0] + period, rows[0][1]))
+    if own.interpolation == "pchip":
+        return _cubic(rows, x, closed=own.period is not None)
     for (x0, y0), (x1, y1) in itertools.pairwise(rows):
         if x <= x1:
             return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     raise AssertionError("the table is too short")
+
+
+def _cubic(rows: list[Pair], x: Number, *, closed: bool) -> Number:
+    """The cubic of Fritsch and Butland, from Hermite's four polynomials."""
+    chords = [(b[0] - a[0], (b[1] - a[1]) / (b[0] - a[0])) for a, b in itertools.pairwise(rows)]
+    inner = [_harmonic(*pair) for pair in itertools.pairwise(chords)]
+    if closed:
+        slopes = [_harmonic(chords[-1], chords[0]), *inner, _harmonic(chords[-1], chords[0])]
+    else:
+        slopes = [_outer(*chords[:2]), *inner, _outer(*chords[:-3:-1])]
+    for k, ((x0, y0), (x1, y1)) in enumerate(itertools.pairwise(rows)):
+        if x <= x1:
+            h = x1 - x0
+            t = (x - x0) / h
+            return (
+                y0 * (1 + 2 * t) * (1 - t) ** 2
+                + h * slopes[k] * t * (1 - t) ** 2
+                + y1 * t**2 * (3 - 2 * t)
+                + h * slopes[k + 1] * t**2 * (t - 1)
+            )
+    raise AssertionError("the table is too short")
+
+
+def _harmonic(before: Pair, after: Pair) -> Number:
+    """The slope between two chords, each its length and its slope."""
+    (h0, d0), (h1, d1) = before, after
+    if d0 * d1 <= 0:
+        return mpf(0)
+    return 3 * (h0 + h1) / ((2 * h1 + h0) / d0 + (h1 + 2 * h0) / d1)
+
+
+def _outer(near: Pair, far: Pair) -> Number:
+    (h0, d0), (h1, d1) = near, far
+    slope = d0 + (d0 - d1) * h0 / (h0 + h1)
+    if slope * d0 <= 0:
+        return mpf(0)
+    return 3 * d0 if d0 * d1 <= 0 and abs(slope) > 3 * abs(d0) else slope
