@@ -9,7 +9,7 @@ from models.errors import SceneError
 from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_tables import LawOfLoad, PolynomialLoad, SineLoad, TableLoad
-from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Table
+from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Tabulated
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     LARGEST,
@@ -218,8 +218,8 @@ def _characteristic(table: LawOfLoad) -> Characteristic:
     if isinstance(table, TableLoad):
         places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
         if not turning:
-            return Table(places, values, table.interpolation)
+            return Tabulated(places, values, table.interpolation)
         period = math.radians(table.period_deg or 360.0)
         places = tuple(math.radians(place) for place in places)
-        return Table(places, values, table.interpolation, period)
+        return Tabulated(places, values, table.interpolation, period)
     return Constant(float(magnitude))  # type: ignore[arg-type]

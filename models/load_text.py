@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from models.errors import CrankcheckError
 from models.load_tables import UNIT
-from models.loads import Constant, Load, Polynomial, Sine, Table
+from models.loads import Constant, Load, Polynomial, Sine, Tabulated
 
 
 def load_table(load: Load) -> Mapping[str, object]:
@@ -39,7 +39,7 @@ def _characteristic(load: Load, key: str) -> dict[str, object]:
             return {"law": "sine", "over": load.over, key: amplitude, **own}
         case Polynomial(coefficients):
             return {"law": "polynomial", "over": load.over, key: coefficients}
-        case Table(places, values, interpolation, period):
+        case Tabulated(places, values, interpolation, period):
             rows = {f"at_{unit}": tuple(place * factor for place in places), key: values}
             own = {} if period is None else {"period_deg": math.degrees(period)}
             law = {"law": "table", "over": load.over, "interpolation": interpolation}

@@ -110,7 +110,7 @@ class Polynomial(Characteristic):
 
 
 @dataclass(frozen=True)
-class Table(Characteristic):
+class Tabulated(Characteristic):
     """Values at places; in between straight (``linear``) or cubics without overshoot (``pchip``).
 
     With ``period`` it goes on for ever; the places then lie within one period, and where they fill

@@ -88,7 +88,7 @@ def body_samples(scene: Scene, motion: Motion) -> dict[str, BodySamples]:
     return found
 
 
-def applied(scene: Scene, motion: Motion) -> Iterator[tuple[str, Point, Array, Array]]:
+def weights_and_loads(scene: Scene, motion: Motion) -> Iterator[tuple[str, Point, Array, Array]]:
     """Weights and loads: body, place on it, force (T, 2) and torque (T,)."""
     bodies = body_samples(scene, motion)
     rest = np.zeros((len(motion.time_s), 2))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.check.body_samples import BodySamples, applied, body_samples, cross
+from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from analytic.check.constraints import Constraints
 from models.array import Array
 from models.errors import CrankcheckError
@@ -52,7 +52,7 @@ def forces(scene: Scene, motion: Motion) -> Forces:
         right[k, size:] = system.gamma(q[k], rates[k], float(alpha[k]))
     for name, body in bodies.items():
         _inertia(body, system.at[name], saddle, right)
-    for name, place, force, torque in applied(scene, motion):
+    for name, place, force, torque in weights_and_loads(scene, motion):
         at = system.at[name]
         right[:, at : at + 2] += force
         right[:, at + 2] += torque + cross(bodies[name].arm(place), force)

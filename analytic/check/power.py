@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.check.body_samples import applied, body_samples
+from analytic.check.body_samples import body_samples, weights_and_loads
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
@@ -37,7 +37,7 @@ def power_balance(scene: Scene, motion: Motion, torque: Array) -> PowerBalance:
         push = body.mass * body.acceleration_at(body.centre)
         parts.append(np.sum(push * body.velocity_at(body.centre), axis=1))
         parts.append(body.inertia * body.alpha * body.omega)
-    for name, place, force, moment in applied(scene, motion):
+    for name, place, force, moment in weights_and_loads(scene, motion):
         body = bodies[name]
         parts.append(-np.sum(force * body.velocity_at(place), axis=1) - moment * body.omega)
     for part in parts:

@@ -26,7 +26,7 @@ Displaced = Mapping[str, Bounded]
 """The displacement of each slider [m]."""
 
 
-class Pair:
+class PrismaticPair:
     """A prismatic pair: its directions, and the way to its point from the centre of each body."""
 
     def __init__(self, slider: Slider, scene: Scene, free: Mapping[str, FreeBody], s: Bounded):
@@ -89,8 +89,10 @@ class Balance:
         """The moment of what acts on a body about one of its points."""
         return self.free[body].moment_about(self.arm(body, point))
 
-    def pair(self, slider: str) -> Pair:
-        return Pair(self.scene.sliders[slider], self.scene, self.free, self.displaced[slider])
+    def pair(self, slider: str) -> PrismaticPair:
+        return PrismaticPair(
+            self.scene.sliders[slider], self.scene, self.free, self.displaced[slider]
+        )
 
     def push(self, body: str, point: str, force: BoundedVec) -> None:
         """A force of an inner pin on a body that needs it for its other pair."""
@@ -112,7 +114,7 @@ class Balance:
         if holder != GROUND:
             self.push(holder, point, -force)
 
-    def slide(self, pair: Pair, body: str, normal: Bounded, moment: Bounded) -> None:
+    def slide(self, pair: PrismaticPair, body: str, normal: Bounded, moment: Bounded) -> None:
         """A prismatic pair exerts a force along n and a moment on a body, and the opposite on the
         other."""
         other = self.free[pair.other(body)]
@@ -197,7 +199,9 @@ def _rpp(on: Balance, group: Group) -> None:
     on.rest(group.outer2, group.second)
 
 
-def _crossing(line1: Pair, line2: Pair, along1: Bounded, along2: Bounded) -> BoundedVec:
+def _crossing(
+    line1: PrismaticPair, line2: PrismaticPair, along1: Bounded, along2: Bounded
+) -> BoundedVec:
     """The force with these components along two lines."""
     inverse = line1.along.cross(line2.along).inverse()
     return line1.across * (along2 * inverse) - line2.across * (along1 * inverse)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Real
-from analytic.forces.applied import apply_loads
+from analytic.forces.applied_loads import apply_loads
 from analytic.forces.balance import Balance
 from analytic.forces.bounded import Bounded
 from analytic.forces.force_arrays import ForceArrays

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import Vec
-from analytic.forces.applied import apply_loads
+from analytic.forces.applied_loads import apply_loads
 from analytic.forces.bounded import BoundedVec
 from analytic.forces.free_body import FreeBody
 from analytic.forces.virtual_power import torque_by_power

@@ -11,7 +11,7 @@ import pytest
 from models.errors import CrankcheckError, SceneError
 from models.files import load_scene, parse_scene, shipped
 from models.interpolation import slopes, spline
-from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Table
+from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Tabulated
 from models.scene_text import scene_text
 
 PRESS = """
@@ -74,10 +74,10 @@ def test_every_law_of_a_load_is_read() -> None:
     assert loads["work"] == Load(
         "work", "block C", "C", Constant(500.0), "time", "C", "forward", math.pi
     )
-    gas = Table((0.15, 0.2, 0.45), (900.0, 300.0, 0.0), "pchip")
+    gas = Tabulated((0.15, 0.2, 0.45), (900.0, 300.0, 0.0), "pchip")
     assert loads["gas"] == Load("gas", "rod", "C", gas, "displacement", "C", frame="body")
     quarter = math.pi / 2
-    valve = Table((0.0, quarter, 3 * quarter), (0.0, 2.0, -1.0), "linear", 4 * math.pi)
+    valve = Tabulated((0.0, quarter, 3 * quarter), (0.0, 2.0, -1.0), "linear", 4 * math.pi)
     assert loads["valve"] == Load("valve", "crank", None, valve, "angle")
     hum = Load("hum", "rod", "B", Sine(3.0, 0.02, quarter), direction_rad=math.radians(30.0))
     assert loads["hum"] == hum
@@ -231,9 +231,9 @@ def test_interpolation_rises_only_where_its_table_rises() -> None:
         Sine(3.0, 0.7, 0.2),
         Polynomial((1.0, -2.0, 0.5, 3.0)),
         Polynomial((2.0,)),
-        Table((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0)),
-        Table((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0), "pchip"),
-        Table((0.0, 0.2, 0.7), (1.0, -4.0, 2.0), "pchip", 1.0),
+        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0)),
+        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0), "pchip"),
+        Tabulated((0.0, 0.2, 0.7), (1.0, -4.0, 2.0), "pchip", 1.0),
         Constant(4.0),
     ],
     ids=str,
@@ -249,7 +249,7 @@ def test_no_characteristic_is_steeper_than_it_says(own: Characteristic) -> None:
     [
         (lambda: Sine(1.0, 0.0), "found a period of 0"),
         (lambda: Polynomial(()), "found no coefficient"),
-        (lambda: Table((0.0,), (1.0,)), "found 1 rows"),
+        (lambda: Tabulated((0.0,), (1.0,)), "found 1 rows"),
     ],
 )
 def test_a_characteristic_without_magnitude_is_refused(make: object, words: str) -> None:

@@ -14,7 +14,7 @@ from mpmath import matrix, mp, mpf
 
 from analytic.structure.mobility import sliding_body
 from models.joints import block_name, local_point
-from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Table
+from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Tabulated
 from models.scene import GROUND, Point, Scene
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number
@@ -29,6 +29,13 @@ class ExactForces:
     pins: Mapping[str, Mapping[str, Pair]]
     sliders: Mapping[str, Pair]
     torque: Number
+
+    @property
+    def largest(self) -> float:
+        """The largest of its numbers."""
+        pairs = [pair for held in self.pins.values() for pair in held.values()]
+        pairs += list(self.sliders.values())
+        return float(max(abs(self.torque), *(abs(n) for pair in pairs for n in pair)))
 
 
 @dataclass(frozen=True)
@@ -200,7 +207,7 @@ def value_of(own: Characteristic, x: Number) -> Number:
         return mpf(own.amplitude) * mp.sin(2 * mp.pi * x / mpf(own.period) + mpf(own.phase_rad))
     if isinstance(own, Polynomial):
         return sum((mpf(c) * x**k for k, c in enumerate(own.coefficients)), mpf(0))
-    assert isinstance(own, Table)
+    assert isinstance(own, Tabulated)
     rows = [(mpf(p), mpf(v)) for p, v in zip(own.places, own.values, strict=True)]
     if own.period is not None:
         period = mpf(own.period)

@@ -24,8 +24,8 @@ from tests.analytic.forces.exact_forces import ExactForces, exact_forces, value_
 from tests.worlds.loading import OVER, characteristic, loaded, loaded_mechanism
 from tests.worlds.wide_angles import made, times
 
-NOTHING = 1e-30
-"""What is left of an error of the oracle itself."""
+NOTHING = 1e-38
+"""What is left of an error of the oracle itself, over its largest force."""
 COUNT = 20
 LOOSE = 4000.0
 """What the median of bound over error may be: those of accelerations alone are a few hundred."""
@@ -59,8 +59,7 @@ def _held(found: Forces, exact: ExactForces, i: int) -> Iterator[Held]:
 
 
 def _apart(value: float, exact: object) -> float:
-    error = float(abs(float(value) - exact))  # type: ignore[operator]
-    return error if error > NOTHING else 0.0
+    return float(abs(float(value) - exact))  # type: ignore[operator]
 
 
 def beside(scene: Scene, time_s: Array) -> list[Held]:
@@ -69,7 +68,11 @@ def beside(scene: Scene, time_s: Array) -> list[Held]:
     rows: list[Held] = []
     for i, t in enumerate(time_s):
         exact = _exact(scene, chain, motion, i, float(t))
-        rows += _held(found, exact, i)
+        least = NOTHING * exact.largest
+        rows += [
+            replace(row, error=row.error if row.error > least else 0.0)
+            for row in _held(found, exact, i)
+        ]
     return rows
 
 
@@ -131,5 +134,5 @@ def test_magnitudes_of_loads_are_rounded_by_no_more_than_they_say() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(8))
 def test_errors_stay_below_their_bounds_in_thousands_of_mechanisms(part: int) -> None:
-    for number in range(1000 * part, 1000 * (part + 1)):
+    for number in range(500 * part, 500 * (part + 1)):
         hold(number)

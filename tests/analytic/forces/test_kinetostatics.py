@@ -23,7 +23,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene, shipped
 from models.forces import Forces
 from models.laws import Accelerating
-from models.loads import Constant, Load, Polynomial, Table
+from models.loads import Constant, Load, Polynomial, Tabulated
 from models.scene import Driver, Scene
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.worlds.loading import loaded, loaded_mechanism
@@ -140,6 +140,10 @@ def test_forces_of_a_motion_are_those_of_its_times() -> None:
     of_motion = kinetostatics.forces(scene, solve(scene, time_s))
     bare = kinetostatics.forces(scene, time_s, bound=False)
     assert apart(by_time, of_motion) < 1e-14
+    assert by_time.bound is not None
+    assert of_motion.bound is not None
+    assert np.all(of_motion.bound.torque < 3.0 * by_time.bound.torque)
+    assert np.all(by_time.bound.torque < 3.0 * of_motion.bound.torque)
     assert bare.bound is None
     for (name, a), (_, b) in zip(series(by_time), series(bare), strict=True):
         np.testing.assert_array_equal(a, b, err_msg=name)
@@ -261,6 +265,21 @@ def test_redundant_links_leave_the_torque(number: int) -> None:
     assert np.all(found.bound.torque < 1e-9 * np.abs(found.torque).max())
 
 
+def test_a_redundant_link_without_mass_changes_no_torque() -> None:
+    """Within both bounds, which go on along two ways."""
+    scene = replace(loaded(parallelogram(1), random.Random(5)), gravity_m_s2=(0.0, -9.81))
+    strutted = with_strut(scene, "B0", "B1")
+    strut = replace(strutted.links["strut"], mass_kg=0.0, inertia_kg_m2=0.0)
+    strutted = replace(strutted, links={**strutted.links, "strut": strut})
+    time_s = np.linspace(0.0, 1.0, 9)
+    plain, spare = (kinetostatics.forces(each, time_s) for each in (scene, strutted))
+    assert plain.bound is not None
+    assert spare.bound is not None
+    most = plain.bound.torque + spare.bound.torque
+    assert np.all(np.abs(plain.torque - spare.torque) <= most)
+    assert np.all(most < 1e-9 * np.abs(plain.torque).max())
+
+
 @pytest.mark.parametrize("name", ["shaper", "sixbar-watt", "tangent"])
 def test_virtual_power_gives_the_torque_of_the_reactions(name: str) -> None:
     """Within the bounds of both; at rest too, where power says nothing."""
@@ -359,7 +378,7 @@ def test_a_scene_without_mass_and_load_is_refused() -> None:
             r"loads.x.slider: found none; use one of C",
         ),
         (
-            Load("x", "rod", "C", Table((0.0, 0.1), (1.0, 2.0)), "time"),
+            Load("x", "rod", "C", Tabulated((0.0, 0.1), (1.0, 2.0)), "time"),
             r"loads.x: over the time \[s\] the table goes from 0 to 0.1, and 0.2 is asked for",
         ),
     ],
