@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from models.joints import turned
-from models.loads import Load
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
@@ -28,11 +27,11 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             direction_rad=slider.direction_rad + angle_rad,
         )
 
-    def in_ground(load: Load) -> Load:
-        if load.frame == "body":
-            return load
-        return replace(load, direction_rad=load.direction_rad + angle_rad)
-
+    loads = {
+        name: replace(load, direction_rad=load.direction_rad + angle_rad)
+        for name, load in scene.loads.items()
+        if load.frame == "ground"
+    }
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -40,7 +39,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         sliders={n: on_ground(s) if s.on == GROUND else s for n, s in scene.sliders.items()},
         driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
         gravity_m_s2=turn(scene.gravity_m_s2),
-        loads={n: in_ground(one) for n, one in scene.loads.items()},
+        loads={**scene.loads, **loads},
     )
 
 

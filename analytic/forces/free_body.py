@@ -79,7 +79,7 @@ def free_bodies(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
     free = {GROUND: FreeBody(chunk.bodies[GROUND], (0.0, 0.0))}
     for link in scene.links.values():
         body = FreeBody(chunk.bodies[link.name], link.centre_m)
-        if link.mass_kg > 0.0:
+        if link.mass_kg or link.inertia_kg_m2:
             near = _nearest(scene, link.points, link.centre_m)
             anchor = chunk.point(link.name, near)
             about = replace(body.body, local=link.points[near], anchor=anchor)
@@ -89,7 +89,7 @@ def free_bodies(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
         if slider.link is None:
             name = block_name(slider)
             body = FreeBody(chunk.bodies[name], (0.0, 0.0))
-            if slider.mass_kg > 0.0:
+            if slider.mass_kg or slider.inertia_kg_m2:
                 masses = (slider.mass_kg, slider.inertia_kg_m2)
                 _weigh(scene, body, chunk.point(name, slider.point), masses)
             free[name] = body
