@@ -188,11 +188,13 @@ class Tabulated(Characteristic):
         return factor * float(np.max(np.abs(np.diff(values) / np.diff(knots))))
 
     def rounding(self, x: Array) -> Array | float:
-        turned = 0.0 if self.period is None else 2 * EPS * np.abs(x) * self.steepest(x, 0.0)
         size = float(np.max(np.abs(self.values)))
-        reach = max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)
-        own = 16 * EPS if self.interpolation == "linear" else 128 * EPS  # slopes are rounded too
-        return np.asarray(own * size + 4 * EPS * reach * self.steepest(x, 0.0) + turned)
+        own = size * (16 * EPS if self.interpolation == "linear" else 128 * EPS)
+        if self.period is None:
+            return own
+        # Whole periods are taken off the argument, and one is added to the first place.
+        reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + self.period
+        return np.asarray(own + 4 * EPS * reach * self.steepest(x, 0.0))
 
 
 @dataclass(frozen=True)

@@ -145,7 +145,7 @@ def characteristic(over: Over, chance: random.Random) -> Characteristic:
         values = tuple(chance.uniform(-size, size) for _ in places)
         return Tabulated(tuple(places), values, interpolation, math.tau)
     if kind == "table" and over == "displacement":
-        rows = range(-40, 41, 4)
+        rows = sorted(sign * 4.0**k for k in range(-2, 12) for sign in (1, -1))
         values = tuple(chance.uniform(-size, size) for _ in rows)
-        return Tabulated(tuple(map(float, rows)), values, interpolation)
+        return Tabulated(tuple(rows), values, interpolation)
     return Constant(size)
