@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
 from models.errors import SceneError
 from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_tables import LawOfLoad, PolynomialLoad, SineLoad, TableLoad
-from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Tabulated
+from models.loads import Load
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     LARGEST,

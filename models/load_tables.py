@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from models.loads import Interpolation, Over, Stroke
+from models.characteristics import Interpolation
+from models.loads import Over, Stroke
 from models.schema import Degrees, Name, Number, Positive, Table
 
 UNIT: dict[str, str] = {"time": "s", "angle": "deg", "displacement": "m"}

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from models.characteristics import Constant, Polynomial, Sine, Tabulated
 from models.errors import CrankcheckError
 from models.load_tables import UNIT
-from models.loads import Constant, Load, Polynomial, Sine, Tabulated
+from models.loads import Load
 
 
 def load_table(load: Load) -> Mapping[str, object]:

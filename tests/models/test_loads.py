@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
 from models.errors import CrankcheckError, SceneError
 from models.files import load_scene, parse_scene, shipped
 from models.interpolation import slopes, spline
-from models.loads import Characteristic, Constant, Load, Polynomial, Sine, Tabulated
+from models.loads import Load
 from models.scene_text import scene_text
 
 PRESS = """

@@ -10,9 +10,10 @@ import pytest
 
 from analytic.forces.kinetostatics import forces
 from analytic.forces.reduced_machine import reduced_machine
+from models.characteristics import Constant
 from models.files import load_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
-from models.loads import Constant, Load
+from models.loads import Load
 from models.scene import Driver
 from tests.worlds.loading import loaded
 
