@@ -1,6 +1,6 @@
 """Measure what the models of `sim.tuning` need: ``python -m benchmarks.step_cost``.
 
-Every shipped scene at constant speed is timed in both engines, with settings that differ in what
+Every shipped scene at constant speed is timed in all engines, with settings that differ in what
 they ask for; each is timed in several rounds, far apart, and the least time counts. Takes some
 minutes on a machine that does nothing else.
 """
@@ -23,6 +23,9 @@ from reports.sweep.measured import Repeats, timed_in_turns
 from reports.tune.timing import GUESS_US
 from reports.workers.isolated import Isolated, Limits
 from sim.engine import Settings
+from sim.exudyn import knobs as exudyn_knobs
+from sim.exudyn.settings import JACOBIANS
+from sim.exudyn.settings import TUNED as EXUDYN_TUNED
 from sim.mujoco import knobs as mujoco_knobs
 from sim.mujoco.knobs import EVALUATIONS
 from sim.pymunk import knobs as pymunk_knobs
@@ -31,6 +34,7 @@ from sim.pymunk.knobs import PASS_US
 ROUNDS = 12
 STEPS_PER_TURN = 720.0
 ITERATIONS = (2, 10, 50, 150)
+TOLERANCES = (1e-4, 1e-8)
 Point = tuple[Scene, str, Settings]
 
 
@@ -41,6 +45,11 @@ def points() -> list[Point]:
     for scene in scenes:
         found += [(scene, "mujoco", {"integrator": name}) for name in EVALUATIONS]
         found += [(scene, "mujoco", {"iterations": number}) for number in (1, 100)]
+        found += [
+            (scene, "exudyn", {"jacobian": name, "relative_tolerance": tolerance})
+            for name in JACOBIANS
+            for tolerance in TOLERANCES
+        ]
         found += [
             (scene, "pymunk", {"iterations": number, "lines": lines})
             for number in ITERATIONS
@@ -119,6 +128,17 @@ def pymunk(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
     yield _off([float(np.dot(row, found)) / t for row, t in zip(rows, times, strict=True)])
 
 
+def exudyn(what: Sequence[Point], us: Sequence[float]) -> Iterator[str]:
+    """The constants of `sim.exudyn.knobs` as text."""
+    tuned = {name: setting.value for name, setting in EXUDYN_TUNED.settings.items()}
+    known = [(p, t) for p, t in zip(what, us, strict=True) if p[1] == "exudyn" and t == t]
+    rows = [exudyn_knobs.counts(scene, {**tuned, **settings}) for (scene, _, settings), _ in known]
+    times = [t for _, t in known]
+    found = fit(rows, times)
+    yield "STEP_US, ITERATION_US, MATRIX_US = {:.3f}, {:.3f}, {:.4f}".format(*found)
+    yield _off([float(np.dot(row, found)) / t for row, t in zip(rows, times, strict=True)])
+
+
 def _off(ratios: Sequence[float]) -> str:
     """How far a model is off."""
     off = np.abs(np.asarray(ratios) - 1.0)
@@ -128,5 +148,5 @@ def _off(ratios: Sequence[float]) -> str:
 if __name__ == "__main__":
     asked = points()
     taken = measure(asked)
-    for line in (*mujoco(asked, taken), *pymunk(asked, taken)):
+    for line in (*mujoco(asked, taken), *pymunk(asked, taken), *exudyn(asked, taken)):
         print(line)

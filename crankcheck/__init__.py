@@ -3,9 +3,9 @@
     verdict = crankcheck.check("fourbar-lecture-1", "mujoco")
     print(verdict)
 
-The public face is what ``__all__`` lists, and `crankcheck.testing`: docs/python.md shows all of it.
-Every other module, class and function is private, and may change from one version to the next
-without a word in CHANGELOG.md.
+The public face is what ``__all__`` lists, and `crankcheck.testing`: docs/python.md shows all of it;
+and `crankcheck.engine`, for engines of your own: docs/own-engine.md. Every other module, class and
+function is private, and may change from one version to the next without a word in CHANGELOG.md.
 
 It is the same in a checkout and where the wheel is installed. Importing it costs next to nothing:
 what stands behind a name is loaded when the name is first used. Where it is the command that
@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from reports.face.cell_verdict import CellVerdict, check
     from reports.face.comparison import Comparison, compare
     from reports.face.log_verdict import LogVerdict, judge
+    from reports.face.model_verdict import ModelVerdict, check_model
     from reports.face.report import report
     from reports.face.simulation import Simulation, run
     from reports.face.solution import Solution, solve, solve_driven
@@ -84,6 +85,7 @@ __all__ = [
     "Errors",
     "Finding",
     "LogVerdict",
+    "ModelVerdict",
     "Motion",
     "ReachError",
     "Run",
@@ -96,6 +98,7 @@ __all__ = [
     "Sweep",
     "__version__",
     "check",
+    "check_model",
     "compare",
     "judge",
     "load_scene",
@@ -130,6 +133,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import comparison as home
             case "LogVerdict" | "judge":
                 from reports.face import log_verdict as home
+            case "ModelVerdict" | "check_model":
+                from reports.face import model_verdict as home
             case "report":
                 from reports.face import report as home
             case "Simulation" | "run":

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
+from models.errors import EngineError
 from models.fixed import FixedMapping
 from models.scene import GROUND, KEPT, Point, Same, Scene, Slider
 
@@ -108,6 +109,18 @@ def _joints(same: Same) -> Joints:
             held = tuple(name for name in points[slider.point] if name != slider.on)
             slots.append(Slot(slider, held))
     return Joints(pins, tuple(prisms), tuple(slots))
+
+
+def riding_body(slide: Prism | Slot) -> str:
+    """The body whose point runs on the line. Raises EngineError where there is none."""
+    if isinstance(slide, Prism):
+        return slide.body
+    if not slide.bodies:
+        raise EngineError(
+            f"slider {slide.slider.name}: no body carries point {slide.slider.point}; give "
+            f"sliders.{slide.slider.name} a mass_kg above 0"
+        )
+    return slide.bodies[0]
 
 
 def local_point(scene: Scene, body: str, point: str) -> Point:

@@ -103,7 +103,8 @@ class Log:
     """What a stretch of stepping left: poses at the logged steps, and how it ended.
 
     ``wall_s`` is the time that stepping and logging took; what is computed from the log
-    afterwards (accelerations, poses) is not part of it.
+    afterwards (accelerations, poses) is not part of it. ``stopped`` says why the engine itself
+    went no further, in its own words; empty where it went to the end.
     """
 
     poses: Poses
@@ -111,6 +112,7 @@ class Log:
     diverged: bool
     warnings: tuple[str, ...]
     wall_s: float
+    stopped: str = ""
 
 
 class Session(Protocol):
@@ -141,11 +143,11 @@ class Engine:
     set of settings, that it does not take. ``open`` gives a session at a state, with settings, step
     [s] and drive; EngineError where the engine cannot hold the scene. An engine that does not
     report accelerations gives NaN for all. ``holds`` is what the facts of a session say of a
-    complete set of settings, step and drive. How the engine comes by places is its ``placing``;
-    where they are integrated their errors shrink as the step to the power ``order`` at most.
-    ``in_seconds`` names what of a complete set of settings is a time, or a loss in a time, of its
-    own: without any, errors of place depend on the steps in a turn, not on the speed. An engine
-    that does not say has all of them so.
+    complete set of settings, step and drive. How the engine comes by places with a complete set of
+    settings is its ``placing``; where they are integrated their errors shrink as the step to the
+    power ``order`` at most. ``in_seconds`` names what of a complete set of settings is a time, or a
+    loss in a time, of its own: without any, errors of place depend on the steps in a turn, not on
+    the speed. An engine that does not say has all of them so.
     """
 
     name: str
@@ -155,7 +157,7 @@ class Engine:
     open: Callable[[Scene, State, Settings, float, Drive], Session]
     reports_accelerations: bool = True
     holds: Callable[[Settings, float, Drive], Settings] = lambda settings, dt_s, drive: settings
-    placing: Placing = "integrated"
+    placing: Callable[[Settings], Placing] = lambda settings: "integrated"
     order: int = 2
     in_seconds: Callable[[Settings], tuple[str, ...]] = tuple
 

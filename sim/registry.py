@@ -10,17 +10,20 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Literal, cast
 
-from models.errors import EngineError, suggestion
+from models.errors import EngineError
 from sim.engine import Engine
+from sim.own_engine.known import own_engine
+from sim.own_engine.spelling import installed
 
 ENGINES: Mapping[str, str] = {
     "mujoco": ".mujoco",
     "pymunk": ".pymunk",
+    "exudyn": ".exudyn",
 }
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """The one that is taken where one is enough, and none was named."""
-Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer"]
+Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader"]
 """What an engine may lack."""
 
 
@@ -35,13 +38,18 @@ class Declaration:
     ``package`` is what Python imports, ``install`` what pip calls it; an ``extra`` is no part of a
     plain install of crankcheck, and runs where it is named. The adapter is the value ``ENGINE`` of
     the file ``engine``; each of what it ``offers`` has a file of that name too, with a value of
-    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler` or `Viewer`.
+    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer` or
+    `Reader`.
     """
 
     package: str
     install: str
     offers: tuple[Capability, ...] = ()
     extra: bool = False
+
+
+OWN = Declaration("", "", extra=True)
+"""What is declared of an engine that is not ours."""
 
 
 @dataclass(frozen=True)
@@ -56,9 +64,11 @@ class Availability:
 
 
 def declaration(name: str) -> Declaration:
-    """What an engine's folder holds. Raises EngineError, with near names, for an unknown one."""
+    """What an engine's folder holds; one that is not ours has its adapter alone. Raises
+    EngineError, with near names, for an unknown one."""
     if name not in ENGINES:
-        raise EngineError(f"engine {name!r}: unknown; {suggestion(name, ENGINES, 'there are')}")
+        own_engine(name, ENGINES)
+        return OWN
     return cast(Declaration, importlib.import_module(ENGINES[name], __package__).DECLARATION)
 
 
@@ -68,14 +78,17 @@ def usual() -> list[str]:
 
 
 def engine(name: str) -> Engine:
-    """The engine of that name.
+    """The engine of that name: one of ours, or of an installed package that has it in its entry
+    points; or of the spelling `package.module:ATTRIBUTE`, by whose name it is known from then on.
 
     Raises
     ------
     EngineError
         No such engine (the message suggests near names), or its package is not installed, or can
-        not be imported here.
+        not be imported here; or what is there is no engine, or has the name of another.
     """
+    if name not in ENGINES:
+        return own_engine(name, ENGINES)
     return cast(Engine, _loaded(name, "engine"))
 
 
@@ -147,7 +160,7 @@ def install_command(name: str) -> str:
 
 
 def available() -> tuple[Availability, ...]:
-    """All engines, installed or not."""
+    """All engines of ours, installed or not."""
     engines = []
     for name in ENGINES:
         version, broken = None, ""
@@ -156,4 +169,18 @@ def available() -> tuple[Availability, ...]:
         except EngineError as error:
             broken = str(error) if isinstance(error, BrokenEngineError) else ""
         engines.append(Availability(name, version, install_command(name), broken))
+    return tuple(engines)
+
+
+def brought() -> tuple[Availability, ...]:
+    """The engines that other installed packages bring, by their entry points; what is wrong with
+    one that can not be used is said."""
+    engines = []
+    for name in dict.fromkeys(point.name for point in installed()):
+        version, broken = None, ""
+        try:
+            version = engine(name).version()
+        except EngineError as error:
+            broken = str(error)
+        engines.append(Availability(name, version, "", broken))
     return tuple(engines)

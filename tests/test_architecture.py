@@ -28,8 +28,10 @@ FLOORS: Mapping[str, str] = {
     "reports": """
         cli
         face
-        page figures diff tune advise history verify selftest
-        sweep stability own_log
+        page figures
+        own_model
+        diff tune advise history verify selftest
+        sweep stability own_log contract
         results
         store
         plan
@@ -50,9 +52,11 @@ FLOORS: Mapping[str, str] = {
     "sim": f"""
         {" ".join(ENGINES)}
         spoil
-        remedies run snippets tuning viewing
+        timing
+        remedies run snippets tuning viewing own_models
+        recording
         check energy registry
-        measure drive tree_poses settings
+        measure drive tree_poses settings own_engine
         engine
     """,
 }

@@ -4,15 +4,21 @@ shown."""
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
+import pytest
+
 import crankcheck
-from crankcheck import testing
+from crankcheck import engine, testing
 from tests.worlds.command import PYTHON
 from tests.worlds.documents import blocks, commands, follows, ran, scripts, words
 
-PAGE = (Path(__file__).parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
-OWN_LOG = (Path(__file__).parents[1] / "docs" / "own-log.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
+OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
+OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
+OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
@@ -35,14 +41,43 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
+    assert not told_otherwise(OWN_LOG, tmp_path)
+
+
+def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:
+    """In the folder of the example: some 10 s, most of them for the whole contract."""
+    for path in (DOCS.parent / "examples" / "engine").glob("*.*"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    assert not told_otherwise(OWN_ENGINE, tmp_path)
+
+
+def test_what_is_said_of_own_models_is_true(tmp_path: Path) -> None:
+    """What the commands print of a model that stands on the page, before and after the diff."""
+    if shutil.which("patch") is None:
+        pytest.skip("no patch: apt-get install patch")
+    (model,) = blocks(OWN_MODEL, "xml")
+    (tmp_path / "engine.xml").write_text(model)
+    assert not told_otherwise(OWN_MODEL, tmp_path)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {name for name in written if f"`{name}`" in OWN_MODEL}
+
+
+def told_otherwise(page: str, folder: Path) -> str:
+    """The commands of a page that end or print otherwise, "" where there are none."""
     faults = []
-    for command, shown, code in commands(OWN_LOG):
-        done = ran(words(command), tmp_path)
+    for command, shown, code in commands(page):
+        done = ran(words(command), folder)
         printed = [line.rstrip() for line in done.stdout.splitlines()]
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:
             faults.append(f"$ {command}\nexit {done.returncode}\n{fault}\n{done.stderr}")
-    assert not faults, "\n\n".join(faults)
+    return "\n\n".join(faults)
+
+
+def test_every_name_for_engines_stands_on_its_page() -> None:
+    prose = re.sub(r"```.*?```", "", OWN_ENGINE, flags=re.DOTALL)
+    told = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`]+`", prose))))
+    assert not set(engine.__all__) - told
 
 
 def test_every_name_of_the_face_stands_on_the_page() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -263,6 +264,28 @@ def against(installed: Path, *tests: str) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
     done = ran(*command, cwd=ROOT, **{VARIABLE: str(installed / "crankcheck")})
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.slow
+def test_an_engine_that_pip_installs_beside_the_wheel_holds_the_contract(
+    installed: Path, mine: Path
+) -> None:
+    """In an environment of its own, as a package of others is no guest in that of all tests."""
+    site = mine / "site"
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
+    shutil.copytree(ROOT / "examples" / "engine", mine / "source")
+    subprocess.run([*pip, "--target", str(site), str(mine / "source")], check=True)
+    path = {"PYTHONPATH": str(site)}
+    done = ran(installed / "crankcheck", "engines", "check", "penalty", cwd=mine, **path)
+    assert (done.returncode, "HOLDS THE CONTRACT" in done.stdout) == (0, True), done.stdout
+    sweep = (
+        "sweep fourbar-lecture-1 --engine penalty --profile tuned --steps-per-turn 90,180 -o out"
+    )
+    done = ran(installed / "crankcheck", *sweep.split(), "--no-timing", cwd=mine, **path)
+    assert (done.returncode, "2 cells: 2 run now" in done.stdout) == (0, True), done.stderr
+    done = ran(installed / "crankcheck", "report", "out", "-o", "page.html", cwd=mine)
+    assert done.returncode == 0, done.stderr
+    assert "penalty 1.0" in (mine / "page.html").read_text(encoding="utf-8")
 
 
 MOVED = {"analytic", "analytic.reach", "analytic.dyads", "analytic.dyads.rrr", "sim", "sim.run"}

@@ -1,4 +1,4 @@
-"""The same mechanism somewhere else: turned, moved or scaled.
+"""The same mechanism somewhere else: turned, moved, mirrored or scaled.
 
 A mechanism does not know where it stands, so errors as pure numbers must not change either.
 """
@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from analytic.structure.mobility import analyse
 from models.joints import turned
+from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
@@ -57,6 +59,51 @@ def moved(scene: Scene, by_m: Point) -> Scene:
             for n, s in scene.sliders.items()
         },
     )
+
+
+def mirrored(scene: Scene) -> Scene:
+    """The scene mirrored in the x-axis; pins of two-link dyads change their branch with it."""
+
+    def flip(p: Point) -> Point:
+        return (p[0], -p[1])
+
+    def link(old: Link) -> Link:
+        points = {name: flip(place) for name, place in old.points.items()}
+        return replace(old, points=points, centre_m=flip(old.centre_m))
+
+    def slider(old: Slider) -> Slider:
+        return replace(
+            old,
+            through_m=flip(old.through_m),
+            direction_rad=-old.direction_rad,
+            angle_rad=-old.angle_rad,
+        )
+
+    sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
+    flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
+    return replace(
+        scene,
+        ground={name: flip(place) for name, place in scene.ground.items()},
+        links={name: link(old) for name, old in scene.links.items()},
+        sliders={name: slider(old) for name, old in scene.sliders.items()},
+        driver=Driver(scene.driver.link, mirrored_law(scene.driver.law)),
+        branch={**scene.branch, **flipped},
+        gravity_m_s2=flip(scene.gravity_m_s2),
+    )
+
+
+def mirrored_law(law: Law) -> Law:
+    """The law with every angle of the opposite sign."""
+    match law:
+        case Oscillating():
+            return replace(law, centre_rad=-law.centre_rad, amplitude_rad=-law.amplitude_rad)
+        case ConstantSpeed() | FromRest():
+            return replace(law, start_rad=-law.start_rad, speed_rad_s=-law.speed_rad_s)
+        case Accelerating(start, speed, gain):
+            return Accelerating(-start, -speed, -gain)
+        case SpeedChange(start, before, after):
+            return replace(law, start_rad=-start, before_rad_s=-before, after_rad_s=-after)
+    raise TypeError(law)
 
 
 def scaled(scene: Scene, factor: float) -> Scene:

@@ -22,6 +22,11 @@ EXPLAINED = 0.1
 """The part of an error that may be left by what explains it."""
 NOUGHT = 1e-3
 """What is less than this part of its limit is as good as 0."""
+TIGHT = 0.02
+"""The part that may be left by what is like many other things, unless that is noise."""
+ROUGH = 1.0
+"""The mean square of the steps of a series over its own, from which on it is noise: 2 where no
+sample says anything of the next one (von Neumann, Ann. Math. Stat. 12, 1941)."""
 BROUGHT_WITHIN = 1.0 / 3.0
 """The part that may be left where the channel is within its limit then."""
 
@@ -105,6 +110,17 @@ class Excerpt:
         rest = self.rest(error, expected)
         within = Size.of(error).largest <= self.limit
         return rest <= (BROUGHT_WITHIN if within else EXPLAINED)
+
+    def told_apart(self, error: Array) -> bool:
+        """Whether what is left is next to nothing, or noise, so that what leaves it is not merely
+        like what there is."""
+        return self.rest(error) <= TIGHT or _rough(error)
+
+
+def _rough(series: Array) -> bool:
+    """Whether a series is noise, of which no sample says anything of the next."""
+    centred = series - np.mean(series)
+    return bool(np.sum(np.diff(series) ** 2) > ROUGH * np.sum(centred**2))
 
 
 @dataclass(frozen=True)

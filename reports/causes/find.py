@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from models.errors import CrankcheckError
-from reports.causes.account import Account
+from reports.causes.account import CAUSE, NUMBER, Account
 from reports.causes.cause import Case, Cause
 from reports.causes.choice import chosen
 from reports.causes.hypotheses import OF_CHANNELS, OF_LOGS, OF_SAMPLES, Hypothesis
@@ -16,6 +16,8 @@ from reports.causes.inquiry import Inquiry
 from reports.causes.words import sentence
 
 FEWEST_ROWS = 8
+MOSTLY = 0.5
+"""The part of what is off that has no cause, from which on single numbers are doubted."""
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
@@ -33,7 +35,7 @@ def causes(case: Case) -> tuple[Cause, ...]:
     told = chosen(accounts, inquiry.open)
     world = next((account for account in told if account.world is not None), None)
     told = _advised(inquiry, accounts, told) if world is None else _beside(inquiry, world, told)
-    return tuple(_cause(inquiry, same) for same in _merged(told))
+    return tuple(_cause(inquiry, same) for same in _sure(inquiry, _merged(told)))
 
 
 def _advised(
@@ -59,6 +61,23 @@ def _beside(inquiry: Inquiry, world: Account, told: Sequence[Account]) -> list[A
     found += chosen(_accounts(replace(there, open=still), OF_SAMPLES), still)
     explained = _columns(found)
     return [*found, *(each for each in told if not explained & set(each.columns))]
+
+
+def _sure(inquiry: Inquiry, told: Sequence[list[Account]]) -> list[list[Account]]:
+    """What is told, without numbers of a single channel where most of what is off has no cause and
+    is off by as much: what is wrong with the others is likely to be wrong with that one too."""
+    explained = _columns([account for same in told for account in same])
+    taken = {c: inquiry.excerpts[c].worst / inquiry.excerpts[c].limit for c in inquiry.open}
+    left = [taken[column] for column in inquiry.open if column not in explained]
+    if len(left) < max(2, MOSTLY * len(inquiry.open)):
+        return list(told)
+    return [
+        same
+        for same in told
+        if sum(len(account.columns) for account in same) > 1
+        or same[0].cost < CAUSE + NUMBER
+        or taken.get(same[0].columns[0], 0.0) > max(left)
+    ]
 
 
 def _columns(told: Sequence[Account]) -> set[str]:

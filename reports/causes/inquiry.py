@@ -27,6 +27,8 @@ MOVED = 0.3
 """A channel whose expectation a hypothesis changes by so much of its error is its affair."""
 WELL = 0.02
 """What is left of an error that is explained well enough to look for nothing that costs much."""
+NOTHING_LEFT = 1e-3
+"""The part of a signal that is next to nothing of it."""
 FEW = 400
 """Rows that numbers are fitted to before they are tried on the others."""
 
@@ -188,10 +190,20 @@ class Inquiry:
         told = self.account(name, cost, errors, phrase, expected=expected)
         if told is None or self.spoilt(errors):
             return None
+        if all(self._vanishes(column, expected[column]) for column in told.rests):
+            return None
         told = replace(told, world=world)
         moved = [c for c in self.open if c in expected and self._moved(c, expected[c])]
         missed = [c for c in moved if c not in told.rests and c in self.unclaimed]
         return told if len(missed) <= missing * len(moved) else None
+
+    def no_chance(self, account: Account) -> bool:
+        """Whether an account of numbers tells several channels, or one so well that it is not
+        merely like something else that happened to it."""
+        if len(account.columns) > 1 or account.world is None:
+            return True
+        (column,) = account.columns
+        return self.excerpts[column].told_apart(self.errors(account.world, [column])[column])
 
     def spoilt(self, errors: Mapping[str, Array]) -> tuple[str, ...]:
         """The columns that were healthy, and are not with these errors."""
@@ -202,6 +214,12 @@ class Inquiry:
             and Size.of(errors[column]).largest
             > max(SPOILT * self.excerpts[column].limit, 3.0 * self.excerpts[column].worst)
         )
+
+    def _vanishes(self, column: str, expected: Array) -> bool:
+        """Whether next to nothing of a channel is expected, as at times that show it where it is 0
+        only: that would explain whatever is next to nothing."""
+        before = Size.of_signal(self.excerpts[column].expected).rms
+        return Size.of_signal(expected).rms < NOTHING_LEFT * before
 
     def _moved(self, column: str, expected: Array) -> bool:
         """Whether a channel is expected elsewhere, by what counts beside its error."""
@@ -240,7 +258,7 @@ class Inquiry:
     def whole(self, column: str) -> tuple[Array, Array]:
         """All readings of a column, and their errors, 0 where a number is missing. Raises
         CrankcheckError."""
-        reading = self.case.excerpts[column].reading
+        reading = self.excerpts[column].reading
         channel = reading.channel
         if self.changed:
             expected = channel.expected(self.world.at(reading.instants, [channel]))

@@ -123,9 +123,10 @@ def guarded() -> Iterator[None]:
         )
 
 
-def command(run: Callable[[Request], int]) -> Callable[[Request], int]:
+def command(run: Callable[[Request], int], of: typer.Typer = app) -> Callable[[Request], int]:
     """Make a command of a function: its name, its docstring as help, and of its request, a frozen
-    dataclass, an argument or option for each field; what it returns is the exit code.
+    dataclass, an argument or option for each field; what it returns is the exit code. It is a
+    command ``of`` crankcheck, or of one of its commands.
 
     A field is annotated with its `typer.Argument` or `typer.Option`. What is not given keeps the
     field's default.
@@ -142,7 +143,7 @@ def command(run: Callable[[Request], int]) -> Callable[[Request], int]:
     notes = get_type_hints(request, include_extras=True)
     parameters = [_parameter(field, notes[field.name]) for field in dataclasses.fields(request)]
     typed.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # read by typer
-    app.command(run.__name__, help=run.__doc__)(typed)
+    of.command(run.__name__, help=run.__doc__)(typed)
     return run
 
 

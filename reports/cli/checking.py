@@ -9,8 +9,12 @@ from typing import Annotated
 
 import typer
 
+from models.errors import CrankcheckError
 from reports.cli.application import Engines, Jobs, StepS, StepsPerTurn, Turns, command
 from reports.output.console import terminal
+
+PRESCRIBED = "prescribed"
+OWN_MODEL = "A model of your own"
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,9 @@ class VerifyRequest:
             "--tol", metavar="NAME=NUMBER", help="Tolerance as a pure number, such as angle=1e-4."
         ),
     ] = ()
-    drive: Annotated[str, typer.Option(help="prescribed or servo.")] = "prescribed"
+    drive: Annotated[
+        str, typer.Option(help="prescribed or servo; with --mjcf: the joint that is driven.")
+    ] = PRESCRIBED
     converge: Annotated[
         bool,
         typer.Option(
@@ -58,11 +64,97 @@ class VerifyRequest:
     factor: Annotated[
         float, typer.Option(help="Growth over the baseline that is no fault yet.")
     ] = 1.1
+    mjcf: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="A MuJoCo model, run as it is; needs --drive JOINT and --speed.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = None
+    speed_rad_s: Annotated[
+        float | None,
+        typer.Option(
+            "--speed",
+            metavar="RAD/S",
+            help="Of the driven joint; below 0 the other way.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = None
+    key: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Keyframe to start from; default: the pose as drawn.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = None
+    start_deg: Annotated[
+        float | None,
+        typer.Option(
+            "--start",
+            metavar="DEG",
+            help="What the driven joint reads at the start.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = None
+    branch: Annotated[
+        Sequence[str],
+        typer.Option(
+            metavar="NAME=1|-1",
+            help="Assembly, where the pose fits two; default: the nearest.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = ()
+    write_scene: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Write the scene that it was read as, as TOML.",
+            rich_help_panel=OWN_MODEL,
+        ),
+    ] = None
+    limit_s: Annotated[
+        float,
+        typer.Option(metavar="SECONDS", help="Time limit of each line.", rich_help_panel=OWN_MODEL),
+    ] = 60.0
+    memory_gb: Annotated[
+        float,
+        typer.Option(metavar="GB", help="Memory limit of each line.", rich_help_panel=OWN_MODEL),
+    ] = 2.0
+
+
+OF_MODELS = {
+    "speed_rad_s": "--speed",
+    "key": "--key",
+    "start_deg": "--start",
+    "branch": "--branch",
+    "write_scene": "--write-scene",
+    "limit_s": "--limit-s",
+    "memory_gb": "--memory-gb",
+}
+"""What is asked of a model of the user's own alone, by the field of the request."""
+
+
+def _refuse_of_models(request: VerifyRequest) -> None:
+    """Refuse what says nothing of scenes. Raises CrankcheckError."""
+    for name, option in OF_MODELS.items():
+        if getattr(request, name) != getattr(VerifyRequest(), name):
+            raise CrankcheckError(
+                f"{option}: it is of a model of your own; name that with --mjcf FILE, or leave "
+                f"{option} out"
+            )
 
 
 @command
 def verify(request: VerifyRequest) -> int:
-    """Run scenes in engines and hold them to the closed form; exit 1 when out of tolerance."""
+    """Run scenes in engines, or a model of your own, and hold them to the closed form; exit 1 when
+    out of tolerance."""
+    if request.mjcf is not None:
+        from reports.cli.commands import verify_model
+
+        return verify_model.verify_model(request, terminal(), terminal(stderr=True))
+    _refuse_of_models(request)
     from reports.cli.commands import verify as verb
 
     return verb.verify(request, terminal(), terminal(stderr=True))

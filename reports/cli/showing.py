@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from reports.cli.application import StepS, StepsPerTurn, Turns, app, command, guarded
+from reports.cli.application import Jobs, StepS, StepsPerTurn, Turns, app, command, guarded
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
@@ -106,17 +107,50 @@ def scenes() -> None:
         listing.scenes(terminal())
 
 
-@app.command()
+engines_app = typer.Typer(invoke_without_command=True)
+app.add_typer(engines_app, name="engines")
+
+
+@engines_app.callback()
 def engines(
+    context: typer.Context,
     settings: Annotated[
         bool, typer.Option("--settings", help="Show every setting with its reason.")
     ] = False,
 ) -> None:
     """List the engines with their version, or the command that installs them, and profiles."""
-    with guarded():
-        from reports.cli.commands import listing
+    if context.invoked_subcommand is None:
+        with guarded():
+            from reports.cli.commands import listing
 
-        listing.engines(terminal(), settings)
+            listing.engines(terminal(), settings)
+
+
+@dataclass(frozen=True)
+class EngineCheckRequest:
+    """What `engines check` was asked for, as given."""
+
+    name: Annotated[
+        str,
+        typer.Argument(metavar="ENGINE", help="A name, or one of your own, package.module:ENGINE."),
+    ]
+    clauses: Annotated[
+        Sequence[str],
+        typer.Option("--clause", metavar="ID", help="Clause; may be repeated; all if none."),
+    ] = ()
+    limit_s: Annotated[float, typer.Option(help="Longest time for a clause, in seconds.")] = 60.0
+    jobs: Jobs = 0
+
+
+@partial(command, of=engines_app)
+def check(request: EngineCheckRequest) -> int:
+    """Say what of the contract of engines one holds, and how to mend what it does not.
+
+    The exit code is 0 where it holds all of it, 1 where it does not.
+    """
+    from reports.cli.commands import contract as verb
+
+    return verb.run_check(request, terminal(), terminal(stderr=True))
 
 
 @app.command()

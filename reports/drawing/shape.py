@@ -21,11 +21,12 @@ TRIED = 24
 """Positions of a turn of which the clearest is drawn."""
 
 
-def turn_of(scene: Scene, samples: int) -> Motion:
-    """One turn, both ends included; a driver that swings begins at an end of its swing, so that an
-    even number of equal parts of its period shows the other end as well."""
+def turn_of(scene: Scene, samples: int, most_s: float = math.inf) -> Motion:
+    """One turn, or the first ``most_s`` of it, both ends included; a driver that swings begins at
+    an end of its swing, so that an even number of equal parts of its period shows the other end as
+    well."""
     law = scene.driver.law
-    time_s = np.linspace(0.0, law.period_s, samples)
+    time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
     return solve(scene, time_s, bound=False)

@@ -44,13 +44,14 @@ class _Paper:
         return np.asarray((places - (self.left, self.top)) * (self.per_m, -self.per_m))
 
 
-def svg(scene: Scene, logged: Motion | None = None) -> str:
-    """The mechanism where its points stand farthest apart, and their paths over a turn.
+def svg(scene: Scene, logged: Motion | None = None, most_s: float = math.inf) -> str:
+    """The mechanism where its points stand farthest apart, and their paths over a turn, or over the
+    first ``most_s`` of it.
 
     Paths of ``logged``, the motion of a run, are drawn over those of the reference. Raises
-    CrankcheckError where the mechanism can not go through a turn.
+    CrankcheckError where the mechanism can not go through all of that.
     """
-    path = turn_of(scene, SAMPLES)
+    path = turn_of(scene, SAMPLES, most_s)
     low, high = box_of(path)
     at = clearest(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))

@@ -17,7 +17,8 @@ from reports.face.told import in_python, parts_in_python, told_at_the_call
 from reports.judge.tolerance import DEFAULTS, check_names
 from reports.output.provenance import provenance
 from reports.own_log.drives import chosen_drive
-from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.log_limits import EVERY
 from reports.plan.steps import positive
 from sim.engine import Run
 

@@ -118,8 +118,7 @@ def sweep(
         scene_names,
     )
     from reports.output.console import terminal
-    from reports.plan.chosen import chosen_engines
-    from reports.plan.chosen_study import StudyChoice, chosen_study
+    from reports.plan.chosen_study import StudyChoice, chosen_study, study_engines
     from reports.plan.study import load_study
     from reports.sweep.whole import Manner, swept
     from reports.workers.isolated import checked_limits
@@ -141,6 +140,7 @@ def sweep(
         keep_runs=is_true(keep_trajectories, "keep_trajectories"),
         again=is_true(again, "again"),
     )
+    told = load_study(None if study is None else path_of(study, "study"))
     with ExitStack() as kept:
         choice = StudyChoice(
             scene_names(scenes, kept),
@@ -148,13 +148,9 @@ def sweep(
             names_in(profiles, "profiles"),
             numbers_of(steps_per_turn, "--steps-per-turn"),
             None if turns is None else positive("--turns", turns, "turns of the driver"),
-            overrides_of(settings, chosen_engines(named)),
+            overrides_of(settings, study_engines(told, named)),
         )
-        asked = chosen_study(
-            load_study(None if study is None else path_of(study, "study")),
-            choice,
-            is_shipped=study is None,
-        )
+        asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)
         console.quiet = not is_true(progress, "progress")
         laid, done = swept(asked, where, manner, command_of(choice, where, study), console)

@@ -22,6 +22,7 @@ from reports.judge.tolerance import limits
 from sim.engine import Drive, Engine, Run, SettingValue
 from sim.registry import engine
 from sim.run import run, setup
+from sim.settings import profile_of, resolved
 
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
@@ -87,21 +88,24 @@ def check(cell: Cell) -> Checked:
     return examined(cell)[0]
 
 
-def examined(cell: Cell, runner: CellRunner | None = None) -> tuple[Checked, Run | None]:
+def examined(
+    cell: Cell, runner: CellRunner | None = None, adapter: Engine | None = None
+) -> tuple[Checked, Run | None]:
     """As `check`, and the run at the full step, None where there is none.
 
     ``runner`` takes the place of `sim.run.run`: with a fault in it, that is seen or is not.
+    ``adapter`` takes the place of the engine of that name: one that runs a model of its own.
     """
     began = time.perf_counter()
-    found, done = _examined(cell, runner or run)
+    found, done = _examined(cell, runner or run, adapter)
     return replace(found, wall_s=time.perf_counter() - began), done
 
 
-def _examined(cell: Cell, runner: CellRunner) -> tuple[Checked, Run | None]:
+def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
     truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
-        runs = _Runs(cell, truth.start, engine(cell.engine), runner)
+        runs = _Runs(cell, truth.start, adapter or engine(cell.engine), runner, adapter)
         done = runs.run(1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
@@ -125,9 +129,10 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", left_words(errors.departure)
-    adapter, seen = engine(cell.engine), None
+    adapter, seen = runs.adapter if runs else engine(cell.engine), None
+    placing = adapter.placing(resolved(profile_of(adapter, cell.profile), cell.settings))
     if cell.converge and errors and runs:
-        nature = adapter.placing, adapter.order
+        nature = placing, adapter.order
         seen = followed(truth, cell.dt_s, errors, cell.tolerance, runs.run, *nature)
     evidence = Evidence(
         status=status,
@@ -137,8 +142,8 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
         limits=limits(cell.scene, errors, cell.tolerance) if errors else {},
         convergence=seen,
         gated=cell.gated,
-        profile=cell.profile,
-        placing=adapter.placing,
+        profile="" if runs and runs.given else cell.profile,
+        placing=placing,
         order=adapter.order,
         unasked=tuple(runs.unasked) if runs else None,
     )
@@ -160,11 +165,13 @@ class _Runs:
     state: State
     adapter: Engine
     runner: CellRunner
+    given: Engine | None = None
     unasked: list[str] = field(default_factory=list)
 
     def run(self, finer: int) -> Run:
         """The cell with its step cut into ``finer`` parts, logged at the same instants."""
-        cell, names = self.cell, (self.cell.engine, self.cell.profile)
+        cell = self.cell
+        names = self.given or cell.engine, cell.profile
         options: dict[str, Any] = {
             "dt_s": cell.dt_s / finer,
             "steps": cell.steps * finer,

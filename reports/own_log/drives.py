@@ -142,8 +142,8 @@ def _of_crank(log: OwnLog, crank: Reading) -> DriveFit:
     speed = float(centred @ (angle - np.mean(angle))) / square
     if abs(speed) * float(np.ptp(time_s)) < STILL:
         raise CrankcheckError(
-            f"--drive fitted: {log.scene.driver.link} stands still in {log.source}; use --drive "
-            "scene or logged"
+            f"--drive fitted: {log.scene.driver.link} stands still in {log.source}, or goes round "
+            "by whole turns between its rows; use --drive scene or logged"
         )
     start = float(np.mean(angle)) - speed * mean
     rest = angle - (start + speed * time_s)

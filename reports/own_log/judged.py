@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
-from models.errors import CrankcheckError, few, shown, suggestion
+from models.errors import CrankcheckError, few
 from models.scene import Scene
 from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
@@ -18,15 +18,13 @@ from reports.compare.errors import Error, Errors
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
-from reports.judge.rules.start import start_limit
-from reports.judge.tolerance import DEFAULTS, Limit, in_passage, limits
-from reports.logs.beside_truth import LogBeside, beside_truth, lacking, readings_of
+from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
-from reports.quantities import QUANTITIES
+from reports.own_log.log_limits import limits_by_column, log_limits
+from reports.own_log.no_cause import of_no_cause, seldom
+from reports.own_log.required import absent_names, required_name
 
-EVERY = "all"
-"""What a target for all quantities is kept under."""
 NO_FIT = (
     "no speed and start of the driver were found that explain the places: errors are those beside "
     "the nearest that was tried; log the driver's angle, or use --drive scene"
@@ -91,7 +89,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         not be moved in.
     """
     _check_step(log, request.step_s)
-    required = [_required(log.scene, name) for name in request.require]
+    required = [required_name(log.scene, name) for name in request.require]
     truth, fit = truth_of_log(log, request.drive)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
@@ -105,8 +103,8 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
             f"{few(held, 6)}"
         )
     not_judged = lacking(log, beside)
-    absent = _absent(log.scene, required, not_judged, errors)
-    chosen = _limits(beside.scene, errors, request)
+    absent = absent_names(log.scene, required, not_judged, errors)
+    chosen = log_limits(beside.scene, errors, request.target, request.step_s)
     departure = errors.departure
     evidence = Evidence(
         status="branch-changed" if departure else "ok",
@@ -117,6 +115,8 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         absent=absent if required else None,
     )
     sound = fit is None or fit.explains
+    case = Case(log, truth, limits_by_column(log, evidence, errors))
+    found = causes(case) if sound else ()
     return JudgedLog(
         **vars(evidence),
         log=log,
@@ -125,9 +125,9 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         step_s=request.step_s,
         fit=fit,
         findings=_findings(evidence, request),
-        causes=causes(Case(log, truth, _by_column(log, evidence, errors))) if sound else (),
+        causes=found,
         not_judged=not_judged,
-        notes=_notes(errors) if sound else (NO_FIT,),
+        notes=_notes(case, found, errors) if sound else (NO_FIT,),
     )
 
 
@@ -157,112 +157,7 @@ def _of_what_is_held(errors: Errors) -> Errors:
     return replace(errors, uncertain=sure)
 
 
-def _limits(scene: Scene, errors: Errors, request: LogRequest) -> dict[str, Limit]:
-    """The limit of everything that is judged; none has no end. Raises CrankcheckError."""
-    target = dict(request.target)
-    every = target.pop(EVERY, None)
-    if every is not None:
-        target = {name: target.get(name, every) for name in DEFAULTS}
-    if request.step_s:
-        return limits(scene, errors, target, "--target")
-    judged = dict.fromkeys(row.tolerance for row in errors.rows)
-    told = {**{n: Limit(x, "scene") for n, x in scene.tolerance.items()},
-            **{n: Limit(x, "--target") for n, x in target.items()}}  # fmt: skip
-    lacking_ = [name for name in judged if name not in told]
-    if lacking_:
-        raise CrankcheckError(
-            f"no limit for {', '.join(lacking_)}: no step of a log is known, so no budget follows "
-            "from one; give --target 1e-3 (or one each, such as --target angle=1e-3), or --step "
-            "with the step of the solver in seconds"
-        )
-    return {name: told.get(name, Limit(math.inf, "none")) for name in DEFAULTS}
-
-
-def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
-    """What an error of a log is held to: at the start, and near change points, to limits of their
-    own."""
-    limit = evidence.limits[error.tolerance]
-    if error.kind == "passage":
-        return in_passage(error.tolerance, limit, errors)
-    if error.kind == "start":
-        return Limit(start_limit(error.tolerance, evidence, errors), f"{limit.origin} at the start")
-    return limit
-
-
-def _by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[str, float]:
-    """What the error of each column may be [SI]: the least limit that it is over, or the largest
-    where it is over none."""
-    over: dict[str, list[float]] = {}
-    under: dict[str, list[float]] = {}
-    for row in errors.rows:
-        if row.source != "reported" or row.kind == "geometric":
-            continue
-        limit = limit_of(row, evidence, errors).number
-        for reading in readings_of(log, row.quantity, row.body):
-            if reading.channel.kind.body_kind == row.body_kind or row.quantity == "drive":
-                side = under if row.pure <= limit else over
-                side.setdefault(reading.channel.column, []).append(limit * row.scale)
-    return {column: max(each) for column, each in under.items()} | {
-        column: min(each) for column, each in over.items()
-    }
-
-
-def _required(scene: Scene, name: str) -> tuple[str, str, str]:
-    """What a name that is required is: as given, a quantity and a body, "" for any.
-
-    Raises CrankcheckError for one that is neither.
-    """
-    bodies = {*scene.links, *scene.pins, *scene.sliders}
-    if name in QUANTITIES:
-        return name, name, ""
-    if name in bodies:
-        return name, "", name
-    body, dot, quantity = name.rpartition(".")
-    if (body, quantity) == (scene.driver.link, "angle"):
-        quantity = "drive"
-    if dot and body in bodies and quantity in QUANTITIES:
-        return name, quantity, body
-    names = [*QUANTITIES, *sorted(bodies)]
-    raise CrankcheckError(
-        f"--require {shown(name)}: neither a quantity nor a body of {scene.name}, nor both as in "
-        f"{scene.driver.link}.angle; {suggestion(name, names, 'there are')}"
-    )
-
-
-def _absent(
-    scene: Scene,
-    required: Iterable[tuple[str, str, str]],
-    not_judged: Sequence[str],
-    errors: Errors,
-) -> tuple[str, ...]:
-    """Each name that is required and not in the log, with what is lacking: of a quantity every
-    body, of a body anything. Raises CrankcheckError for what is judged in no log."""
-    held = {(row.quantity, row.body) for row in errors.rows}
-    found = []
-    for name, quantity, body in required:
-        lacks = [
-            each.replace("drive of", "angle of")
-            for each in not_judged
-            if (not quantity or each.startswith(f"{quantity} of "))
-            and (not body or each.endswith(f" of {body}"))
-        ]
-        there = any(quantity in ("", q) and body in ("", b) for q, b in held)
-        if not (lacks or there):
-            none = f"{body or scene.name} has none"
-            why = "a point of the ground does not move" if body in scene.ground else none
-            raise CrankcheckError(f"--require {name}: {why}, so that is not judged; leave it out")
-        if not lacks or (there and not quantity):
-            continue
-        if body in scene.ground:
-            found.append(f"{few(lacks, 6)} (a point of the ground is not judged else)")
-        elif lacks == [name] or body:
-            found.append(few(lacks, 6))
-        else:
-            found.append(f"{name} ({few(lacks, 6)})")
-    return tuple(found)
-
-
-def _notes(errors: Errors) -> tuple[str, ...]:
+def _notes(case: Case, found: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
     """What is worth knowing of a log that is within tolerance, or out of it."""
     rows: list[Error] = [row for row in errors.rows if row.kind == "total"]
     if rows and all(row.maximum == 0.0 for row in rows):
@@ -270,4 +165,4 @@ def _notes(errors: Errors) -> tuple[str, ...]:
             "every reading is that of the reference to the last bit: it may have been compared "
             "with itself",
         )
-    return ()
+    return (*seldom(case), *of_no_cause(case, found, errors))

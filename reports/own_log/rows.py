@@ -14,7 +14,8 @@ from reports.logs.beside_truth import readings_of
 from reports.logs.channel import Reading
 from reports.logs.units import UNITS
 from reports.output.numbers import error_text
-from reports.own_log.judged import JudgedLog, limit_of
+from reports.own_log.judged import JudgedLog
+from reports.own_log.log_limits import limit_of
 from reports.quantities import QUANTITIES
 
 LONGEST = 60

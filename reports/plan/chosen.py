@@ -54,11 +54,12 @@ def refuse_unfollowed(scene: Scene) -> None:
 
 
 def chosen_engines(names: str | Sequence[str]) -> list[str]:
-    """The named engines, installed all of them; where none is named, the usual."""
-    engines = list(dict.fromkeys(names_in(names, "engines") or usual()))
-    for name in engines:
-        engine(name).version()
-    return engines
+    """The names of the engines, each once, installed all of them; the usual where none is named.
+    One that is spelled by module and attribute is known by its own name from here on."""
+    engines = [engine(name) for name in names_in(names, "engines") or usual()]
+    for each in engines:
+        each.version()
+    return list(dict.fromkeys(each.name for each in engines))
 
 
 def chosen_profiles(names: str | Sequence[str], engines: Iterable[str]) -> list[tuple[str, bool]]:

@@ -31,16 +31,22 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
     """The study with a choice in place of what it says itself.
 
     Settings are varied in every variant of their engine; of the shipped study, in profile tuned
-    alone, or in those profiles that are named. Raises CrankcheckError for an unknown engine or
-    profile, and for an engine of which the study has no variant.
+    alone, or in those profiles that are named. An engine that is named and of which the shipped
+    study has no variant is there with all its profiles. Raises CrankcheckError for an unknown
+    engine or profile, and for an engine of which another study has no variant.
     """
     engines = chosen_engines(choice.engines)
-    variants = list(study.variants)
+    variants = [_by_name(variant) for variant in study.variants]
+    if choice.engines and is_shipped:
+        there = {variant.engine for variant in variants}
+        added = [(e, p) for e in engines if e not in there for p in engine(e).profiles]
+        variants += [Variant(engine=e, profile=p) for e, p in added]
     if choice.profiles or (choice.overrides and is_shipped):
         profiles = list(dict.fromkeys(choice.profiles or ("tuned",)))
         named = [(e, profile_of(engine(e), p).name) for p in profiles for e in engines]
         variants = [Variant(engine=e, profile=p) for e, p in named]
-    variants = [variant for variant in variants if variant.engine in engines]
+    if choice.engines:  # what a study names itself is named
+        variants = [variant for variant in variants if variant.engine in engines]
     for name, overrides in choice.overrides.items():
         variants = [
             v.model_copy(update={"settings": {**v.settings, **overrides}})
@@ -48,9 +54,10 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
             else v
             for v in variants
         ]
-    if not variants:
+    there = {variant.engine for variant in variants}
+    if lost := [name for name in engines if choice.engines and name not in there]:
         raise CrankcheckError(
-            f"--engine {', '.join(choice.engines)}: the study has no variant of it; add --profile"
+            f"--engine {', '.join(lost)}: the study has no variant of it; add --profile"
         )
     return study.model_copy(
         update={
@@ -60,6 +67,19 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
             "turns": study.turns if choice.turns is None else choice.turns,
         }
     )
+
+
+def study_engines(study: Study, named: Sequence[str]) -> list[str]:
+    """The engines that are named, or else the usual and those of the study."""
+    own = [] if named else [_by_name(variant).engine for variant in study.variants]
+    return list(dict.fromkeys([*chosen_engines(named), *own]))
+
+
+def _by_name(variant: Variant) -> Variant:
+    """The variant with the name of its engine, where that is spelled by module and attribute."""
+    if ":" not in variant.engine:
+        return variant
+    return variant.model_copy(update={"engine": engine(variant.engine).name})
 
 
 def refuse_other_engine(owner: str, engines: Sequence[str], place: str) -> None:

@@ -20,8 +20,11 @@ from reports.judge.cell import CellRunner
 from sim.engine import Run, Session, Settings
 from sim.registry import available, engine, offering
 from sim.run import run
+from sim.settings import profile_of, resolved
 from sim.spoil import Opening, Spoiler, WrongSetting, spoiler, spoilt
 
+PROFILE = "tuned"
+"""The profile of all runs that faults are planted in."""
 FOURBAR, SLIDER, SHAPER = "fourbar-lecture-1", "slider-crank-offset", "shaper"
 REFUSED = "the engine does not hold"
 """What `sim.check` says where the model in the engine is not the scene."""
@@ -95,6 +98,13 @@ def in_scene(change: Callable[[Scene, float], Scene]) -> Plant:
         return runner
 
     return plant
+
+
+def integrates(name: str) -> bool:
+    """Whether the places of an engine are integrated: off by what a step leaves out, which numbers
+    of the reference are not. What joints are solved for may be as exact as these."""
+    adapter = engine(name)
+    return adapter.placing(resolved(profile_of(adapter, PROFILE), None)) == "integrated"
 
 
 def can_set(what: WrongSetting) -> Callable[[str], bool]:

@@ -14,7 +14,16 @@ from models.array import Array
 from models.motion import LinkMotion, Motion
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, in_log, switched
+from reports.selftest.fault import (
+    FOURBAR,
+    SHAPER,
+    SLIDER,
+    Fault,
+    Plant,
+    in_log,
+    integrates,
+    switched,
+)
 from reports.selftest.logs import last, moved, noisy, to_digits, with_link
 from sim.engine import Run
 from sim.run import run
@@ -152,12 +161,24 @@ FAULTS = (
         switched(_one_slider),
         scenes=(SLIDER, SHAPER),
     ),
-    _fault("too-good-velocity", "of one velocity only", "CC111", switched(_velocity)),
-    _fault("too-good-speeds", "of all points and sliders", "CC111", switched(_speeds)),
-    _fault("too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut)),
+    _fault(
+        "too-good-velocity", "of one velocity only", "CC111", switched(_velocity), needs=integrates
+    ),
+    _fault(
+        "too-good-speeds", "of all points and sliders", "CC111", switched(_speeds), needs=integrates
+    ),
+    _fault(
+        "too-good-gaps", "every gap is 0, as in truth", "CC111", switched(_shut), needs=integrates
+    ),
     _fault("too-good-rounded", "to few digits", "CC118", _spoilt(to_digits), 1e-7, "rad, L"),
     _fault("too-good-noisy", "with noise (normal)", "CC118", _spoilt(noisy), 1e-7, "rad, L"),
-    _fault("too-good-crank", "at the logged crank angle", "CC111", switched(_at_the_crank)),
+    _fault(
+        "too-good-crank",
+        "at the logged crank angle",
+        "CC111",
+        switched(_at_the_crank),
+        needs=integrates,
+    ),
     _fault(
         "too-good-finer",
         "in the finer runs only",
@@ -165,5 +186,6 @@ FAULTS = (
         _finer_handed_back,
         says=("which no step of that size allows",),
         finer=True,
+        needs=integrates,
     ),
 )

@@ -13,15 +13,22 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Scene
 from reports.judge.cell import CellRunner
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, Plant, switched
+from reports.selftest.fault import (
+    FOURBAR,
+    PROFILE,
+    SHAPER,
+    SLIDER,
+    Fault,
+    Plant,
+    integrates,
+    switched,
+)
 from reports.selftest.logs import moved
 from sim.engine import Run
 from sim.registry import available, engine, offering
 from sim.run import run, setup
 from sim.spoil import WrongSetting, spoiler
 
-PROFILE = "tuned"
-"""The profile of all runs that faults are planted in."""
 DEGREES = 10
 """Of a turn, where that is all that is run."""
 THIN, LATER = 8, 10
@@ -142,7 +149,7 @@ _fault = partial(Fault, "request", rule="CC117", scenes=(FOURBAR, SLIDER, SHAPER
 FAULTS = (
     _fault(
         "engine-other",
-        "the other engine's run",
+        "another engine's run",
         plant=_run_of(_engine_for, renamed=False),
         says=("engine: asked for",),
         needs=lambda name: other_engine(name) is not None,
@@ -207,5 +214,6 @@ FAULTS = (
         plant=_the_first_again,
         says=("the places are those of dt",),
         finer=True,
+        needs=integrates,
     ),
 )

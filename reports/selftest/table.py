@@ -13,8 +13,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
-from reports.selftest.fault import Fault
-from reports.selftest.requests import PROFILE
+from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96

@@ -11,17 +11,19 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
+from models.errors import EngineError
 from models.files import load_scene
-from models.scene import Scene
+from models.scene import Same, Scene
+from reports.compare.beside import truth_of
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.fault import FOURBAR, Fault
-from reports.selftest.requests import PROFILE
+from reports.selftest.fault import FOURBAR, PROFILE, Fault
 from reports.selftest.unseen import UNSEEN, Unseen
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
-from sim.registry import ENGINES
+from sim.registry import ENGINES, engine
+from sim.settings import profile_of, resolved
 
 STEPS = 360
 DECADES = 12
@@ -90,9 +92,22 @@ def healthy(scene: str, engine: str, steps: int = STEPS) -> Checked:
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
     """The scenes and engines that the faults are planted in."""
-    there = [name for name in ENGINES if name in engines]
+    there = [name for name in dict.fromkeys((*ENGINES, *engines)) if name in engines]
     pairs = {(s, e): None for f in faults for s in f.scenes for e in there if f.possible(e)}
-    return list(pairs)
+    return [(scene, name) for scene, name in pairs if held(scene, name)]
+
+
+@cache
+def held(scene: str, name: str) -> bool:
+    """Whether an engine can hold a scene; not every engine of a user's own has every joint."""
+    adapter, mechanism = engine(name), load_scene(scene)
+    settings = resolved(profile_of(adapter, PROFILE), None)
+    dt_s = mechanism.driver.law.period_s / STEPS
+    try:
+        adapter.open(mechanism, truth_of(Same(mechanism)).start, settings, dt_s, "prescribed")
+    except EngineError:
+        return False
+    return True
 
 
 def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = True) -> Verdict:
@@ -116,7 +131,8 @@ class Passed:
 
 def passed_by(engines: Sequence[str], scene: str = FOURBAR, steps: int = STEPS) -> list[Passed]:
     """Plant what need not be seen, in one scene."""
-    return [_passed(each, load_scene(scene), engines, steps) for each in UNSEEN]
+    able = [name for name in engines if held(scene, name)]
+    return [_passed(each, load_scene(scene), able, steps) for each in UNSEEN]
 
 
 def _passed(each: Unseen, scene: Scene, engines: Sequence[str], steps: int) -> Passed:

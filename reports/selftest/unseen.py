@@ -46,7 +46,7 @@ def _heavier(scene: Scene, share: float) -> Scene:
 
 
 def _all_renamed(size: float) -> CellRunner:
-    """The other engine's run, of which every word is that of the run that was asked for."""
+    """Another engine's run, of which every word is that of the run that was asked for."""
 
     def runner(scene: Scene, state: Any, name: str, profile: str, **options: Any) -> Run:
         asked = setup(scene, state, name, profile, **options)

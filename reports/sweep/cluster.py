@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError
 from reports.judge.cell import Cell
 from reports.sweep.measured import MeasuredCell, measured
 from reports.workers.isolated import Isolated, Limits, Lost
+from sim.own_engine.known import spellings, told
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -55,7 +57,8 @@ def on_cluster(
     from distributed import as_completed
 
     try:
-        futures = client.map(_there, cells, limits=limits, keep_run=keep_run, pure=False)
+        there = partial(_there, limits=limits, keep_run=keep_run, own_engines=spellings())
+        futures = client.map(there, cells, pure=False)
         indices = {future.key: index for index, future in enumerate(futures)}
         ended = as_completed(futures, with_results=True)  # type: ignore[no-untyped-call]
         del futures  # a cluster keeps a result as long as somebody has its future
@@ -65,8 +68,11 @@ def on_cluster(
         client.close()  # type: ignore[no-untyped-call]  # not annotated
 
 
-def _there(cell: Cell, limits: Limits, keep_run: bool) -> MeasuredCell | Lost:
+def _there(
+    cell: Cell, limits: Limits, keep_run: bool, own_engines: Mapping[str, str]
+) -> MeasuredCell | Lost:
     """One cell in the child process of this thread of a Dask worker."""
+    told(own_engines)
     child: Isolated[MeasuredCell] | None = getattr(_own, "child", None)
     if child is not None and child.limits != limits:
         child.close()

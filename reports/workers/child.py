@@ -1,8 +1,8 @@
 """The process that cells run in: it may crash, hang or run out of memory without harm to others.
 
-It reads pickled jobs from its standard input, before them the function of the first, and writes
-pickled answers to its standard output; it ends as soon as its input does, whatever it is doing.
-What engines print goes nowhere.
+It reads pickled jobs from its standard input, before them the function of the first and where the
+engines are that are not ours, and writes pickled answers to its standard output; it ends as soon as
+its input does, whatever it is doing. What engines print goes nowhere.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO
+
+from sim.own_engine.known import told
 
 Ending = tuple[str, object, bytes]
 """How a job ended (``done``, ``crashed``), its result or reason, and what it raised, pickled: who
@@ -36,7 +38,9 @@ def main(memory_bytes: int) -> None:
     os.dup2(nowhere, 2)
     jobs: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, jobs), daemon=True).start()
-    pickle.loads(jobs.get())  # what it imports is no part of any cell's time or memory
+    # What the first function imports is no part of any cell's time or memory.
+    _, own_engines = pickle.loads(jobs.get())
+    told(own_engines)
     at_first = _taken()
     _limit(at_first + memory_bytes)
     send(answers, ("ready", None, b"", False))

@@ -14,6 +14,7 @@ from typing import IO, Generic, TypeVar, cast
 
 from models.errors import CrankcheckError
 from reports.workers.child import main, receive, send
+from sim.own_engine.known import spellings
 
 Result = TypeVar("Result")
 LIMIT_S = 60.0
@@ -127,7 +128,7 @@ class Isolated(Generic[Result]):
         jobs, answers = _pipes(child)
         ready = b""
         with _watched(child, START_S) as late, contextlib.suppress(OSError):
-            send(jobs, function)
+            send(jobs, (function, spellings()))
             ready = receive(answers)
         if ready and not late.is_set():
             return child

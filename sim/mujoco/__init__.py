@@ -2,4 +2,6 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("mujoco", "mujoco", ("snippet", "knobs", "remedies", "spoiler", "viewer"))
+DECLARATION = Declaration(
+    "mujoco", "mujoco", ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader")
+)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from sim.engine import Engine
-from sim.mujoco.session import VERSION, MujocoSession
+from sim.mujoco.session import MujocoSession
 from sim.mujoco.settings import AS_SHIPPED, TUNED, checked, holds, in_seconds
+from sim.mujoco.stepped import VERSION
 
 ENGINE = Engine(
     "mujoco",

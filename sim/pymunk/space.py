@@ -25,6 +25,7 @@ from models.joints import (
     joints,
     less,
     local_point,
+    riding_body,
     sliding_angle,
     turned,
 )
@@ -154,7 +155,7 @@ def _slide(
     exact_lines: bool,
 ) -> list[pymunk.Constraint]:
     """A point on a line and, on a moving guide, the gear that keeps a sliding body's angle."""
-    slider, rider = slide.slider, _rider(slide)
+    slider, rider = slide.slider, riding_body(slide)
     guide, body = made[slider.on], made[rider]
     anchor = _anchor(scene, centre, rider, slider.point)
     along_line = turned((1.0, 0.0), slider.direction_rad)
@@ -191,18 +192,6 @@ def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
     """The bodies of a pin, immovable ones first, so that all others hang on the firmest."""
     firm = {GROUND: 0, scene.driver.link: 1}
     return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
-
-
-def _rider(slide: Prism | Slot) -> str:
-    """The body whose point runs in the groove."""
-    if isinstance(slide, Prism):
-        return slide.body
-    if not slide.bodies:
-        raise EngineError(
-            f"slider {slide.slider.name}: no body carries point {slide.slider.point}; give "
-            f"sliders.{slide.slider.name} a mass_kg above 0"
-        )
-    return slide.bodies[0]
 
 
 def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from analytic.check import moved_scene as transform
+from analytic.check.moved_scene import mirrored
 from analytic.dyads.plane import EPS
 from analytic.kinematics import solve
 from models.array import Array
@@ -17,7 +18,7 @@ from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
-from tests.worlds.other_way import mirrored, sped_up
+from tests.worlds.other_way import sped_up
 from tests.worlds.strategies import swing_times
 
 

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from analytic.check.moved_scene import mirrored_law
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
-from tests.worlds.other_way import faster_law, mirrored_law
+from tests.worlds.other_way import faster_law
 
 LAWS: list[Law] = [
     ConstantSpeed(0.3, -7.0),

@@ -14,7 +14,9 @@ from models.laws import Accelerating, FromRest, Law, Oscillating
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import ENGINES
+from sim.registry import engine as engine_of
 from sim.run import run
+from sim.settings import resolved
 
 FOURBAR = "fourbar-lecture-1"
 OFFSET_LEVER = """
@@ -53,6 +55,8 @@ angle_deg = 20.0
 link = "crank"
 speed_rad_s = 10.0
 """
+SOLVED = 1e-10
+"""rad, or of the longest link: where Newton's method ends."""
 GUIDES = {
     "offset lever": OFFSET_LEVER,
     "offset lever, block with mass": OFFSET_LEVER.replace("mass_kg = 0.0", "mass_kg = 0.2"),
@@ -120,6 +124,15 @@ def drive_error(scene: Scene, result: Run) -> float:
     return position_errors(scene, result)[scene.driver.link]
 
 
+def falls(engine_name: str, coarse: float, fine: float, order: float = 1.8) -> bool:
+    """Whether errors of place fall with the step; where joints are solved for in each step, they
+    are at rounding at any."""
+    adapter = engine_of(engine_name)
+    if adapter.placing(resolved(adapter.profiles["tuned"], None)) == "solved":
+        return max(coarse, fine) < SOLVED
+    return fine < coarse / 4**order
+
+
 def driven_by(law: Law) -> Scene:
     scene = load_scene(FOURBAR)
     return replace(scene, driver=replace(scene.driver, law=law))
@@ -161,7 +174,7 @@ def test_mujoco_as_shipped_converges_to_a_wrong_answer() -> None:
 def test_tuned_errors_fall_at_least_with_the_square_of_the_step(name: str, engine: str) -> None:
     scene = load_scene(name)
     coarse, fine = (worst(scene, ran(scene, engine, per_turn=n)) for n in (200, 800))
-    assert fine < coarse / 4**1.8
+    assert falls(engine, coarse, fine)
     assert fine < 1e-3
 
 
@@ -172,7 +185,7 @@ def test_guides_that_move_and_lie_off_their_centres_are_held_as_well(
 ) -> None:
     scene = parse_scene(GUIDES[guide], guide)
     coarse, fine = (ran(scene, engine, per_turn=n) for n in (200, 800))
-    assert worst(scene, fine) < worst(scene, coarse) / 4**1.8
+    assert falls(engine, worst(scene, coarse), worst(scene, fine))
     assert worst(scene, fine) < 1e-4
     assert max(gap.max() for gap in fine.gaps.values()) < 3e-5
 
@@ -230,7 +243,7 @@ def test_other_laws_are_exact_at_the_samples(engine: str, law: str, profile: str
     assert drive_error(scene, result) < 1e-10
     if profile == "tuned":
         coarse, fine = (worst(scene, ran(scene, engine, per_turn=n)) for n in (200, 800))
-        assert fine < coarse / 4**1.8
+        assert falls(engine, coarse, fine)
 
 
 @pytest.mark.parametrize("law", [None, *LAWS])
@@ -260,7 +273,7 @@ def test_gaps_fall_with_the_square_of_the_step(name: str, engine: str) -> None:
     coarse, fine = (
         max(gap.max() for gap in ran(scene, engine, per_turn=n).gaps.values()) for n in (200, 800)
     )
-    assert fine < coarse / 4**1.8
+    assert falls(engine, coarse, fine)
     assert fine < 2e-4 * scene.longest_m
 
 

@@ -1,4 +1,4 @@
-"""What every engine adapter must do, and the fake one as well."""
+"""Every engine adapter holds the contract, and the fake ones as well; a model is looked at."""
 
 from __future__ import annotations
 
@@ -11,93 +11,43 @@ import pytest
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
-from models.scene import Same, Scene
-from reports.compare.beside import Beside, truth_of
-from reports.compare.compare import compare
-from reports.compare.errors import Error, Errors
-from reports.judge.too_good import too_good
-from reports.quantities import named
+from reports.contract.clauses import CLAUSES
+from reports.contract.ruling import SCENES, put_to
+from reports.contract.subject import Subject, numbers
 from sim.check import refuse_other_model
-from sim.engine import BodyPose, Engine, Poses, Session
-from sim.measure import gaps, motion
+from sim.engine import BodyPose, Engine
 from sim.registry import ENGINES, engine
-from sim.run import run
 from sim.settings import resolved
 
-SCENES = ("fourbar-lecture-1", "slider-crank-offset", "slotted-lever", "shaper", "scotch-yoke")
 DT_S = 1e-3
+FAKE = ("fake", "fake-staggered")
+NOT_OF_FAKES = {"EC52": "placing is solved", "EC55": "told to refuse drive free"}
+"""What the fake engines do not promise."""
+SOLVERS, NOT_OF_SOLVERS = ("exudyn",), {"EC52": "placing is solved"}
+"""Engines that solve for their joints, and what that leaves nothing to try of."""
 
 
-@pytest.fixture(params=[*ENGINES, "fake", "fake-staggered"])
+@pytest.fixture(params=[*ENGINES, *FAKE])
 def adapter(request: pytest.FixtureRequest, fake_engine: ModuleType) -> Engine:
     name = str(request.param)
     if name in ENGINES:
         return engine(name)
-    made: Engine = fake_engine.FakeEngine(solve, velocity_shift=0.5 * (name != "fake"))
+    shift, drives = 0.5 * (name != "fake"), ("prescribed", "servo")
+    made: Engine = fake_engine.FakeEngine(solve, velocity_shift=shift, drives=drives)
     return made
 
 
-@pytest.fixture(params=SCENES)
-def scene(request: pytest.FixtureRequest) -> Scene:
-    return load_scene(str(request.param))
-
-
-def opened(adapter: Engine, scene: Scene, profile: str = "tuned") -> Session:
-    state = solve(scene, np.array([0.0])).state(0)
-    return adapter.open(scene, state, resolved(adapter.profiles[profile], None), DT_S, "prescribed")
-
-
-def numbers(poses: Poses) -> np.ndarray:
-    """All positions and velocities of all bodies, one row per sample."""
-    rows = []
-    for body in poses.bodies.values():
-        rows += [body.origin, body.velocity, body.theta[:, None], body.omega[:, None]]
-    return np.concatenate(rows, axis=1)
-
-
-def test_a_session_starts_as_the_scene_with_closed_loops(adapter: Engine, scene: Scene) -> None:
-    facts = opened(adapter, scene).facts()
-    state = solve(scene, np.array([0.0])).state(0)
-    refuse_other_model(scene, state, facts, DT_S, "prescribed")
-    assert max(gap[0] for gap in gaps(scene, facts.start).values()) < 1e-12
-    start = motion(scene, facts.start).state(0)
-    for point, place in state.position.items():
-        np.testing.assert_allclose(start.position[point], place, atol=1e-14)
-
-
-@pytest.mark.parametrize("profile", ["tuned", "as-shipped"])
-def test_stepping_and_recording_come_to_the_same_state(
-    adapter: Engine, scene: Scene, profile: str
-) -> None:
-    stepped, recorded = opened(adapter, scene, profile), opened(adapter, scene, profile)
-    stepped.step(60)
-    log = recorded.record(60, 1)
-    scale = np.abs(numbers(log.poses)).max()
-    np.testing.assert_allclose(
-        numbers(stepped.read()), numbers(recorded.read()), atol=1e-10 * scale
-    )
-    np.testing.assert_array_equal(numbers(log.poses)[-1:], numbers(recorded.read()))
-
-
-def test_a_log_holds_the_current_sample_and_every_nth_after_it(
-    adapter: Engine, scene: Scene
-) -> None:
-    full, thin = opened(adapter, scene).record(40, 1), opened(adapter, scene).record(40, 8)
-    np.testing.assert_allclose(thin.poses.time_s, DT_S * 8 * np.arange(6), rtol=1e-15)
-    np.testing.assert_array_equal(numbers(thin.poses), numbers(full.poses)[::8])
-    assert thin.steps_done == full.steps_done == 40
-    assert not full.diverged
-    assert full.wall_s > 0.0
-
-
-def test_two_stretches_equal_one(adapter: Engine, scene: Scene) -> None:
-    whole, parts = opened(adapter, scene), opened(adapter, scene)
-    one = whole.record(50, 1)
-    parts.record(20, 1)
-    two = parts.record(30, 1)
-    scale = np.abs(numbers(one.poses)).max()
-    np.testing.assert_allclose(two.poses.time_s, one.poses.time_s[20:], rtol=1e-15)
-    np.testing.assert_allclose(numbers(two.poses), numbers(one.poses)[20:], atol=1e-10 * scale)
+@pytest.mark.parametrize("clause", CLAUSES)
+def test_every_engine_holds_the_contract(adapter: Engine, clause: str) -> None:
+    ours = adapter.name in ENGINES
+    scenes = SCENES if ours else SCENES[:3]
+    ruling = put_to(adapter, CLAUSES[clause], scenes)
+    assert ruling.breaches == ()
+    untried = NOT_OF_SOLVERS if adapter.name in SOLVERS else {} if ours else NOT_OF_FAKES
+    if clause in untried:
+        assert untried[clause] in ruling.untried[0]
+    else:
+        assert ruling.scenes == (scenes if CLAUSES[clause].of_scenes else scenes[:1])
 
 
 def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
@@ -109,25 +59,6 @@ def test_two_stretches_equal_one_for_a_solver_that_has_not_converged() -> None:
     one = whole.record(500, 1)
     parts.record(200, 1)
     np.testing.assert_array_equal(numbers(parts.record(300, 1).poses), numbers(one.poses)[200:])
-
-
-def test_angles_are_continuous_over_turns(adapter: Engine) -> None:
-    scene = load_scene("whitworth")
-    log = opened(adapter, scene).record(1500, 1)
-    for body in log.poses.bodies.values():
-        assert np.abs(np.diff(body.theta)).max() < 0.1
-    assert log.poses.bodies["crank"].theta[-1] > 14.0
-
-
-def test_two_sessions_side_by_side_do_not_disturb_each_other(adapter: Engine) -> None:
-    scene = load_scene("fourbar-lecture-1")
-    alone = opened(adapter, scene).record(30, 1)
-    a, b = opened(adapter, scene), opened(adapter, scene)
-    first = a.record(15, 1)
-    b.record(30, 1)
-    second = a.record(15, 1)
-    joined = np.concatenate([numbers(first.poses), numbers(second.poses)[1:]])
-    np.testing.assert_allclose(joined, numbers(alone.poses), atol=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +87,7 @@ def test_a_model_that_is_not_the_scene_is_refused_by_name(
 ) -> None:
     scene = load_scene("fourbar-lecture-1")
     state = solve(scene, np.array([0.0])).state(0)
-    facts = wrong(opened(adapter, scene).facts())  # type: ignore[operator]  # a lambda above
+    facts = wrong(Subject(adapter, scene).opened().facts())  # type: ignore[operator]  # a lambda above
     with pytest.raises(EngineError, match=named):
         refuse_other_model(scene, state, facts, DT_S, "prescribed")
 
@@ -172,52 +103,7 @@ def with_rocker(facts: object, change: object) -> object:
 def test_a_model_with_open_loops_is_refused(adapter: Engine) -> None:
     scene = load_scene("fourbar-lecture-1")
     state = solve(scene, np.array([0.0])).state(0)
-    facts = opened(adapter, scene).facts()
+    facts = Subject(adapter, scene).opened().facts()
     ajar = with_rocker(facts, lambda b: replace(b, origin=b.origin + 1e-11))
     with pytest.raises(EngineError, match=r"[CD] is open by 1\.4\de-11 m"):
         refuse_other_model(scene, state, ajar, DT_S, "prescribed")  # type: ignore[arg-type]
-
-
-def test_profiles_are_complete_and_say_why(adapter: Engine) -> None:
-    assert set(adapter.profiles) == {"as-shipped", "tuned"}
-    shipped, tuned = adapter.profiles["as-shipped"], adapter.profiles["tuned"]
-    assert set(shipped.settings) == set(tuned.settings)
-    for profile in (shipped, tuned):
-        assert profile.engine == adapter.name
-        assert all(setting.reason for setting in profile.settings.values())
-
-
-def test_places_come_about_as_the_adapter_says(adapter: Engine, scene: Scene) -> None:
-    """Integrated: off by what a step leaves out, which shrinks no faster than its order. Solved:
-    off by rounding, at any step."""
-    coarse, fine = (_errors(adapter, scene, steps) for steps in (180, 720))
-    largest = [max(row.pure for row in errors.rows if _of_place(row)) for errors in (coarse, fine)]
-    if adapter.placing == "solved":
-        assert max(largest) < 1e-10
-        return
-    for errors in (coarse, fine):
-        assert errors.uneven
-        assert too_good(errors, adapter.placing, adapter.order) == []
-    assert largest[0] < largest[1] * 4.0 ** (adapter.order + 0.3)
-
-
-def _errors(adapter: Engine, scene: Scene, steps: int) -> Errors:
-    truth = truth_of(Same(scene))
-    dt_s = scene.driver.law.period_s / steps
-    errors = compare(Beside.of(truth, run(scene, truth.start, adapter, dt_s=dt_s, steps=steps)))
-    assert errors is not None
-    return errors
-
-
-def _of_place(row: Error) -> bool:
-    return row.quantity in named("place") and row.kind == "total"
-
-
-def test_an_engine_says_what_it_holds_of_its_settings(adapter: Engine, scene: Scene) -> None:
-    state = solve(scene, np.zeros(1)).state()
-    for profile in adapter.profiles.values():
-        settings = resolved(profile, None)
-        facts = adapter.open(scene, state, settings, DT_S, "prescribed").facts()
-        held = adapter.holds(settings, DT_S, "prescribed")
-        assert held
-        assert {name: facts.settings.get(name) for name in held} == pytest.approx(held)

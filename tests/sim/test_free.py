@@ -23,8 +23,9 @@ from sim.drive import pace, period
 from sim.engine import Engine, Poses, Run, Session
 from sim.mujoco import settings as mujoco_settings
 from sim.registry import ENGINES, engine
-from sim.run import run, time_run
+from sim.run import run
 from sim.settings import resolved
+from sim.timing import time_run
 
 DT_S = 1e-3
 

@@ -111,7 +111,7 @@ def test_it_is_verified(told: Told, name: str) -> None:
 def test_it_is_among_all_engines(told: Told) -> None:
     code, output = told["all"]
     assert code == 0
-    assert all(name in output for name in (*registry.ENGINES, "fake"))
+    assert all(name in output for name in (*registry.usual(), "fake"))
 
 
 def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path) -> None:
@@ -123,7 +123,10 @@ def test_it_is_swept_and_shown_without_anything_to_copy(told: Told, house: Path)
 
 
 def test_what_it_lacks_is_said(told: Told) -> None:
-    assert told["tune"] == (2, "crankcheck: engine fake: it has no knobs; use mujoco or pymunk\n")
+    assert told["tune"] == (
+        2,
+        "crankcheck: engine fake: it has no knobs; use mujoco or pymunk or exudyn\n",
+    )
     code, output = told["inside"]
     assert code == 2
     assert "it can be planted in mujoco and pymunk only; found --engine fake" in output
@@ -150,11 +153,11 @@ def test_its_name_is_suggested(told: Told) -> None:
 @pytest.mark.parametrize(
     ("ask", "lacks"),
     [
-        (lambda: search_space("fake"), "it has no knobs; use mujoco or pymunk"),
-        (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk"),
+        (lambda: search_space("fake"), "it has no knobs; use mujoco or pymunk or exudyn"),
+        (lambda: snippet("fake", {}, 100), "it has no snippet; use mujoco or pymunk or exudyn"),
         (lambda: spoiler("fake"), "it has no spoiler; use mujoco or pymunk"),
         (lambda: registry.capability("pymunk", "viewer"), "it has no viewer; use mujoco"),
-        (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk"),
+        (lambda: snippet("bullet", {}, 100), "'bullet': unknown; there are mujoco, pymunk, exudyn"),
     ],
 )
 def test_a_capability_that_is_lacking_is_named_with_who_has_it(
@@ -224,12 +227,13 @@ def test_what_is_declared_is_there(name: str) -> None:
 
 def test_a_snippet_is_made_where_the_engine_is_not_installed() -> None:
     code = (
-        "import sys; sys.modules.update(mujoco=None, pymunk=None)\n"
+        "import sys; sys.modules.update(mujoco=None, pymunk=None, exudyn=None)\n"
         "from sim.snippets import snippet\n"
-        "for name in ('mujoco', 'pymunk'): print(snippet(name, {}, 90))"
+        "for name in ('mujoco', 'pymunk', 'exudyn'): print(snippet(name, {}, 90))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert "<option timestep=" in done.stdout
     assert "space.step(dt)" in done.stdout
+    assert "stepping.numberOfSteps" in done.stdout

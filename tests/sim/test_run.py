@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -18,8 +19,9 @@ from models.errors import EngineError
 from models.files import load_scene
 from models.scene import Scene
 from sim.engine import Facts, Run
-from sim.registry import ENGINES, available, engine
-from sim.run import run, time_run
+from sim.registry import ENGINES, available, declaration, engine
+from sim.run import run
+from sim.timing import time_run
 
 FOURBAR = load_scene("fourbar-lecture-1")
 TANGENT = load_scene("tangent")
@@ -117,6 +119,21 @@ def test_a_pymunk_run_that_comes_apart_is_diverged_too(
 def test_an_engine_that_says_it_diverged_is_believed(fake_engine: ModuleType) -> None:
     result = ran(engine=fake_engine.FakeEngine(solve, diverges_after=120), steps=9000)
     assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
+    assert result.reason == "came apart at 0.12 s"
+
+
+def test_an_engine_that_stops_by_itself_says_why(fake_engine: ModuleType) -> None:
+    given = {"diverges_after": 120, "stopped": "no step was small enough"}
+    result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
+    assert (result.status, result.stopped_at_s) == ("diverged", pytest.approx(0.12))
+    assert result.reason == "stopped after 0.12 s: no step was small enough"
+
+
+def test_what_came_apart_before_an_engine_stopped_is_told_first(fake_engine: ModuleType) -> None:
+    apart = fake_engine.turned_link("rocker", lambda t: np.where(t > 0.1, 3.0, 0.0))
+    given = {"diverges_after": 120, "stopped": "no step was small enough", "disturb": apart}
+    result = ran(engine=fake_engine.FakeEngine(solve, **given), steps=9000)
+    assert result.reason.startswith("came apart at 0.10")
 
 
 def test_a_loop_open_by_more_than_the_longest_link_is_diverged(fake_engine: ModuleType) -> None:
@@ -235,21 +252,21 @@ def test_what_was_asked_for_runs_again_to_the_same_end(name: str, profile: str) 
 def test_an_engine_that_is_not_installed_names_the_command(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    install = declaration(name).install
     monkeypatch.setitem(sys.modules, name, None)
     for module in [each for each in sys.modules if each.startswith(f"sim.{name}.")]:
         monkeypatch.delitem(sys.modules, module)
-    with pytest.raises(
-        EngineError, match=f"engine {name}: not installed; .* -m pip install {name}"
-    ):
+    missing = rf"engine {name}: not installed; .* -m pip install {re.escape(install)}"
+    with pytest.raises(EngineError, match=missing):
         engine(name)
     told = {info.name: info for info in available()}
     assert told[name].version is None
-    assert told[name].install.endswith(f" -m pip install {name}")
+    assert told[name].install.endswith(f" -m pip install {install}")
     assert all(info.version for other, info in told.items() if other != name)
 
 
 def test_importing_sim_loads_no_engine() -> None:
-    code = "import sim.run, sys; print([n for n in ('mujoco', 'pymunk') if n in sys.modules])"
+    code = f"import sim.run, sys; print([n for n in {[*ENGINES]} if n in sys.modules])"
     root = Path(__file__).parents[2]
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True

@@ -15,6 +15,7 @@ from sim.settings import resolved
 from sim.snippets import Stepping, frame_snippet, snippet
 from sim.tuning import search_space
 from tests.worlds.bare import BARE, measured_as_we_did
+from tests.worlds.bare_exudyn import measured_in_exudyn
 from tests.worlds.workshop import DISTURBANCE, mujoco_disturbance
 
 SAME = 1e-9
@@ -31,12 +32,19 @@ OTHER: dict[str, SettingValue] = {
     "close": "C",
     "servo_integrator": "implicit",
     "lines": "exact",
+    "jacobian": "each-step",
+    "adaptive_step": "disable",
+    "linear_solver": "EigenDense",
+    "ignore_singular": "enable",
 }
 """Other words than the engines' defaults; for numbers half of them and one more."""
 
 
 def other(name: str, value: SettingValue) -> SettingValue:
-    return OTHER[name] if isinstance(value, str) else type(value)(value / 2 + 1)
+    if isinstance(value, str):
+        words = OTHER[name]
+        return "TrapezoidalIndex2" if value == "GeneralizedAlpha" else words
+    return type(value)(value / 2 + 1)
 
 
 def settings_of(name: str) -> Iterator[Settings]:
@@ -95,6 +103,7 @@ HARMS = {
     ),
     "few passes for all": ("pymunk", {"iterations": 5}, measured_as_we_did),
     "damping for all": ("pymunk", {"damping": 0.9}, measured_as_we_did),
+    "an early end for all": ("exudyn", {"relative_tolerance": 1e-3}, measured_in_exudyn),
 }
 
 
@@ -126,7 +135,8 @@ def test_for_a_program_with_frames_the_settings_are_the_same(name: str, substeps
         assert len(kept) == len(plain)
         assert all(same(*lines) for lines in zip(kept, plain, strict=True))
         assert repr(dt_s) in frames
-        assert f"range({substeps})" in frames or f"nstep={substeps})" in frames
+        steps = (f"range({substeps})", f"nstep={substeps})", f"numberOfSteps = {substeps}.")
+        assert any(each in frames for each in steps)
 
 
 def in_force(text: str) -> list[str]:

@@ -1,9 +1,4 @@
-"""A four-bar in MuJoCo and in pymunk as a user would write it, with a place for a snippet.
-
-Nothing here knows crankcheck: the numbers are those of the lecture's first example (crank 0.1,
-coupler 0.25, rocker 0.2, ground 0.3 m, rods of 1 kg/m, crank from 90 deg), and the angles to be
-found follow from the law of cosines.
-"""
+"""The four-bar in MuJoCo and in pymunk as a user would write it, with a place for a snippet."""
 
 from __future__ import annotations
 
@@ -16,32 +11,21 @@ import numpy as np
 import pymunk
 
 from models.array import Array
+from tests.worlds.bare_exudyn import exudyn_error
+from tests.worlds.fourbar import (
+    COUPLER,
+    CRANK,
+    GROUND,
+    ROCKER,
+    START,
+    TURNS,
+    angles,
+    rates,
+    worst,
+)
 
-CRANK, COUPLER, ROCKER, GROUND = 0.1, 0.25, 0.2, 0.3
-START = math.pi / 2
-TURNS = 2
 Fourbar = tuple[tuple[pymunk.Body, ...], tuple[pymunk.Constraint, ...]]
 """Crank, coupler and rocker, and their joints."""
-
-
-def angles(crank: Array) -> tuple[Array, Array]:
-    """Angles of coupler and rocker [rad] at angles of the crank; the open assembly."""
-    bx, by = CRANK * np.cos(crank), CRANK * np.sin(crank)
-    diagonal = np.hypot(bx - GROUND, by)
-    at_d = np.arccos((diagonal**2 + ROCKER**2 - COUPLER**2) / (2 * diagonal * ROCKER))
-    rocker = np.unwrap(np.arctan2(by, bx - GROUND)) - at_d
-    cx, cy = GROUND + ROCKER * np.cos(rocker), ROCKER * np.sin(rocker)
-    return np.unwrap(np.arctan2(cy - by, cx - bx)), rocker
-
-
-def rates(crank: float, speed: float) -> tuple[float, float]:
-    """Angular velocities of coupler and rocker [rad/s], from the law of sines of the velocities."""
-    coupler, rocker = (float(each[0]) for each in angles(np.array([crank])))
-    across = math.sin(rocker - coupler)
-    return (
-        speed * CRANK / COUPLER * math.sin(crank - rocker) / across,
-        speed * CRANK / ROCKER * math.sin(crank - coupler) / across,
-    )
 
 
 BODIES = """
@@ -187,13 +171,9 @@ def pymunk_error(snippet: str, steps: int, speed: float) -> float:
     return worst(tuple(found), exact)
 
 
-def worst(found: tuple[Array, ...], exact: tuple[Array, ...]) -> float:
-    """The largest difference."""
-    return max(float(np.abs(a - b).max()) for a, b in zip(found, exact, strict=True))
-
-
 BARE: dict[str, Callable[[str, int, float], float]] = {
     "mujoco": mujoco_error,
     "pymunk": pymunk_error,
+    "exudyn": exudyn_error,
 }
 """By engine, the error [rad] with a snippet, at steps a turn and a speed of the crank [rad/s]."""

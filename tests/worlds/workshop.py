@@ -17,7 +17,9 @@ import numpy as np
 import pymunk
 
 from models.array import Array
-from tests.worlds.bare import BODIES, CONNECT, START, fourbar_bodies, pasted, pymunk_fourbar, rates
+from tests.worlds.bare import BODIES, CONNECT, fourbar_bodies, pasted, pymunk_fourbar
+from tests.worlds.fourbar import START, rates
+from tests.worlds.workshop_exudyn import exudyn_disturbance
 
 SPEED = 10.0
 LASTS_S = 1.0
@@ -223,6 +225,7 @@ def _places(bodies: list[pymunk.Body]) -> Array:
 DISTURBANCE: dict[str, Callable[[str], Disturbance]] = {
     "mujoco": mujoco_disturbance,
     "pymunk": pymunk_disturbance,
+    "exudyn": lambda snippet: Disturbance(exudyn_disturbance(snippet), 0.0),
 }
 """By engine, what a snippet changes."""
 

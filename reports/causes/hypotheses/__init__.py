@@ -20,6 +20,7 @@ from reports.causes.hypotheses.stamps import stamps
 from reports.causes.hypotheses.straight import straight
 from reports.causes.hypotheses.swapped import swapped
 from reports.causes.hypotheses.turns import turns
+from reports.causes.hypotheses.two_faults import two_faults
 from reports.causes.inquiry import Inquiry
 
 Hypothesis = Callable[[Inquiry], Iterator[Account]]
@@ -48,5 +49,7 @@ OF_LOGS: Mapping[str, Hypothesis] = {
     "dimension": dimension,
     "drift": drift,
     "smoothed": smoothed,
+    "two faults": two_faults,
 }
-"""What may be wrong with the log as a whole, or with the scene; and what costs most, last."""
+"""What may be wrong with the log as a whole, or with the scene; and what costs most, last, for
+channels that nothing before explains well."""

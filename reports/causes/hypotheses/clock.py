@@ -178,7 +178,7 @@ def _told(inquiry: Inquiry, column: str, clock: Clock) -> Iterator[Account]:
             clocks.append((same, 1))
     for each, numbers in clocks:
         told = _either(inquiry, column, each, CAUSE + NUMBER * numbers)
-        if told is not None:
+        if told is not None and inquiry.no_chance(told):
             yield told
 
 

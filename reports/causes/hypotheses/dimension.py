@@ -244,4 +244,5 @@ def _account(inquiry: Inquiry, chosen: Sequence[Dimension], found: Array) -> Acc
         )
     cost = CAUSE + CHOICE + NUMBER * len(chosen)
     world = replace(inquiry.world, scene=scene)
-    return inquiry.account_of_world("length", cost, world, " and ".join(words))
+    told = inquiry.account_of_world("length", cost, world, " and ".join(words))
+    return told if told and inquiry.no_chance(told) else None

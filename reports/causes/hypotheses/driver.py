@@ -10,7 +10,7 @@ import numpy as np
 
 from models.array import Array
 from models.laws import ConstantSpeed, Law
-from reports.causes.account import CAUSE, NUMBER, Account
+from reports.causes.account import CAUSE, CHOICE, NUMBER, Account
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.causes.world import World
@@ -27,7 +27,8 @@ STARTS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
 
 def backwards(inquiry: Inquiry) -> Iterator[Account]:
-    """The driver turning the other way from the same start."""
+    """The driver turning the other way from the same start, and rates that show it or, as from a
+    sensor of the speed alone, do not."""
     if inquiry.world.drive is not None:
         return
     law = inquiry.world.scene.driver.law
@@ -35,6 +36,11 @@ def backwards(inquiry: Inquiry) -> Iterator[Account]:
     signs = {name: -getattr(law, name) for name in SIGNED if name in names}
     world = _driven(inquiry.world, replace(law, **signs))  # type: ignore[type-var]
     told = inquiry.account_of_world("reversed", CAUSE, world, "the driver turns the other way")
+    if told is not None:
+        yield told
+    elsewhere = inquiry.world.stamped(lambda stamps: -stamps)
+    phrase = "the driver turns the other way, and the rates have the signs that they have forwards"
+    told = inquiry.account_of_world("reversed", CAUSE + CHOICE, elsewhere, phrase)
     if told is not None:
         yield told
 

@@ -14,7 +14,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, NUMBER, Account
-from reports.causes.excerpt import Excerpt
+from reports.causes.excerpt import Excerpt, Size
 from reports.causes.fit import fitted
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import duration
@@ -30,6 +30,9 @@ FEEDS = (0.0, 0.5, 1.0)
 FARTHEST = 20.0
 """The logarithm of a time constant in samples, and that of one over it, at most."""
 LEAST_ROWS = 16
+PASSED = 0.1
+"""The part of a signal that a filter has to let through: of what lets nothing through, nothing
+would be seen but that."""
 
 
 def filtered(inquiry: Inquiry) -> Iterator[Account]:
@@ -82,7 +85,17 @@ def _low_pass(stretch: Inquiry, column: str) -> Account | None:
         f"{{who}} went through a low-pass of first order, time constant {duration(constant)} "
         f"({constant / step:.3g} samples)"
     )
-    return stretch.account("low-pass", CAUSE + NUMBER, errors, phrase)
+    return _told(stretch, column, "low-pass", errors[column], phrase)
+
+
+def _told(stretch: Inquiry, column: str, name: str, left: Array, phrase: str) -> Account | None:
+    """The account of a filter; None of one that lets next to nothing through, or of a curve that
+    is merely like what it would make."""
+    excerpt = stretch.excerpts[column]
+    passed = Size.of_signal(excerpt.expected + excerpt.error - left).rms
+    if passed < PASSED * Size.of_signal(excerpt.expected).rms or not excerpt.told_apart(left):
+        return None
+    return stretch.account(name, CAUSE + NUMBER, {column: left}, phrase)
 
 
 def low_pass(signal: Array, start: float, decay: Array, feed: float) -> Array:
@@ -110,7 +123,7 @@ def _mean(stretch: Inquiry, column: str) -> Account | None:
     where = f"{width // 2} on both sides" if ahead else "the last ones"
     phrase = f"{{who}} {{is}} a mean over {width} samples, {where}"
     part = stretch.part(np.arange(first, first + left.size))
-    return part.account("mean", CAUSE + NUMBER, {column: left}, phrase)
+    return _told(part, column, "mean", left, phrase)
 
 
 def _means(excerpt: Excerpt, widths: Iterable[int]) -> Iterator[tuple[float, int, int]]:

@@ -18,6 +18,8 @@ from reports.causes.hypotheses.grid import resolution
 from reports.causes.inquiry import MOVED, Inquiry
 from reports.causes.words import later
 
+NUDGE = 1e-6
+"""In periods, by how much a delay is moved to see what that changes."""
 SCAN = 48
 """Delays within half a period to either side that large ones are looked for among."""
 SCANNED = 120
@@ -80,7 +82,7 @@ class Search:
     def delay(self, column: str) -> Delay | None:
         """By how much the readings of a column belong later; None where that can not be told."""
         excerpt = self.thin.excerpts[column]
-        delta = 1e-6 * self.inquiry.period_s
+        delta = NUDGE * self.inquiry.period_s
 
         def residual(by: Array) -> Array:
             return self._error(excerpt, column, float(by[0]))
@@ -109,7 +111,7 @@ class Search:
         world = self.inquiry.world.stamped(lambda stamps: stamps + by_s)
         channel = excerpt.channel
         error = excerpt.beside(channel.expected(world.at(excerpt.instants, [channel])))
-        return np.where(_logged(excerpt, by_s), error, 0.0)
+        return np.where(_logged(self.inquiry, excerpt, by_s), error, 0.0)
 
     def _scan(self, column: str) -> Sequence[float]:
         """The two delays within half a period of which the least is left of an error."""
@@ -136,12 +138,14 @@ class Search:
         return self._scans[by_s]
 
 
-def _logged(excerpt: Excerpt, by_s: float) -> Mask:
+def _logged(inquiry: Inquiry, excerpt: Excerpt, by_s: float) -> Mask:
     """Where readings that belong ``by_s`` later belong to an instant of the log: what shifts a
     channel has nothing for the others, and holds a reading there, or takes it from the other end.
-    All, where these are most."""
-    instants = excerpt.instants + by_s
-    there = (instants >= excerpt.instants[0]) & (instants <= excerpt.instants[-1])
+    All, where these are most. What a nudge of the delay takes beyond an end is there still: a fit
+    that lost a sample by it would take that for the slope."""
+    instants, slack = excerpt.instants + by_s, 2.0 * NUDGE * inquiry.period_s
+    first, last = excerpt.instants[0] - slack, excerpt.instants[-1] + slack
+    there = (instants >= first) & (instants <= last)
     return there if np.mean(there) >= MOSTLY else np.ones_like(there)
 
 
@@ -170,13 +174,19 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
         return None
     errors = {
         column: np.where(
-            _logged(inquiry.excerpts[column], by_s), inquiry.excerpts[column].beside(each), 0.0
+            _logged(inquiry, inquiry.excerpts[column], by_s),
+            inquiry.excerpts[column].beside(each),
+            0.0,
         )
         for column, each in expected.items()
     }
     advised: list[str] = []
     if abs(by_s) >= LEAST_SAMPLES * inquiry.step_s:
-        advised = [c for c in _doubtful(inquiry) if _clearly(inquiry.excerpts[c], errors[c])]
+        advised = [
+            column
+            for column in _doubtful(inquiry)
+            if _clearly(inquiry.excerpts[column], errors[column], expected[column])
+        ]
     instants = later(by_s, inquiry.step_s)
     told = inquiry.account(
         "delay",
@@ -193,9 +203,10 @@ def _told(inquiry: Inquiry, group: Sequence[Delay]) -> Account | None:
     return replace(told, name="start", phrase=phrase, world=world)
 
 
-def _clearly(excerpt: Excerpt, error: Array) -> bool:
-    """Whether a delay explains an error that is within its limit."""
-    return CLEAR * excerpt.rest(error) <= 1.0
+def _clearly(excerpt: Excerpt, error: Array, expected: Array) -> bool:
+    """Whether a delay explains an error that is within its limit, and would show in it."""
+    change = Size.of(excerpt.beside(expected) - excerpt.error).largest
+    return CLEAR * excerpt.rest(error) <= 1.0 and change > MOVED * excerpt.size.largest
 
 
 def _everything(

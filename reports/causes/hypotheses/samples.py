@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -55,6 +56,8 @@ def _dead(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask)
     """The account of readings that stay where they are, while the channel should move."""
     excerpt = inquiry.excerpts[column]
     expected = excerpt.expected[np.isfinite(excerpt.expected)]
+    if excerpt.channel.kind.turns:  # whole turns from sample to sample do not show
+        expected = np.remainder(expected - expected[:1] + math.pi, math.tau)
     moves = np.ptp(expected)
     if moves <= excerpt.limit or np.ptp(values) > min(excerpt.limit, DEAD * moves):
         return None
@@ -76,7 +79,7 @@ def _stuck(inquiry: Inquiry, column: str, values: Array, error: Array, off: Mask
     if len(stuck) > FEW_RUNS and np.mean(repeated) > HELD and np.mean(lengths == every - 1) > HELD:
         phrase = f"{{who}} {{is}} updated at every {every}th sample only, and held between"
         return _without(inquiry, column, error, off, ("held", CAUSE + CHOICE, phrase))
-    phrase = f"{{who}} stick{{s}}: {_places(inquiry, stuck, 'repeat')} the one before"
+    phrase = f"{{who}} stick{{s}}: {places_text(inquiry, stuck, 'repeat')} the one before"
     cost = CAUSE + CHOICE * min(len(stuck), 4)
     return _without(inquiry, column, error, off, ("stuck", cost, phrase))
 
@@ -90,7 +93,7 @@ def _spikes(
     spikes = runs(off)
     if np.any(spikes[:, 1] - spikes[:, 0] >= LONGEST_SPIKE):
         return None
-    phrase = f"{{who}} {{is}} off at single samples: {_places(inquiry, spikes)}"
+    phrase = f"{{who}} {{is}} off at single samples: {places_text(inquiry, spikes)}"
     cost = CAUSE + CHOICE * min(1 + len(spikes), 4)
     return _without(inquiry, column, error, off, ("spike", cost, phrase))
 
@@ -106,7 +109,7 @@ def _without(
     return Account(name, cost, {column: rest}, {column: rest}, phrase)
 
 
-def _places(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
+def places_text(inquiry: Inquiry, stretches: Rows, verb: str = "") -> str:
     """Samples, counted from 0, with their times: the first of them, and how many more."""
     times = inquiry.case.log.time_s
     each = []

@@ -17,8 +17,8 @@ from reports.causes.words import later
 from reports.output.numbers import duration
 
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
-LEAST = 1e-9
-"""In periods, a width that is none."""
+LEAST = 1.5
+"""Samples that anything is smoothed over at least."""
 
 
 def smoothed(inquiry: Inquiry) -> Iterator[Account]:
@@ -42,12 +42,14 @@ def _told(inquiry: Inquiry, column: str, *, delayed: bool) -> Account | None:
     start, delta = [0.02 * period, 0.0], [1e-5 * period, 1e-6 * period]
     count = 2 if delayed else 1
     found = fitted(residual, start[:count], delta[:count])
-    if found is None or not LEAST * period < abs(found[0]) < period:
+    if found is None or not abs(found[0]) < period:
         return None
     spread, by_s = abs(float(found[0])), float(found[1]) if delayed else 0.0
     whole = inquiry.excerpts[column]
     errors = {column: whole.beside(_smooth(inquiry, whole, spread, by_s))}
     width = math.sqrt(12.0) * spread
+    if width < LEAST * inquiry.step_s:
+        return None
     phrase = (
         f"{{who}} {{is}} smoothed as by a mean over {duration(width)} "
         f"({width / inquiry.step_s:.3g} samples)"

@@ -10,7 +10,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.causes.account import CAUSE, CHOICE, Account
-from reports.causes.excerpt import BROUGHT_WITHIN, Rows
+from reports.causes.excerpt import BROUGHT_WITHIN, Rows, Size
 from reports.causes.inquiry import Inquiry
 from reports.output.numbers import listed
 
@@ -71,10 +71,17 @@ def _wrapped(values: Array, angle: Array) -> bool:
     return False
 
 
+def _folded(values: Array) -> bool:
+    """Whether readings lie in half a turn that begins where an arc tangent does."""
+    least, most = float(np.min(values)), float(np.max(values))
+    begins = (-0.5 * math.pi, 0.0)
+    return any(each - EDGE < least and most < each + math.pi + EDGE for each in begins)
+
+
 def _half(inquiry: Inquiry, column: str, values: Array, error: Array) -> Account | None:
     """The account of an angle that is known but for half turns, as from an arc tangent."""
     half = np.round(error / math.pi)
-    if not np.any(half % 2.0) or np.ptp(values) > math.pi + EDGE:
+    if not np.any(half % 2.0) or not _folded(values):
         return None
     phrase = "{who} {is} folded into half a turn, as an arc tangent of one number does"
     left = error - math.pi * half
@@ -94,7 +101,8 @@ def _told(
     if rest > BROUGHT_WITHIN or (rest > 0.1 and np.max(np.abs(left)) > excerpt.limit):
         return None
     name, cost, phrase = said
-    return Account(name, cost, {column: rest}, {column: rest}, phrase, {column: correction})
+    over = float(np.max(np.abs(left))) / Size.of(excerpt.error).largest
+    return Account(name, cost, {column: rest}, {column: over}, phrase, {column: correction})
 
 
 def _jumps(inquiry: Inquiry, turn: Array, jumps: Rows) -> str:

@@ -31,8 +31,7 @@ FILES = ("history.csv", "history.md")
 def run_history(request: HistoryRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 when every version has a result, 2 when one has none.
     Raises CrankcheckError for what can be told of the request before installing."""
-    if request.engine not in ENGINES:
-        engine(request.engine)  # raises, with the near names
+    _refuse_own(request.engine)
     versions = wanted(request.engine, request.versions)
     if not versions:
         raise CrankcheckError(f"history {request.engine}: name versions, such as 3.6.0 3.7.0")
@@ -62,6 +61,17 @@ def run_history(request: HistoryRequest, console: Console, progress: Console) ->
         text = f"crankcheck: {request.engine} {result.version}: {result.reason}"
         progress.print(text, markup=False, soft_wrap=True)
     return 2 if missing else 0
+
+
+def _refuse_own(name: str) -> None:
+    """Refuse an engine that no registry has versions of. Raises CrankcheckError, with the near
+    names of one that is unknown."""
+    if name not in ENGINES:
+        own = engine(name).name
+        raise CrankcheckError(
+            f"history {own}: it has released versions of {', '.join(ENGINES)} alone; keep `verify "
+            f"--engine {name} -o DIR` of each version of yours, and compare two with `diff`"
+        )
 
 
 def _verification(request: HistoryRequest) -> VerifyRequest:

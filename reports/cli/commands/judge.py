@@ -22,8 +22,9 @@ from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
 from reports.own_log.drives import chosen_drive
-from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.junit import suite
+from reports.own_log.log_limits import EVERY
 from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
 from reports.own_log.table import show

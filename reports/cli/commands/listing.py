@@ -19,7 +19,7 @@ from models.mjcf_options import exact
 from reports.describe.law import describe_law
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
-from sim.registry import available, engine
+from sim.registry import available, brought, engine
 
 
 def scenes(console: Console) -> None:
@@ -36,7 +36,7 @@ def scenes(console: Console) -> None:
 
 def engines(console: Console, settings: bool) -> None:
     """The engines: version, or the command that installs them; profiles, also with settings."""
-    for entry in available():
+    for entry in (*available(), *brought()):
         state = entry.version or entry.broken or f"not installed: {entry.install}"
         console.print(Text(f"{entry.name}  {state}", "bold" if entry.version else "yellow"))
         if entry.version is None:

@@ -16,7 +16,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
-from reports.selftest.requests import PROFILE
+from reports.selftest.fault import PROFILE
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
     STEPS,

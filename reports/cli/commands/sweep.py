@@ -10,8 +10,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, shown
 from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
-from reports.plan.chosen import chosen_engines
-from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine
+from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
 from reports.plan.study import Study, StudyValue, load_study
 from reports.sweep.whole import Manner, swept
 from reports.workers.isolated import checked_limits
@@ -42,7 +41,7 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
 def asked(request: SweepRequest) -> Study:
     """The study of the file, or the shipped one, with what the command line says in its place."""
     study = load_study(request.study)
-    engines = chosen_engines(request.engines)
+    engines = study_engines(study, request.engines)
     choice = StudyChoice(
         request.scenes,
         request.engines,

@@ -97,7 +97,10 @@ def plan(request: VerifyRequest) -> list[Cell]:
     """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
     tolerance = parse(request.tolerance)
     if request.drive not in ("prescribed", "servo"):
-        raise CrankcheckError(f"--drive {request.drive!r}: unknown; use prescribed or servo")
+        raise CrankcheckError(
+            f"--drive {request.drive!r}: unknown; use prescribed or servo, or name the model whose "
+            "joint that is with --mjcf FILE"
+        )
     scenes = chosen_scenes(request.scenes)
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)

@@ -55,6 +55,6 @@ def _cure(finding: Finding, evidence: Evidence) -> str:
         return evidence.remedy
     if finding.rule not in TUNABLE or evidence.status in ("unsupported", "branch-changed"):
         return cure
-    if evidence.profile != "tuned":
+    if evidence.profile not in ("", "tuned"):
         return f"{cure} Or use profile tuned."
     return cure

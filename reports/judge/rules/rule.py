@@ -21,7 +21,8 @@ class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
     ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
-    cell that is not ``gated`` is shown only. ``placing`` and ``order`` are the engine's
+    cell that is not ``gated`` is shown only. ``profile`` is that of the engine, "" where there is
+    none to be changed for another. ``placing`` and ``order`` are the engine's
     (`sim.engine.Engine`); ``unasked`` says what of the run, and of the finer ones, is not as it was
     asked for, None where there is no run. ``remedy`` says what came of other settings, where they
     were tried (`reports.verify.advised`). ``absent`` is what a log was required to hold and

@@ -15,7 +15,8 @@ class StartWithin:
     title = "start"
     explanation = (
         "An engine may take some samples to take up its pins; its rates may jump meanwhile by "
-        "half a step's acceleration, and no further."
+        "half a step's acceleration, and no further. Where joints are solved for in each step, "
+        "accelerations may be off by what they change by in a step."
     )
     cure = (
         "Start the engine with the velocities of the instant that its own belong to, or shorten "
@@ -42,7 +43,7 @@ class StartWithin:
 
 def start_limit(tolerance: str, evidence: Evidence, errors: Errors) -> float:
     """What a rate of the first samples is held to, as a pure number."""
-    return _settled(tolerance, evidence, errors) + allowance(tolerance, errors)
+    return _settled(tolerance, evidence, errors) + allowance(tolerance, errors, evidence.placing)
 
 
 def _settled(tolerance: str, evidence: Evidence, errors: Errors) -> float:

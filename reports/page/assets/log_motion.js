@@ -13,20 +13,9 @@
     paint: piece.apart ? "logged apart" : "logged",
   }));
 
-  /** The position at which the log is farthest off. */
-  function farthest(mechanism) {
-    const rows = overlays().map((each) => each.rows);
-    let [most, found] = [0, 0];
-    for (let at = 0; at < mechanism.samples; at += 1) {
-      const off = Math.max(0, ...rows.map((each) => mechanism.farthest(each, at)));
-      if (off > most) [most, found] = [off, at];
-    }
-    return found;
-  }
-
   const stage = crankcheck.stage("motion", {
     overlays,
-    home: farthest, reach: FARTHEST,
+    home: (mechanism) => mechanism.worst(overlays().map((each) => each.rows)), reach: FARTHEST,
     drawn: (mechanism, position) => {
       const [start, end] = [shown.start, shown.end].map(Number);
       const at = start + ((end - start) * position) / (mechanism.samples - 1);

@@ -198,9 +198,19 @@ crankcheck.mechanism = (() => {
       return most;
     }
 
+    /** The position at which some runs are farthest off. */
+    function worst(rows) {
+      let [most, found] = [0, 0];
+      for (let at = 0; at < samples; at += 1) {
+        const off = Math.max(0, ...rows.map((each) => farthest(each, at)));
+        if (off > most) [most, found] = [off, at];
+      }
+      return found;
+    }
+
     still();
     return {
-      samples, show, farthest, refit: still, size: scene.size,
+      samples, show, farthest, worst, refit: still, size: scene.size,
       degrees: (position) => between(scene.crank_deg, position),
     };
   };

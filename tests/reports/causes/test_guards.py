@@ -158,3 +158,68 @@ def test_a_channel_that_stays_is_read_in_another_unit_before_it_has_another_zero
     cause = only(plain.put({"crank_w": plain.values["crank_w"] * math.tau / 60.0}))
     assert cause.correction == {"unit": "rad/s"}
     assert only(plain.put({"crank_w": plain.values["crank_w"] + 0.3})).name == "offset"
+
+
+def test_a_mean_that_lets_nothing_through_is_none() -> None:
+    plain = of(omega("rocker"), angle("coupler"), rows=147, turns=20.0)
+    nothing = 1e-3 * np.random.default_rng(1).normal(size=147)
+    assert not causes(plain.put({"rocker_w": nothing}).case)
+
+
+def test_a_mean_that_is_merely_like_what_there_is_is_not_told() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    late = plain.of(solve(SCENE, plain.time_s - 2.5 * plain.step_s, bound=False))
+    signal, after = late.values["rocker_a"], late.values["rocker_a"].copy()
+    for row in range(1, after.size):
+        after[row] = after[row - 1] + 0.15 * (signal[row] - after[row - 1])
+    assert "mean" not in {cause.name for cause in causes(plain.put({"rocker_a": after}).case)}
+
+
+def test_nothing_is_smoothed_over_less_than_a_sample() -> None:
+    plain = of(omega("rocker"), angle("coupler"))
+    beside = [
+        solve(SCENE, plain.time_s + 0.25 * side * plain.step_s, bound=False) for side in (-1, 1)
+    ]
+    both = [plain.of(motion, ["rocker_w"]).values["rocker_w"] for motion in beside]
+    wrong = replace(plain.put({"rocker_w": 0.5 * (both[0] + both[1])}), limits={"rocker_w": 1e-5})
+    assert wrong.case.out
+    assert not causes(wrong.case)
+
+
+def test_a_log_in_which_nothing_moves_is_not_one_of_nanoseconds() -> None:
+    rate = Channel("B_vy", KINDS["point", "vy"], "B", "m/s")  # which is 0 at the start
+    log = of(rate, omega("crank"))
+    rng = np.random.default_rng(1)
+    tiny = log.put({"B_vy": 1e-4 * rng.normal(size=log.time_s.size)})
+    assert not causes(tiny.case)
+
+
+def test_an_angle_that_is_off_by_half_a_turn_is_not_folded() -> None:
+    plain = of(angle("rocker"), angle("coupler"))
+    assert only(plain.put({"rocker_a": plain.values["rocker_a"] + math.pi})).name == "offset"
+
+
+def test_numbers_of_one_channel_are_doubted_where_all_the_others_have_no_cause() -> None:
+    plain = of(angle("rocker"), angle("coupler"), omega("rocker"), omega("coupler"))
+    rng = np.random.default_rng(3)
+    noisy = {
+        c: v + 30.0 * plain.limits[c] * rng.normal(size=v.size) for c, v in plain.values.items()
+    }
+    gain = {"rocker_a": plain.values["rocker_a"] * 1.01}
+    assert [cause.name for cause in causes(plain.put(gain).case)] == ["scaled"]
+    assert not causes(plain.put(noisy | gain).case)
+
+
+def test_a_driver_that_turns_the_other_way_may_have_a_speed_without_sign() -> None:
+    plain = of(angle("rocker"), angle("crank"), omega("crank"))
+    back = plain.of(solve(SCENE, -plain.time_s, bound=False), ["rocker_a", "crank_a"])
+    cause = only(back)
+    assert cause.name == "reversed"
+    assert cause.columns == ("rocker_a", "crank_a")
+
+
+def test_a_delay_is_not_told_of_a_channel_that_would_not_show_it() -> None:
+    plain = of(point("B", "x"), omega("crank"), omega("rocker"))
+    late = plain.of(solve(SCENE, plain.time_s - 2.5 * plain.step_s, bound=False), ["B_x"])
+    end = 1e-13 * (np.arange(plain.time_s.size) < 2)
+    assert only(late.put({"crank_w": late.values["crank_w"] + end})).columns == ("B_x",)

@@ -11,7 +11,8 @@ from analytic.kinematics import solve, solve_driven
 from models.files import load_scene
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
-from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.log_limits import EVERY
 
 TIME_S = np.linspace(0.0, 0.6, 301)
 FOURBAR = "fourbar-lecture-1"

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import pytest
 
-from analytic.check.moved_scene import moved, rotated, scaled
+from analytic.check.moved_scene import mirrored, moved, rotated, scaled
 from models.files import load_scene
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.judge.cell import Cell, check
-from tests.worlds.other_way import mirrored, sped_up
+from tests.worlds.other_way import sped_up
 
 CHANGES: dict[str, Callable[[Scene], Scene]] = {
     "rotated by 0.7 rad": lambda scene: rotated(scene, 0.7),

@@ -63,6 +63,20 @@ def test_light_bodies_that_hold_heavy_ones_may_part_faster_at_the_start() -> Non
     assert max(allowance("acceleration", wild), allowance("velocity", wild)) <= 0.1
 
 
+def test_joints_closed_in_places_may_start_with_the_accelerations_of_a_step_beside() -> None:
+    fine = replace(ERRORS, step_rad=ERRORS.step_rad / 2)
+    changes = [
+        allowance("acceleration", errors, "solved") - allowance("acceleration", errors)
+        for errors in (ERRORS, fine)
+    ]
+    assert changes[0] == pytest.approx(2.0 * changes[1])
+    assert changes[0] == pytest.approx(1.4 * ERRORS.step_rad * ERRORS.curvature**1.5)
+    for rate in ("velocity", "velocity-differenced", "acceleration-differenced"):
+        assert allowance(rate, ERRORS, "solved") == allowance(rate, ERRORS)
+    wild = replace(ERRORS, curvature=1e9)
+    assert allowance("acceleration", wild, "solved") <= 0.1
+
+
 def test_the_mass_ratio_leaves_out_what_has_no_mass(slider_crank: Scene) -> None:
     (slider,) = slider_crank.sliders.values()
     masses = [link.mass_kg for link in slider_crank.links.values()]

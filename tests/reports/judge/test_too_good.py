@@ -19,6 +19,7 @@ from reports.judge.too_good import LEAST, too_good
 from sim.engine import Run
 from sim.registry import ENGINES, engine
 from sim.run import run
+from sim.settings import resolved
 
 
 def turn(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -72,7 +73,8 @@ def test_no_body_of_a_shipped_scene_comes_near_what_is_too_good(
         assert errors is not None
         assert errors.uneven
         wide = {body: 10.0 * far for body, far in errors.uneven.items()}
-        assert too_good(replace(errors, uneven=wide), adapter.placing, adapter.order) == []
+        placing = adapter.placing(resolved(adapter.profiles[profile], None))
+        assert too_good(replace(errors, uneven=wide), placing, adapter.order) == []
 
 
 def verdict_of(scene: Scene, runner: object) -> dict[str, str]:

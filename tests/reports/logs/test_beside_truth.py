@@ -13,7 +13,8 @@ from models.array import Array
 from models.files import load_scene
 from reports.logs.columns import columns_of
 from reports.logs.meanings import understood
-from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.log_limits import EVERY
 from reports.own_log.rows import log_rows
 
 SCENE = load_scene("fourbar-lecture-1")

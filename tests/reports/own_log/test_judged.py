@@ -16,7 +16,8 @@ from reports.logs.columns import columns_of
 from reports.logs.map_file import map_of
 from reports.logs.meanings import understood
 from reports.own_log.drives import moved
-from reports.own_log.judged import EVERY, JudgedLog, LogRequest, judge_log
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.log_limits import EVERY
 
 SCENE = load_scene("fourbar-lecture-1")
 TIME_S = np.linspace(0.0, 1.2, 601)

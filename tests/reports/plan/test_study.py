@@ -9,6 +9,7 @@ import pytest
 from models.errors import CrankcheckError
 from reports.cli.commands.sweep import asked
 from reports.cli.measuring import SweepRequest
+from reports.plan.chosen_study import StudyChoice, chosen_study
 from reports.plan.grid import grid
 from reports.plan.study import Study, Variant, load_study
 
@@ -101,6 +102,28 @@ def test_options_take_the_place_of_what_the_study_says() -> None:
     assert asked(base) == load_study(None)
     profiles = asked(SweepRequest(Path("x"), profiles=["tuned"])).variants
     assert [(v.engine, v.profile) for v in profiles] == [("mujoco", "tuned"), ("pymunk", "tuned")]
+
+
+def test_an_extra_engine_is_swept_where_it_is_named_with_all_its_profiles() -> None:
+    named = asked(SweepRequest(Path("x"), engines=["pymunk", "exudyn"])).variants
+    assert [v.profile for v in named if v.engine == "exudyn"] == ["as-shipped", "tuned"]
+    assert len(named) == 4 + 2
+    only = asked(SweepRequest(Path("x"), engines=["exudyn"], profiles=["tuned"])).variants
+    assert [(v.engine, v.profile) for v in only] == [("exudyn", "tuned")]
+
+
+def test_a_study_of_ones_own_names_the_engines_that_it_has() -> None:
+    study = Study(
+        scenes=["shaper"],
+        steps_per_turn=[90],
+        variants=[
+            Variant(engine="exudyn", profile="tuned"),
+            Variant(engine="pymunk", profile="tuned"),
+        ],
+    )
+    assert chosen_study(study, StudyChoice(), is_shipped=False).variants == study.variants
+    with pytest.raises(CrankcheckError, match="--engine mujoco: the study has no variant of it"):
+        chosen_study(study, StudyChoice(engines=["mujoco", "exudyn"]), is_shipped=False)
 
 
 def test_set_makes_one_variant_for_each_value() -> None:

@@ -103,7 +103,20 @@ def test_what_is_run_and_what_is_handed_back_is_seen_in_three_scenes(group: str)
     for fault in FAULTS.values():
         if fault.group == group and fault.name != "too-good-slider":  # a four-bar has none
             places = {(place.scene, place.engine) for place in planted(fault.name).places}
-            assert places == set(product((FOURBAR, SLIDER, SHAPER), fault.engines))
+            engines = [name for name in fault.engines if name in ENGINES]
+            assert places == set(product((FOURBAR, SLIDER, SHAPER), engines))
+
+
+@pytest.mark.parametrize("scene", [FOURBAR, SLIDER, SHAPER])
+def test_without_a_fault_every_rule_passes_where_joints_are_solved_for(scene: str) -> None:
+    assert passes(healthy(scene, "exudyn", 360))
+
+
+def test_exact_places_are_no_fault_of_an_engine_that_solves_its_joints() -> None:
+    exact = {"too-good-gaps", "too-good-crank", "too-good-finer", "halved-again"}
+    assert {name for name in exact if FAULTS[name].possible("exudyn")} == set()
+    assert all(FAULTS[name].possible("pymunk") for name in exact)
+    assert tried("too-good", ["exudyn"], search=False).caught
 
 
 def test_the_model_check_refuses_gravity_by_name() -> None:

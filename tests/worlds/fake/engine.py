@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,9 @@ class FakeEngine:
 
     ``exact(scene, time_s)`` gives the true motion; ``disturb`` puts the error into the poses;
     velocities are sampled ``velocity_shift`` steps away from the positions, as engines do.
-    ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged.
+    It follows the driver's law under any drive, of which ``drives`` are not refused.
+    ``fails_after`` steps it raises, after ``diverges_after`` it says that it has diverged, and in
+    ``stopped`` why.
     """
 
     exact: Callable[[Scene, Array], Motion] = solve
@@ -35,12 +38,13 @@ class FakeEngine:
     velocity_shift: float = 0.0
     fails_after: int | None = None
     diverges_after: int | None = None
+    stopped: str = ""
     warns: tuple[str, ...] = ()
     refuses: str = ""
+    drives: tuple[Drive, ...] = get_args(Drive)
     changes: Callable[[Facts], Facts] = lambda facts: facts
     name: str = "fake"
     reports_accelerations: bool = True
-    placing: Placing = "solved"
     order: int = 2
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
@@ -56,6 +60,10 @@ class FakeEngine:
         """And keeps it as it is."""
         return settings
 
+    def placing(self, settings: Settings) -> Placing:
+        """It has its places from the reference."""
+        return "solved"
+
     def in_seconds(self, settings: Settings) -> tuple[str, ...]:
         """It knows no seconds."""
         return ()
@@ -70,6 +78,8 @@ class FakeEngine:
     ) -> FakeSession:
         if self.refuses:
             raise EngineError(self.refuses)
+        if drive not in self.drives:
+            raise EngineError(f"the fake engine was told to refuse drive {drive}")
         return FakeSession(self, scene, state.time_s, settings, dt_s)
 
 
@@ -121,7 +131,10 @@ class FakeSession:
         poses = exact_poses(self._scene, engine, self._start_s + self._dt * at, self._dt)
         diverged = self._done + steps > limit
         self._done += steps
-        return Log(engine.disturb(poses), int(at[-1]), diverged, engine.warns, 1e-6 * steps)
+        stopped = engine.stopped if diverged else ""
+        return Log(
+            engine.disturb(poses), int(at[-1]), diverged, engine.warns, 1e-6 * steps, stopped
+        )
 
     def read(self) -> Poses:
         time_s = np.array([self._start_s + self._dt * self._done])
@@ -139,7 +152,8 @@ def exact_poses(scene: Scene, engine: FakeEngine, time_s: Array, dt_s: float) ->
         other = there.bodies[name]
         return replace(body, velocity=other.velocity, omega=other.omega)
 
-    return Poses(time_s, {name: mixed(name, body) for name, body in here.bodies.items()})
+    bodies = {name: mixed(name, body) for name, body in here.bodies.items()}
+    return Poses(time_s, bodies, engine.velocity_shift * dt_s)
 
 
 def _poses(scene: Scene, motion: Motion) -> Poses:

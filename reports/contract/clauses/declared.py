@@ -1,0 +1,143 @@
+"""What an engine says of itself: profiles, version, and the settings that it takes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+
+from models.errors import EngineError, shown
+from reports.contract.clause import Clause
+from reports.contract.subject import Subject
+from sim.engine import SettingValue
+from sim.settings import SettingError, profile_of, resolved
+
+PROFILES = ("as-shipped", "tuned")
+NAME = re.compile(r"[A-Za-z_]\w{0,59}")
+NONSENSE = "no-such-choice"
+
+
+def _profiles(subject: Subject) -> Iterator[str]:
+    profiles = subject.engine.profiles
+    for name in PROFILES:
+        if name not in profiles:
+            yield f"there is no profile {name}; there are {', '.join(profiles)}"
+    complete = {frozenset(profile.settings) for profile in profiles.values()}
+    if len(complete) > 1:
+        odd = frozenset.union(*complete) - frozenset.intersection(*complete)
+        yield f"not every profile has {', '.join(sorted(map(str, odd)))}"
+    for name, profile in profiles.items():
+        if profile.name != name or profile.engine != subject.engine.name:
+            yield f"profile {name} says that it is {profile.name} of {profile.engine}"
+        if not profile.summary:
+            yield f"profile {name} has no summary"
+        for setting, value in profile.settings.items():
+            if not isinstance(setting, str) or not NAME.fullmatch(setting):
+                yield f"profile {name}: setting {shown(setting)} is no word of letters, digits, _"
+            if not value.reason:
+                yield f"profile {name}: {setting} has no reason"
+            if type(value.value) not in (int, float, str):
+                yield f"profile {name}: {setting} is {shown(value.value)}, no int, float or str"
+
+
+def _version(subject: Subject) -> Iterator[str]:
+    version = subject.engine.version()
+    if not isinstance(version, str) or not version.strip() or len(version) > 60:
+        yield f"version() gives {shown(version)}"
+    elif (held := subject.opened().facts().version) != version:
+        yield f"version() gives {shown(version)}, and the facts of a session {shown(held)}"
+
+
+def _settings(subject: Subject) -> Iterator[str]:
+    for name, profile in subject.engine.profiles.items():
+        if text := _refusal(subject, resolved(profile, None)):
+            yield f"check refuses profile {name} itself: {text}"
+    settings = subject.settings()
+    for name, value in settings.items():
+        for wrong in _wrong(value):
+            changed = {**settings, name: wrong}
+            if not _refusal(subject, changed) and not _refused_at_open(subject, changed):
+                yield f"{name} = {shown(wrong)} is taken"
+
+
+def _wrong(value: SettingValue) -> list[SettingValue]:
+    """What no setting of that kind can be."""
+    if isinstance(value, float):
+        return [float("nan")]
+    return [NONSENSE] if isinstance(value, str) else []
+
+
+def _refusal(subject: Subject, settings: dict[str, SettingValue]) -> str:
+    """What the engine has against settings, by SettingError; any other error is raised."""
+    try:
+        subject.engine.check(settings)
+    except SettingError as error:
+        return str(error)
+    return ""
+
+
+def _refused_at_open(subject: Subject, settings: dict[str, SettingValue]) -> bool:
+    """Whether what `check` can not see without the scene is refused with it."""
+    scene, start, dt_s = subject.scene, subject.start, subject.dt_s()
+    try:
+        subject.engine.open(scene, start, settings, dt_s, "prescribed")
+    except SettingError:
+        return True
+    except EngineError:
+        return False
+    return False
+
+
+def _told_back(subject: Subject) -> Iterator[str]:
+    for name in subject.engine.profiles:
+        asked = resolved(profile_of(subject.engine, name), None)
+        given = dict(asked)
+        facts = subject.opened(name).facts()
+        for setting, value in subject.engine.holds(given, subject.dt_s(), "prescribed").items():
+            held = facts.settings.get(setting)
+            if not _same(held, value):
+                yield f"profile {name}: {setting} is asked to be {shown(value)}, held {shown(held)}"
+
+
+def _same(held: object, asked: SettingValue) -> bool:
+    """Whether a setting is what was asked for, but for what a number loses on its way."""
+    if isinstance(asked, float) and isinstance(held, float):
+        return math.isclose(held, asked, rel_tol=1e-9)
+    return held == asked
+
+
+CLAUSES = (
+    Clause(
+        "EC11",
+        "profiles as-shipped and tuned are complete, and say why",
+        "A setting that is not told can not be repeated, nor compared with another's.",
+        "Give every profile all settings that influence accuracy, each as Setting(value, reason) "
+        "with an int, a float or a str.",
+        _profiles,
+        of_scenes=False,
+    ),
+    Clause(
+        "EC12",
+        "the version is a text, the same in the facts",
+        "Results of two versions are kept apart by it.",
+        "Return the version of what steps, and hand the same to Facts.",
+        _version,
+        of_scenes=False,
+    ),
+    Clause(
+        "EC13",
+        "a wrong setting is refused with SettingError",
+        "A value that an engine passes over is taken for one that it has.",
+        "In check, call check_ranges for the numbers and check_choices for the words.",
+        _settings,
+        of_scenes=False,
+    ),
+    Clause(
+        "EC14",
+        "the settings told back are those asked for",
+        "A setting that did not arrive makes two results of one, or one of two.",
+        "Read Facts.settings from the engine itself; where it holds something else than was asked, "
+        "say so in Engine.holds.",
+        _told_back,
+    ),
+)

@@ -1,0 +1,203 @@
+"""What comes out of the steps: the driven crank, errors over the step, gravity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from models.array import Array
+from models.joints import bodies
+from models.laws import ConstantSpeed, Oscillating
+from models.poses import centre_of, mass_of
+from models.scene import Same
+from reports.compare.beside import Beside, truth_of
+from reports.compare.compare import places
+from reports.compare.errors import largest
+from reports.contract.clause import Clause
+from reports.contract.subject import NotTriedError, Subject
+from reports.judge.halving import PLACES
+from reports.judge.three_steps import convergence
+from reports.judge.too_good import too_good
+from sim.engine import Poses
+
+DRIVE_RAD = 1e-9
+"""A crank that is off by more is not prescribed."""
+STEPS = (180, 360, 720)
+SLACK = 0.5
+"""How far a slope over three steps may be from the order that it tends to."""
+SOLVED = 1e-9
+"""An error of place, as a pure number, that solving to rounding may leave."""
+TWICE, NONE = 2.0, 1e-9
+"""Errors of two runs that ought to err alike differ by less than this factor, or are none."""
+SPEEDS = {"fifty times as fast": 50.0, "a thousandth as fast": 1e-3, "backwards": -1.0}
+FALL_STEPS = 60
+LEAST_WORK = 1e-4
+"""Of m g times how far a body falls: a body that hangs in joints falls less than a free one."""
+
+
+def _crank(subject: Subject) -> Iterator[str]:
+    law = subject.scene.driver.law
+    if text := _drive_fault(subject, 3.0):
+        yield text
+    if isinstance(law, ConstantSpeed):
+        swinging = Oscillating(law.start_rad, 0.4, abs(law.speed_rad_s), 0.2)
+        try:
+            if text := _drive_fault(subject.driven_by(swinging), 2.0):
+                yield f"driven to and fro, {text}"
+        except NotTriedError:
+            return  # an engine need not have every law
+
+
+def _drive_fault(subject: Subject, turns: float) -> str:
+    done = subject.ran(360, turns)
+    if done.motion is None or done.status != "ok":
+        return f"the run ended {done.status}: {done.reason}"
+    scene = subject.scene
+    commanded = scene.driver.law.at(done.motion.time_s)[0]
+    off = float(np.abs(done.motion.links[scene.driver.link].theta - commanded).max())
+    return "" if off <= DRIVE_RAD else f"the crank is off by {off:.2g} rad over {turns:g} turns"
+
+
+def _shrinking(subject: Subject) -> Iterator[str]:
+    if subject.engine.placing(subject.settings()) == "solved":
+        raise NotTriedError("placing is solved, where errors need not shrink")
+    errors, unit = [], ""
+    for steps in STEPS:
+        done = subject.ran(steps, 1.0, every=steps // STEPS[0])
+        rows = places(Beside.of(truth_of(Same(subject.scene)), done))
+        worst = largest(row for row in rows if row.quantity in PLACES)
+        if worst is None or done.status != "ok":
+            yield f"with {steps} steps a turn the run ended {done.status}: {done.reason}"
+            return
+        errors.append(worst.pure)
+        unit = worst.unit
+    seen = convergence([subject.dt_s(steps) for steps in STEPS], errors, unit)
+    told = ", ".join(f"{error:.2g}" for error in errors)
+    order = subject.engine.order
+    if seen.trend == "grows":
+        yield f"errors of place grow as the step shrinks: {told} at {STEPS} steps a turn"
+    elif seen.trend == "shrinks" and seen.order < order - SLACK:
+        yield (
+            f"errors of place shrink as dt^{seen.order:.1f}, and order is {order}: {told} at "
+            f"{STEPS} steps a turn"
+        )
+
+
+def _placing(subject: Subject) -> Iterator[str]:
+    engine = subject.engine
+    placing = engine.placing(subject.settings())
+    for steps in (180, 720):
+        errors = subject.errors(subject.ran(steps, 1.0))
+        if errors is None:
+            yield f"with {steps} steps a turn nothing is logged"
+            return
+        if placing == "solved":
+            worst = largest(row for row in errors.rows if row.quantity in PLACES)
+            if worst and not worst.pure <= SOLVED:
+                yield f"placing is solved, and {worst.body} is off by {worst.pure:.2g}"
+        elif near := too_good(errors, placing, engine.order):
+            yield (
+                f"placing is integrated with order {engine.order}, and with {steps} steps a turn "
+                f"{near[0].quantity} of {near[0].body} is off by {near[0].pure:.2g} only"
+            )
+
+
+def _speed(subject: Subject) -> Iterator[str]:
+    law = subject.scene.driver.law
+    if timed := subject.engine.in_seconds(subject.settings()):
+        raise NotTriedError(f"in_seconds says that {', '.join(timed)} has a time of its own")
+    if not isinstance(law, ConstantSpeed) or any(subject.scene.gravity_m_s2):
+        raise NotTriedError("gravity, or the driver's law, has a time of its own")
+    plain = pure_errors(subject)
+    for words, factor in SPEEDS.items():
+        other = subject.driven_by(replace(law, speed_rad_s=factor * law.speed_rad_s))
+        yield from unlike(plain, pure_errors(other), words)
+
+
+def pure_errors(subject: Subject) -> Mapping[str, float]:
+    """The largest error of each quantity that is reported, over a turn and a half, after what may
+    be the start."""
+    done = subject.ran(400, 1.5)
+    errors = subject.errors(done)
+    if errors is None or done.status != "ok":
+        return {"run": math.inf}
+    rows = [row for row in errors.rows if row.kind == "total" and row.source == "reported"]
+    each = {row.quantity: largest(r for r in rows if r.quantity == row.quantity) for row in rows}
+    return {name: row.pure for name, row in each.items() if row is not None}
+
+
+def unlike(plain: Mapping[str, float], other: Mapping[str, float], words: str) -> Iterator[str]:
+    """What errs otherwise in a scene that is the same for a mechanism."""
+    for name in plain.keys() | other.keys():
+        one, two = plain.get(name, math.inf), other.get(name, math.inf)
+        if not (one <= TWICE * two + NONE and two <= TWICE * one + NONE):
+            yield f"{words}, {name} is off by {two:.2g}, and {one:.2g} as it is"
+
+
+def _gravity(subject: Subject) -> Iterator[str]:
+    scene = subject.scene
+    pull = 9.81
+    poses = []
+    for gravity in ((0.0, 0.0), (0.0, -pull)):
+        heavy = subject.in_scene(replace(scene, gravity_m_s2=gravity))
+        poses.append(heavy.opened(drive="free", start=subject.start).record(FALL_STEPS, 1).poses)
+    masses = {name: mass_of(scene, name)[0] for name in bodies(scene)}
+    heights = [sum(m * _height(subject, p, n) for n, m in masses.items()) for p in poses]
+    fall_s = FALL_STEPS * subject.dt_s()
+    whole = sum(masses.values()) * 0.5 * pull * fall_s**2
+    share = float(heights[0] - heights[1]) / whole
+    if not share > LEAST_WORK:
+        yield f"free, the centre of mass falls {share:.2g} of what a body without joints falls"
+
+
+def _height(subject: Subject, poses: Poses, name: str) -> float:
+    """Of a body's centre of mass at the last sample [m]."""
+    body, (x, y) = poses.bodies[name], centre_of(subject.scene, name)
+    theta: Array = body.theta
+    return float(body.origin[-1, 1] + math.sin(theta[-1]) * x + math.cos(theta[-1]) * y)
+
+
+CLAUSES = (
+    Clause(
+        "EC51",
+        "a prescribed crank is where the driver's law has it",
+        "What the crank is off by, all links are off by; a motor of limited gain is a servo.",
+        "Move the crank yourself: drive.angles, drive.chords and drive.pushes say where to and "
+        "how fast; or refuse the drive with EngineError.",
+        _crank,
+    ),
+    Clause(
+        "EC52",
+        "errors of place shrink with the step, at the order that is declared, down to a floor",
+        "verify takes an error for a fault of the step or of the model by this order.",
+        "Set Engine.order to what is measured; where order 1 is not meant, look for places that "
+        "are moved with the velocity of another instant.",
+        _shrinking,
+    ),
+    Clause(
+        "EC53",
+        "places come about as `placing` says",
+        "Places that are nearer to the reference than steps can bring them were taken from it.",
+        "Let Engine.placing give solved where joints are solved for in each step; raise "
+        "Engine.order where errors shrink faster than it says.",
+        _placing,
+    ),
+    Clause(
+        "EC54",
+        "errors depend on the steps in a turn, not on the speed or its sign",
+        "Advice for one speed is carried over to others.",
+        "Name what is a time of its own, such as a damping, in Engine.in_seconds.",
+        _speed,
+    ),
+    Clause(
+        "EC55",
+        "gravity pulls what is free",
+        "A mechanism that nothing drives, and that does not fall, is not the scene.",
+        "Set the engine's gravity to scene.gravity_m_s2, for every body; or refuse drive free with "
+        "EngineError.",
+        _gravity,
+    ),
+)

@@ -1,0 +1,146 @@
+"""Velocities and accelerations: of which instant they are, and that they are those of the places.
+
+They are held to the engine's own path, which may be off as a whole: its differences, and how these
+change in the reference, tell how many steps later or earlier a rate is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve
+from models.array import Array
+from reports.contract.clause import Clause
+from reports.contract.subject import Subject
+from sim.engine import Session
+from sim.measure import motion
+
+STEPS = 800
+"""Of one turn."""
+LATE = 0.25
+"""Steps that a rate may be from the instant that it is said to be of."""
+OFF = 0.05
+"""How far a rate may be from the path's own, over the largest of all."""
+STILL = 1e-3
+"""Below this, over the largest of all, a rate changes too little to tell when it is of."""
+
+
+@dataclass(frozen=True)
+class _Rate:
+    """A rate of a body (T, n) as it is reported, by its path's differences, and how that changes in
+    the reference; without the start, in which an engine may settle."""
+
+    body: str
+    reported: Array
+    own: Array
+    change: Array
+
+    def late_s(self) -> float:
+        """How much later than the path's own it is [s]."""
+        return float((self.reported - self.own).ravel() @ self.change.ravel()) / float(
+            (self.change**2).sum()
+        )
+
+
+def _velocities(subject: Subject) -> Iterator[str]:
+    session = subject.opened(steps=STEPS)
+    said, lag_s = session.facts().velocity_shift, session.facts().start.lag_s
+    rates = _of_log(subject, session, 1)
+    yield from _faults(rates, said, subject.dt_s(STEPS), "velocity", "velocity_shift")
+    if abs(lag_s / subject.dt_s(STEPS) - said) > 1e-6:
+        lag = lag_s / subject.dt_s(STEPS)
+        yield f"Poses.lag_s is {lag:.3g} steps, and Facts.velocity_shift {said:.3g}"
+
+
+def _accelerations(subject: Subject) -> Iterator[str]:
+    reports, log = subject.engine.reports_accelerations, subject.opened().record(20, 1)
+    for name, body in log.poses.bodies.items():
+        given = np.concatenate([body.alpha, body.origin_acceleration.ravel()])
+        if not (np.isfinite(given) if reports else np.isnan(given)).all():
+            wrong = "finite" if reports else "NaN"
+            yield f"reports_accelerations is {reports}, and those of {name} are not all {wrong}"
+            return
+    if not reports:
+        return
+    session = subject.opened(steps=STEPS)
+    said, rates = session.facts().acceleration_shift, _of_log(subject, session, 2)
+    yield from _faults(rates, said, subject.dt_s(STEPS), "acceleration", "acceleration_shift")
+
+
+def _of_log(subject: Subject, session: Session, order: int) -> list[_Rate]:
+    """The rates of links and points over a turn: velocities for 1, accelerations for 2."""
+    held = motion(subject.scene, session.record(STEPS, 1).poses)
+    truth = solve(subject.scene, held.time_s, bound=False)
+    dt_s, rates = subject.dt_s(STEPS), []
+    for name, link in held.links.items():
+        true = truth.links[name].alpha
+        reported = link.omega if order == 1 else link.alpha
+        rates.append(_rate(f"link {name}", link.theta, reported, true, dt_s, order))
+    for name, point in held.points.items():
+        true = truth.points[name].acceleration
+        reported = point.velocity if order == 1 else point.acceleration
+        rates.append(_rate(f"point {name}", point.position, reported, true, dt_s, order))
+    return rates
+
+
+def _rate(body: str, place: Array, reported: Array, true: Array, dt_s: float, order: int) -> _Rate:
+    own = (place[2:] - place[:-2]) / (2 * dt_s)
+    change = true[1:-1]
+    if order == 2:
+        own = (place[2:] - 2 * place[1:-1] + place[:-2]) / dt_s**2
+        change = (true[2:] - true[:-2]) / (2 * dt_s)
+    later = slice(len(own) // 8, None)
+    return _Rate(body, reported[1:-1][later], own[later], change[later])
+
+
+def _faults(rates: list[_Rate], said: float, dt_s: float, what: str, where: str) -> Iterator[str]:
+    """The body whose rate is farthest from the instant that it is said to be of, and the one that
+    is farthest from the path."""
+    for kind in ("link", "point"):
+        same = [rate for rate in rates if rate.body.startswith(kind)]
+        largest = max(float(np.abs(rate.own).max()) for rate in same)
+        change = max(float(np.sqrt((rate.change**2).mean())) for rate in same)
+        moving = [r for r in same if np.sqrt((r.change**2).mean()) > STILL * change]
+        if not moving or not change:
+            continue
+        late = {rate.body: rate.late_s() / dt_s for rate in moving}
+        worst = max(late, key=lambda body: abs(late[body] - said))
+        if not abs(late[worst] - said) <= LATE:
+            yield (
+                f"the {what} of {worst} is that of {late[worst]:+.2f} steps, "
+                f"and {where} says {said:+.2f}"
+            )
+            return
+        off = {
+            rate.body: float(np.abs(rate.reported - rate.own - said * dt_s * rate.change).max())
+            / largest
+            for rate in same
+        }
+        worst = max(off, key=lambda body: off[body])
+        if not off[worst] <= OFF:
+            yield f"the {what} of {worst} is not that of its places: off by {off[worst]:.2g}"
+            return
+
+
+CLAUSES = (
+    Clause(
+        "EC41",
+        "velocities belong to the instant that the facts say, and to the places",
+        "Half a step of an angle's acceleration is more than most errors of velocity.",
+        "Set Facts.velocity_shift (in steps) and Poses.lag_s (velocity_shift * dt_s): -0.5 where "
+        "velocities are stepped before places, 0.5 where after them, 0 where both are of one "
+        "instant.",
+        _velocities,
+    ),
+    Clause(
+        "EC42",
+        "accelerations are reported as declared, and belong to the instant that the facts say",
+        "What an engine has not is no zero, and what it had a step ago is not what it has.",
+        "Give NaN for all where there are none, with reports_accelerations=False; else set "
+        "Facts.acceleration_shift.",
+        _accelerations,
+    ),
+)

@@ -1,0 +1,89 @@
+"""How a session begins: with the scene that was asked for, at its state, at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from models.errors import EngineError
+from reports.contract.clause import Clause
+from reports.contract.subject import NotTriedError, Subject
+from sim.check import refuse_other_model
+from sim.measure import motion
+
+PLACE = 1e-12
+"""How far a point may be from where it is, over the longest link or coordinate."""
+LATER = 0.3
+"""Of a period."""
+
+
+def _the_scene(subject: Subject) -> Iterator[str]:
+    by_profile = {name: _other_scene(subject, name) for name in subject.engine.profiles}
+    for text in dict.fromkeys(filter(None, by_profile.values())):
+        profiles = [name for name, own in by_profile.items() if own == text]
+        yield text if len(profiles) == len(by_profile) else f"profile {profiles[0]}: {text}"
+
+
+def is_other(subject: Subject) -> bool:
+    """Whether a session is not the scene to begin with, of which one clause is enough."""
+    return any(_the_scene(subject))
+
+
+def _other_scene(subject: Subject, profile: str) -> str:
+    """What is not as it should be at the start."""
+    facts = subject.opened(profile).facts()
+    try:
+        refuse_other_model(subject.scene, subject.start, facts, subject.dt_s(), "prescribed")
+    except EngineError as error:
+        return str(error)
+    held = motion(subject.scene, facts.start).state(0)
+    for point, place in subject.start.position.items():
+        scale = max(subject.scene.longest_m, *map(abs, place))
+        off = float(np.hypot(*np.subtract(held.position[point], place)))
+        if not off <= PLACE * scale:
+            return f"point {point} is off by {off:.2g} m at the start"
+    return ""
+
+
+def _at_any_time(subject: Subject) -> Iterator[str]:
+    if is_other(subject):
+        raise NotTriedError("it does not open as the scene at time 0 (EC21)")
+    later = subject.at(LATER * subject.scene.driver.law.period_s)
+    session = subject.opened(start=later)
+    try:
+        refuse_other_model(subject.scene, later, session.facts(), subject.dt_s(), "prescribed")
+    except EngineError as error:
+        yield f"from {later.time_s:.3g} s on: {error}"
+    times = session.record(4, 2).poses.time_s
+    wanted = later.time_s + subject.dt_s() * np.array([0.0, 2.0, 4.0])
+    if not np.allclose(times, wanted, rtol=1e-12, atol=0.0):
+        yield f"from {later.time_s:.6g} s on the samples are at {times}, not {wanted} s"
+    elif (off := _crank_off(subject, session.read().bodies, times[-1])) > PLACE**0.5:
+        yield f"a start at {later.time_s:.3g} s: the crank is off by {off:.2g} rad 4 steps later"
+
+
+def _crank_off(subject: Subject, bodies: object, time_s: float) -> float:
+    crank = bodies[subject.scene.driver.link]  # type: ignore[index]  # poses by name
+    angle = subject.scene.driver.law.at(np.array([time_s]))[0][0]
+    return float(abs(np.remainder(crank.theta[0] - angle + np.pi, 2 * np.pi) - np.pi))
+
+
+CLAUSES = (
+    Clause(
+        "EC21",
+        "a session opens as the scene, at the state, with closed joints",
+        "Another mass, place or speed at the start is another mechanism, whatever comes after it.",
+        "Take masses from mass_of, centres from centre_of, places and velocities from "
+        "frames(scene, state, velocity_shift * dt_s), and read all of them back from the engine.",
+        _the_scene,
+    ),
+    Clause(
+        "EC22",
+        "a session may start at any time of the driver's law",
+        "A run that goes on from another, or from a later state, is driven by the time of its "
+        "state.",
+        "Count time from state.time_s, in Poses.time_s and in what drives the crank.",
+        _at_any_time,
+    ),
+)

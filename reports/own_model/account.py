@@ -1,0 +1,187 @@
+"""What a model is read as, and what its lines come to: all that is told of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from analytic.kinematics import repeats_after, solve
+from models.errors import CrankcheckError, ReachError
+from models.motion import Motion
+from models.scene import Scene
+from reports.judge.cell import Cell, unfinished
+from reports.judge.tolerance import check_names
+from reports.own_model.assembly import assembled, out_of_reach
+from reports.own_model.checked_line import CheckedLine, checked, without_run
+from reports.own_model.request import ModelRequest
+from reports.plan.singular import continued_note, refuse_singular
+from reports.plan.steps import counted
+from reports.workers.isolated import Isolated, Limits, Lost
+from sim.own_models import Disturbance, OwnModel, reader, reading_engine
+
+NO_MEMORY = "not allocate memory"
+"""What an engine says that may have no more memory."""
+POSES = 73
+"""Poses of a turn in which is looked for contacts and limits: 5 deg apart."""
+
+
+@dataclass(frozen=True)
+class Account:
+    """A model as it was read, from its ``files``: its scene, how far open its own pose is by joint
+    [m], what can disturb a comparison, the lines to run, and the recommended settings as a diff, or
+    in words."""
+
+    request: ModelRequest
+    scene: Scene
+    dt_s: float
+    steps: int
+    open_m: Mapping[str, float]
+    notes: Sequence[str]
+    disturbances: Sequence[Disturbance]
+    touching: bool
+    profiles: Sequence[str]
+    patch: str
+    files: Sequence[Path]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of an account: the model in one profile."""
+
+    account: Account
+    profile: str
+
+    @property
+    def cell(self) -> Cell:
+        account, request = self.account, self.account.request
+        return Cell(
+            scene=account.scene,
+            engine=reading_engine(),
+            profile=self.profile,
+            dt_s=account.dt_s,
+            steps=account.steps,
+            gated=self.profile == account.profiles[0],
+            tolerance=request.tolerance,
+            converge=request.converge and self.profile in told(account.profiles),
+        )
+
+
+def told(profiles: Sequence[str]) -> tuple[str, ...]:
+    """The three that are told with their finer steps: as written, contacts off, recommended."""
+    return (profiles[0], profiles[1], profiles[-1])
+
+
+def read(request: ModelRequest, limits: Limits) -> Account:
+    """Read a model in a process of its own: what is wrong with it may end that, or not come to an
+    end. Raises CrankcheckError for what can not be read, or held to a closed form."""
+    reader()  # says how to install it where it is missing
+    child: Isolated[Account] = Isolated(limits)
+    try:
+        account = child.call(read_here, request)
+    finally:
+        child.close()
+    return _unless_lost(account, request, limits)
+
+
+def run_lines(
+    account: Account, limits: Limits, done: Callable[[CheckedLine], None] = lambda _: None
+) -> list[CheckedLine]:
+    """Run all lines of an account, each in a process that is ended when it fails or hangs."""
+    child: Isolated[CheckedLine] = Isolated(limits)
+    lines = []
+    try:
+        for profile in account.profiles:
+            line = Line(account, profile)
+            result = child.call(checked_line, line)
+            if isinstance(result, Lost):
+                if isinstance(result.error, CrankcheckError):
+                    raise result.error
+                result = without_run(unfinished(line.cell, result.status, result.reason))
+            lines.append(result)
+            done(result)
+    finally:
+        child.close()
+    return lines
+
+
+def _unless_lost(account: Account | Lost, request: ModelRequest, limits: Limits) -> Account:
+    if not isinstance(account, Lost):
+        return account
+    if isinstance(account.error, CrankcheckError) and NO_MEMORY not in str(account.error):
+        raise account.error
+    how = "came to no end" if account.status == "timeout" else account.status
+    raise CrankcheckError(
+        f"{request.path}: reading it {how}: {account.reason}; it may take --limit-s "
+        f"{limits.time_s:g} s and --memory-gb {limits.memory_gb:g}"
+    )
+
+
+def read_here(request: ModelRequest) -> Account:
+    """As `read`, in this process."""
+    own = reader()(request.path, request.joint, request.key)
+    found = assembled(own, request)
+    scene = found.scene
+    check_names(scene)
+    dt_s, steps = _counted(scene, own, request)
+    turns = min(dt_s * steps / scene.driver.law.period_s, repeats_after(scene) / math.tau)
+    poses = max(POSES, math.ceil(POSES * turns))
+    times = np.linspace(0.0, turns * scene.driver.law.period_s, poses)
+    try:
+        motion = solve(scene, times, bound=False)
+        refuse_singular(scene, dt_s * steps)
+    except ReachError as error:
+        words = out_of_reach(scene, request, str(error))
+        raise CrankcheckError(f"{request.path}: {words}") from None
+    except CrankcheckError as error:
+        raise CrankcheckError(
+            f"{request.path}: {error}; --start and --turns set the range of joint {request.joint}"
+        ) from None
+    seen = own.tour(scene, [motion.state(index) for index in range(len(times))])
+    touching = bool(seen.touching)
+    met = [
+        Disturbance("contacts", f"{first} touches {second} in {share:.0%} of the poses")
+        for (first, second), share in seen.touching.items()
+    ]
+    met += [Disturbance("limits", text) for text in seen.passed]
+    return Account(
+        request=request,
+        scene=scene,
+        dt_s=dt_s,
+        steps=steps,
+        open_m=own.open_m(),
+        notes=[*found.notes, *_passed(motion, request)],
+        disturbances=[*met, *own.disturbances],
+        touching=touching,
+        profiles=list(own.engine(touching=touching).profiles),
+        patch=own.patch(dt_s, touching=touching),
+        files=own.files,
+    )
+
+
+def _counted(scene: Scene, own: OwnModel, request: ModelRequest) -> tuple[float, int]:
+    """Step [s] and number of steps. Raises CrankcheckError as `counted`."""
+    given_s = request.dt_s
+    if given_s is None and request.steps_per_turn is None:
+        if not 0.0 < own.dt_s < math.inf:
+            raise CrankcheckError(
+                f"{request.path}: its timestep is {own.dt_s:g} s; give it one above 0, or --dt"
+            )
+        given_s = own.dt_s
+    return counted(scene, given_s, request.steps_per_turn, request.turns)
+
+
+def _passed(motion: Motion, request: ModelRequest) -> list[str]:
+    """The change points that a run goes through."""
+    note = continued_note(motion)
+    return [f"joint {request.joint}: {note}"] if note else []
+
+
+def checked_line(line: Line) -> CheckedLine:
+    """Run and judge one line, in this process."""
+    account, request = line.account, line.account.request
+    own = reader()(request.path, request.joint, request.key)
+    return checked(line.cell, own.engine(touching=account.touching))

@@ -1,0 +1,160 @@
+"""Which assembly a model is drawn in: the scene that was read off it, with its branch and start."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.kinematics import reach, solve
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, ReachError, few
+from models.laws import ConstantSpeed
+from models.poses import Frame, frames
+from models.scene import Driver, Scene
+from reports.own_model.request import ModelRequest
+from sim.engine import BodyPose
+from sim.own_models import OwnModel
+
+MOST_CHOICES = 8
+"""Assemblies are tried one by one up to so many choices, two to the power of it; the dyads after
+these keep the first."""
+ALIKE = 0.1
+"""A pose that is nearer to the best assembly than to the next, by less than this share, fits
+both."""
+TURN = math.tau
+SHOWN = 6
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The scene as it is to be run, and how far the drawn pose is from it: the largest distance of
+    a body's frame over the longest link, or angle [rad]."""
+
+    scene: Scene
+    far: float
+    notes: tuple[str, ...]
+
+
+def assembled(own: OwnModel, request: ModelRequest) -> Assembled:
+    """The scene of a model, in the assembly that it is drawn in.
+
+    Raises
+    ------
+    CrankcheckError
+        No closed form; a pose that two assemblies fit as well, or a driver angle that none reaches,
+        with the range in the coordinate of the joint; a branch that chooses nothing.
+    """
+    if request.start_deg is not None and not math.isfinite(request.start_deg):
+        raise CrankcheckError(f"--start {request.start_deg:g}: give a number of degrees")
+    law = ConstantSpeed(own.coordinate_rad(), request.speed_rad_s)
+    bare = replace(own.scene, driver=Driver(own.scene.driver.link, law))
+    try:
+        structure = analyse(bare)
+    except CrankcheckError as error:
+        raise CrankcheckError(f"{request.path}: {error}{_why_not_one(own, request)}") from None
+    keys = [group.branch_key for group in structure.groups if group.assemblies == 2]
+    unknown = [key for key in request.branch if key not in keys]
+    if unknown:
+        have = f"it has {', '.join(keys)}" if keys else "it has none"
+        raise CrankcheckError(
+            f"--branch {unknown[0]}: it chooses between no two assemblies; {have}"
+        )
+    ranked = sorted(_fits(own, bare, keys, request.branch), key=lambda fit: fit[0])
+    if not ranked:
+        raise CrankcheckError(f"{request.path}: {_not_assembled(own, bare, request)}")
+    far, scene = ranked[0]
+    if len(ranked) > 1 and ranked[1][0] - far < ALIKE * ranked[1][0]:
+        choices = " or ".join(_words(fit[1].branch) for fit in ranked[:2])
+        raise CrankcheckError(
+            f"{request.path}: the pose fits two assemblies equally well, {choices}; choose with "
+            "--branch NAME=1 or NAME=-1, or start from another pose with --key"
+        )
+    notes = [f"assembly: {_words(scene.branch)}, nearest to the pose"] if keys else []
+    if request.start_deg is not None:
+        law = replace(law, start_rad=math.radians(request.start_deg))
+        scene = replace(scene, driver=Driver(scene.driver.link, law))
+    return Assembled(scene, far, tuple(notes))
+
+
+def _words(branch: Mapping[str, int]) -> str:
+    return ", ".join(f"{key} {sign:+d}" for key, sign in branch.items())
+
+
+def _why_not_one(own: OwnModel, request: ModelRequest) -> str:
+    """What makes the mobility of a model other than 1, by joint and weld."""
+    loose, welds = own.loose(), own.welds()
+    if loose:
+        return f" (with {request.joint} held these still move: {few(loose, SHOWN)})"
+    if welds:
+        return f" (a weld makes two bodies one: {few(welds, SHOWN)}; use <connect> for a pin)"
+    return ""
+
+
+def _fits(
+    own: OwnModel, bare: Scene, keys: list[str], chosen: Mapping[str, int]
+) -> Iterator[tuple[float, Scene]]:
+    """Every assembly, with how far the pose is from it."""
+    free = [key for key in keys if key not in chosen][:MOST_CHOICES]
+    drawn = own.drawn().bodies
+    for signs in itertools.product((1, -1), repeat=len(free)):
+        branch = dict.fromkeys(keys, 1) | dict(chosen) | dict(zip(free, signs, strict=True))
+        scene = replace(bare, branch=branch)
+        try:
+            state = solve(scene, np.zeros(1), bound=False).state()
+        except CrankcheckError:
+            continue
+        placed = frames(scene, state)
+        yield max(_off(placed[name], drawn[name], scene.longest_m) for name in drawn), scene
+
+
+def _off(frame: Frame, pose: BodyPose, longest_m: float) -> float:
+    """How far a body is drawn from where it should be."""
+    turn = abs(math.remainder(float(pose.theta[0]) - frame.theta, TURN))
+    return max(turn, math.dist(frame.origin, pose.origin[0]) / (longest_m or 1.0))
+
+
+def _not_assembled(own: OwnModel, bare: Scene, request: ModelRequest) -> str:
+    """Why no assembly holds in the pose."""
+    try:
+        solve(bare, np.zeros(1), bound=False)
+    except ReachError as error:
+        return out_of_reach(bare, request, str(error))
+    except CrankcheckError as error:
+        return f"{error}{_why_not_one(own, request)}"
+    return "it can not be assembled in this pose"
+
+
+def out_of_reach(scene: Scene, request: ModelRequest, otherwise: str) -> str:
+    """Where the driver would go, and where it can, in words; ``otherwise`` where it can go nowhere.
+
+    The angle of the driver is what its joint reads, so that all is in the joint's own coordinate.
+    """
+    start = float(scene.driver.law.at(np.zeros(1))[0][0])
+    way = math.copysign(TURN, request.speed_rad_s)
+    end = start + way * request.turns
+    spans = [_near(span, start) for span in reach(scene)]
+    if not spans:
+        return otherwise
+    reaches = " and ".join(
+        f"{math.degrees(low):.4g} to {math.degrees(high):.4g} deg" for low, high in spans
+    )
+    inside = next((span for span in spans if span[0] <= start <= span[1]), None)
+    cure = "start in between with --start, and take less of a turn with --turns"
+    if inside is not None:
+        left = (inside[1] if way > 0.0 else inside[0]) - start
+        most = math.floor(1e3 * abs(left) / TURN) / 1e3
+        cure = f"take less of a turn, --turns {most:g} at most, or another --start"
+    return (
+        f"joint {request.joint} would turn from {math.degrees(start):.4g} to "
+        f"{math.degrees(end):.4g} deg, and reaches {reaches}, where the loops close; {cure}"
+    )
+
+
+def _near(span: tuple[float, float], angle: float) -> tuple[float, float]:
+    """The range of whole turns on or back that is nearest to an angle."""
+    turns = round((angle - (span[0] + span[1]) / 2) / TURN) * TURN
+    return span[0] + turns, span[1] + turns

@@ -1,0 +1,184 @@
+"""A model of the user's own with the lines that were run of it, and what they come to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from models.scene import Scene
+from reports.judge.cell import Checked
+from reports.judge.halving import worst_place
+from reports.judge.rules import judge
+from reports.judge.rules.rule import Finding
+from reports.output.numbers import short
+from reports.own_model.account import Account, told
+from reports.own_model.checked_line import CheckedLine
+from reports.verify.advised import HELPS
+
+SAYS = 2.0
+"""A line that is told for one thing alone has something to say where it changes the error by so
+many times."""
+PARTS = (1, 2, 4)
+"""What the step is cut into."""
+
+
+@dataclass(frozen=True)
+class JointGap:
+    """A joint or loop: how far open the file's own pose has it, and, by line, its widest gap [m];
+    ``share`` is that of the model as written over its limit, NaN where it has none."""
+
+    name: str
+    open_m: float
+    gap_m: Mapping[str, float]
+    share: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgedModel:
+    """A model as it was read, and its lines: as written first, recommended last.
+
+    The verdict is that on the model as written.
+    """
+
+    account: Account
+    lines: Sequence[CheckedLine]
+
+    @property
+    def own(self) -> CheckedLine:
+        """The model as written."""
+        return self.lines[0]
+
+    @property
+    def verdict(self) -> str:
+        return self.own.verdict
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        return self.own.findings
+
+    @property
+    def failures(self) -> tuple[Finding, ...]:
+        return self.own.failures
+
+    @property
+    def scene(self) -> Scene:
+        return self.account.scene
+
+    @property
+    def patch(self) -> str:
+        """The recommended settings as a diff of the file; in words where that can not be."""
+        return self.account.patch
+
+    @property
+    def three(self) -> list[CheckedLine]:
+        """As written, contacts off, recommended."""
+        names = told(self.account.profiles)
+        return [one for one in self.lines if one.cell.profile in names]
+
+    @property
+    def others(self) -> list[CheckedLine]:
+        """The other lines, those that say something."""
+        names = told(self.account.profiles)
+        rest = [one for one in self.lines if one.cell.profile not in names]
+        return [one for one in rest if self._says(one)]
+
+    def _says(self, one: Checked) -> bool:
+        """Whether a line changes the error, or how the run ends."""
+        if one.status != self.own.status:
+            return True
+        factor = self.gains(one)[0]
+        return not (1 / SAYS <= factor <= SAYS) and math.isfinite(factor)
+
+    def without(self, kind: str) -> CheckedLine | None:
+        """The line without the disturbances of a kind, None where there is none."""
+        name = f"{kind}-off"
+        return next((one for one in self.lines if one.cell.profile == name), None)
+
+    def gains(self, one: Checked) -> tuple[float, float, float]:
+        """The error as written over that of a line, at the step, its half and its quarter; NaN
+        where one of them has none."""
+        own, other = errors_of(self.own), errors_of(one)
+        first, second, third = (_ratio(a, b) for a, b in zip(own, other, strict=True))
+        return first, second, third
+
+    def still(self) -> Finding | None:
+        """What the recommended settings fail by most, as a part of its limit; None where they fail
+        nothing."""
+        failures = self.lines[-1].failures
+        return max(failures, key=_part, default=None)
+
+    def joints(self) -> list[JointGap]:
+        """Every joint and loop, the widest as written first."""
+        limit = self.own.limits.get("gap")
+        most = limit.number * (self.scene.longest_m or 1.0) if limit else math.nan
+        by_line = {one.cell.profile: dict(_gaps(one)) for one in self.three}
+        own = by_line[self.own.cell.profile]
+        found = [
+            JointGap(
+                name,
+                open_m,
+                {line: gap[name] for line, gap in by_line.items() if name in gap},
+                own.get(name, math.nan) / most,
+            )
+            for name, open_m in self.account.open_m.items()
+        ]
+        return sorted(found, key=lambda joint: -own.get(joint.name, 0.0))
+
+
+def _gaps(one: Checked) -> Iterator[tuple[str, float]]:
+    """The widest gap of each joint of a line [m]."""
+    for row in one.errors.rows if one.errors else ():
+        if (row.quantity, row.source, row.kind) == ("gap", "reported", "total"):
+            yield row.body, row.maximum
+
+
+def errors_of(one: Checked) -> tuple[float, float, float]:
+    """The largest error of place of a line at the step, its half and its quarter, as pure numbers;
+    NaN where there is none, or where the run did not end well."""
+    worst = worst_place(one.errors) if one.errors else None
+    if worst is None or one.status != "ok":
+        return math.nan, math.nan, math.nan
+    if one.convergence is None:
+        return worst.pure, math.nan, math.nan
+    _, half, quarter = one.convergence.error
+    return worst.pure, half, quarter
+
+
+def _ratio(own: float, other: float) -> float:
+    """How many times one error is another, NaN where there is none of the two."""
+    if math.isnan(own) or math.isnan(other):
+        return math.nan
+    if own == other:
+        return 1.0
+    return own / other if other > 0.0 else math.inf
+
+
+def judged_model(account: Account, lines: Sequence[CheckedLine]) -> JudgedModel:
+    """A model with its lines, each with what the recommended settings would do for it."""
+    judged = JudgedModel(account=account, lines=lines)
+    return replace(judged, lines=[_advised(judged, one) for one in lines])
+
+
+def _advised(judged: JudgedModel, one: CheckedLine) -> CheckedLine:
+    """A line whose cures are the recommended settings, where these help."""
+    last = judged.lines[-1]
+    if one is last or one.verdict == "within" or last.status != "ok":
+        return one
+    error, best = errors_of(one)[0], errors_of(last)[0]
+    if error < HELPS * best:
+        return one
+    less = f"{short(error / best)} times less error" if best > 0.0 and error > 0.0 else "it runs"
+    changed = replace(one, remedy=f"The recommended settings: {less}, {_standing(last)}.")
+    return replace(changed, findings=judge(changed))
+
+
+def _standing(one: Checked) -> str:
+    return "within tolerance" if one.verdict == "within" else "out of tolerance still"
+
+
+def _part(finding: Finding) -> float:
+    """What a finding takes of its limit; without numbers it is how the run ended."""
+    if finding.number is None or not finding.limit:
+        return math.inf
+    return finding.number / finding.limit if math.isfinite(finding.number) else math.inf

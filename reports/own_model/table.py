@@ -1,0 +1,154 @@
+"""An own model on the terminal: what is wrong, what was read, its lines, what to change, the
+verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from models.errors import harmless
+from reports.judge.halving import worst_place
+from reports.judge.rules import RULES
+from reports.output.columns import hanging, plain_table
+from reports.output.numbers import short
+from reports.own_model.checked_line import CheckedLine
+from reports.own_model.judged import JudgedModel, errors_of
+from reports.own_model.sentences import (
+    factor_text,
+    footer,
+    gaps,
+    groups,
+    is_diff,
+    reading,
+    step_heads,
+    steps_text,
+    still_out,
+    verdict_text,
+)
+from reports.verify.table import MARKS
+
+WIDE, NARROW = 76, 52
+"""Columns of a terminal that show the gap and the body of the largest error; below which what
+halving the step does is left out, if all lines ran."""
+STYLES = {"within": "bold green", "out": "bold red", "unsupported": "bold red"}
+
+
+def show(console: Console, judged: JudgedModel, facts: Mapping[str, str]) -> None:
+    """Print it all."""
+    _failures(console, judged)
+    _told(console, str(judged.account.request.path), reading(judged.account))
+    console.print()
+    console.print(_table(judged, console.width), "")
+    if text := still_out(judged):
+        hanging(console, "recommended: ", harmless(text))
+    if text := gaps(judged):
+        hanging(console, "joints: ", harmless(text))
+    _disturbing(console, judged)
+    _recommended(console, judged)
+    console.print(Text(harmless(verdict_text(judged)), STYLES[judged.verdict]))
+    lines = [*footer(judged), ", ".join(f"{name} {value}" for name, value in facts.items())]
+    console.print(escape("\n".join(lines)), style="dim", highlight=False)
+
+
+def _failures(console: Console, judged: JudgedModel) -> None:
+    """What is out of tolerance as written, rule by rule."""
+    if not judged.failures:
+        return
+    mark = MARKS[judged.verdict].plain
+    console.print(Text(harmless(f"{mark}  {judged.account.request.path}, as written"), "bold red"))
+    for finding in judged.failures:
+        rule = RULES[finding.rule]
+        hanging(console, f"  {rule.id} ", harmless(f"{rule.title}: {finding.text}"))
+    if judged.own.remedy:
+        hanging(console, "  cure: ", judged.own.remedy, style="cyan")
+    console.print()
+
+
+def _told(console: Console, title: str, told: Mapping[str, str]) -> None:
+    """Sentences under a title, each beside its head."""
+    console.print(Text(harmless(title), "bold"))
+    for head, text in told.items():
+        hanging(console, f"  {head}: ", harmless(text))
+
+
+def _table(judged: JudgedModel, width: int) -> Table:
+    """The three lines, each with what it gains, and the others that say something."""
+    wide = width >= WIDE
+    table = plain_table(f"largest error of place {steps_text(judged)}")
+    table.add_column("")
+    table.add_column("line", no_wrap=True)
+    for head in step_heads(judged):
+        table.add_column(head, justify="right", no_wrap=True)
+    if wide:
+        table.add_column("gap\n/ L", justify="right", no_wrap=True)
+        table.add_column("largest of", overflow="fold", min_width=12)
+    if width >= NARROW or any(one.errors is None for one in judged.lines):
+        table.add_column("when dt\nis halved", overflow="fold", min_width=10)
+    for one in (*judged.three, *judged.others):
+        _add(table, judged, one, wide=wide)
+    return table
+
+
+def _add(table: Table, judged: JudgedModel, one: CheckedLine, *, wide: bool) -> None:
+    """A line, and below it what it gains."""
+    columns = len(table.columns) - 2
+    mark = MARKS[one.verdict]
+    shown = mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
+    steps = len(step_heads(judged))
+    table.add_row(shown, one.cell.profile, *_numbers(one, steps, wide=wide)[:columns])
+    if one is not judged.own and any(map(math.isfinite, judged.gains(one))):
+        factors = [
+            "" if math.isnan(factor) else factor_text(factor)
+            for factor in judged.gains(one)[:steps]
+        ]
+        table.add_row("", Text("  gain", "dim"), *(Text(each, "cyan") for each in factors))
+
+
+def _numbers(one: CheckedLine, steps: int, *, wide: bool) -> list[Text | str]:
+    """One row, from its numbers on."""
+    if one.errors is None:
+        reason = Text(harmless(f"{one.status}: {one.reason}"), "red")
+        return [*["-"] * steps, *(["-", reason] if wide else [reason])]
+    worst, gap = worst_place(one.errors), one.errors.worst("gap")
+    first = math.nan if worst is None else worst.pure
+    errors = [first, *errors_of(one)[1:]][:steps]
+    body = f"{worst.quantity} of {worst.body}" if worst else ""
+    return [
+        *("" if at and math.isnan(error) else short(error) for at, error in enumerate(errors)),
+        *([short(gap.pure) if gap else "-", body] if wide else []),
+        _ended(one),
+    ]
+
+
+def _ended(one: CheckedLine) -> str:
+    """What the error does when the step is halved, or how the run ended."""
+    if one.status != "ok":
+        early = one.status != "branch-changed"  # such a run goes on to its end
+        return one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
+    return one.convergence.words.replace(": ", "\n") if one.convergence else ""
+
+
+def _disturbing(console: Console, judged: JudgedModel) -> None:
+    """What can disturb the comparison, a paragraph for each kind."""
+    found = groups(judged)
+    if found:
+        console.print("can disturb it:")
+    for group in found:
+        texts = [group.short(), *([group.effect] if group.effect else [])]
+        hanging(console, f"  {group.kind}: ", harmless("; ".join(texts)))
+    console.print()
+
+
+def _recommended(console: Console, judged: JudgedModel) -> None:
+    """The recommended settings."""
+    patch = judged.patch
+    if not patch:
+        console.print("The file has the recommended settings already.\n", style="bold")
+        return
+    console.print(Text(f"Recommended{', as a diff of the file' * is_diff(patch)}:", "bold"))
+    console.print(harmless(patch), markup=False, highlight=False, soft_wrap=True)

@@ -1,0 +1,5 @@
+"""exudyn."""
+
+from sim.registry import Declaration
+
+DECLARATION = Declaration("exudyn", "'crankcheck[exudyn]'", ("snippet", "knobs", "remedies"), True)

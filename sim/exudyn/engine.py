@@ -1,0 +1,18 @@
+"""exudyn: bodies in absolute coordinates, all joints constraints, solved for by implicit steps."""
+
+from __future__ import annotations
+
+from sim.engine import Engine
+from sim.exudyn.library import VERSION
+from sim.exudyn.session import ExudynSession
+from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, placing
+
+ENGINE = Engine(
+    "exudyn",
+    {"as-shipped": AS_SHIPPED, "tuned": TUNED},
+    version=lambda: VERSION,
+    check=checked,
+    open=ExudynSession,
+    placing=placing,
+    in_seconds=lambda settings: (),
+)

@@ -1,0 +1,59 @@
+"""What is searched of exudyn's settings, and what a step costs with them."""
+
+from __future__ import annotations
+
+import math
+
+from models.joints import bodies, joints
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Settings
+from sim.exudyn.settings import BY_NEED, INTEGRATORS, JACOBIANS
+from sim.tuning import Knob, SearchSpace, Work
+
+STEP_US, ITERATION_US, MATRIX_US = 12.036, 0.074, 0.0188
+DIGITS_PER_ITERATION = 8.0
+"""How many digits of the residual an iteration takes."""
+
+
+def unknowns(scene: Scene) -> int:
+    """Coordinates and constraints, that of the crank included."""
+    ties = joints(scene)
+    pins = sum(len(pin.bodies) - 1 for pin in ties.pins)
+    return 3 * len(bodies(scene)) + 2 * (pins + len(ties.slides)) + 1
+
+
+def counts(scene: Scene, settings: Settings) -> tuple[float, float, float]:
+    """1; iterations in a step, each over all unknowns; and matrices, over all pairs of these."""
+    jacobian, size = str(settings["jacobian"]), unknowns(scene)
+    digits = -math.log10(max(float(settings["relative_tolerance"]), 1e-16))
+    iterations = 1.0 + digits / DIGITS_PER_ITERATION
+    # One matrix at least, as steps are asked for one by one (see `sim.exudyn.settings`).
+    matrices = iterations if jacobian == "each-iteration" else 1.0
+    return 1.0, iterations * size, matrices * size**2
+
+
+def work(scene: Scene, start: State) -> Work:
+    """A part for the step, one for each iteration and one for each matrix."""
+
+    def us(settings: Settings) -> float:
+        step, iterated, filled = counts(scene, settings)
+        return STEP_US * step + ITERATION_US * iterated + MATRIX_US * filled
+
+    return us
+
+
+KNOBS = SearchSpace(
+    knobs=(
+        Knob("integrator", INTEGRATORS),
+        Knob("spectral_radius", (0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)),
+        Knob("relative_tolerance", (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)),
+        Knob("jacobian", JACOBIANS),
+        Knob("linear_solver", ("EXUdense", BY_NEED)),
+    ),
+    starts=(
+        {"integrator": "TrapezoidalIndex2"},
+        {"relative_tolerance": 1e-4},
+    ),
+    work=work,
+)

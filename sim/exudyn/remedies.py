@@ -1,0 +1,24 @@
+"""What may help in exudyn at the same step."""
+
+from __future__ import annotations
+
+from models.motion import State
+from models.scene import Scene
+from sim.engine import Settings
+from sim.remedies import Remedies
+
+CHOICES: tuple[Settings, ...] = (
+    {"jacobian": "each-iteration"},
+    {"relative_tolerance": 1e-11, "absolute_tolerance": 1e-13},
+    {"integrator": "TrapezoidalIndex2"},
+)
+"""A matrix that is never old, for steps that do not converge; more exact places; and joints closed
+in their rates, whose accelerations need no settling at the start."""
+
+
+def exudyn_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
+    """Those that the settings have not, whatever the scene."""
+    return [choice for choice in CHOICES if any(settings[n] != v for n, v in choice.items())]
+
+
+REMEDIES: Remedies = exudyn_remedies

@@ -1,0 +1,131 @@
+"""exudyn settings as Python."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+
+from sim.engine import Drive, Settings
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE
+from sim.snippets import SnippetWriter, Stepping
+
+WIDTH = 96
+DRIVES: Mapping[Drive, str] = {
+    "prescribed": "Drive: an ObjectConnectorCoordinate between a NodePointGround and the angle of "
+    "the crank's node, velocityLevel = True, offset = speed; all start with the velocities that go "
+    "with it.",
+    "servo": "Drive: a damper between the ground and the angle of the crank's node, {gain:g} speed "
+    "(sum over all bodies of mass L^2 + inertia), L the longest link, and a torque of damper times "
+    "speed.",
+    "free": "",
+}
+"""How the crank of the measured runs was driven."""
+
+
+def exudyn_snippet(
+    settings: Settings, stepping: Stepping, drive: Drive, head: Sequence[str]
+) -> str:
+    """Lines that act on variables ``exu`` (the package) and ``simulationSettings``.
+
+    The integrator and its step, which can only be the whole system's, and how far Newton's method
+    goes, never less far than it would. What else differs from exudyn's defaults might spoil the
+    rest of a user's system and stands in a comment; see `sim.snippets.snippet`.
+    """
+    defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
+    complete = defaults | dict(settings)
+    lines = [
+        *_comment(head),
+        "stepping = simulationSettings.timeIntegration",
+        *_steps(stepping),
+        f"stepping.solverType = exu.DynamicSolverType.{complete['integrator']}",
+    ]
+    damped = complete["integrator"] == "GeneralizedAlpha"
+    if damped and complete["spectral_radius"] != defaults["spectral_radius"]:
+        radius = float(complete["spectral_radius"])
+        lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
+    lines += _newton(complete, defaults)
+    lines += _alone(complete, defaults)
+    driven = DRIVES[drive].format(gain=float(complete["servo_gain"]))
+    return "\n".join([*lines, *_comment([driven])]) + "\n"
+
+
+def _steps(stepping: Stepping) -> list[str]:
+    """The length of a step, and how it goes with the speed and with frames."""
+    per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
+    told = [
+        f"{per_turn} steps a turn of a crank at {speed}. At another speed: dt = 2 pi / ({per_turn} "
+        "speed)."
+    ]
+    if stepping.substeps:
+        frame, number = f"{stepping.dt_s * stepping.substeps:.6g} s", stepping.substeps
+        told = [
+            f"A frame of {frame} has numberOfSteps = {number}. A crank at {speed} has {per_turn} "
+            "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
+        ]
+    return [
+        *_comment(told),
+        f"dt = {stepping.dt_s!r}",
+        "stepping.numberOfSteps = round((stepping.endTime - stepping.startTime) / dt)",
+    ]
+
+
+def _newton(complete: Settings, defaults: Settings) -> list[str]:
+    """How far Newton's method goes, where that is farther than by default, and by which matrix."""
+    lines = []
+    for name, own in (
+        ("relative_tolerance", "relativeTolerance"),
+        ("absolute_tolerance", "absoluteTolerance"),
+    ):
+        if float(complete[name]) < float(defaults[name]):
+            least = f"min(stepping.newton.{own}, {float(complete[name])!r})"
+            lines.append(f"stepping.newton.{own} = {least}")
+    if complete["jacobian"] == "each-step":
+        lines.append("stepping.newton.modifiedNewtonJacUpdatePerStep = True  # faster here")
+    if complete["jacobian"] == "each-iteration":
+        lines.append("stepping.newton.useModifiedNewton = False")
+    return lines
+
+
+def _alone(complete: Settings, defaults: Settings) -> list[str]:
+    """Settings of the measured runs that are for a system of nothing but the mechanism."""
+    lines = []
+    for name, own in (
+        ("relative_tolerance", "relativeTolerance"),
+        ("absolute_tolerance", "absoluteTolerance"),
+    ):
+        if float(complete[name]) > float(defaults[name]):
+            lines.append(f"#   stepping.newton.{own} = {float(complete[name])!r}")
+    if complete["iterations"] != defaults["iterations"]:
+        lines.append(f"#   stepping.newton.maxIterations = {int(complete['iterations'])}")
+    if complete["adaptive_step"] == "disable":
+        lines.append("#   stepping.adaptiveStep = False")
+    linear = "simulationSettings.linearSolver"
+    by_need = complete["linear_solver"] == BY_NEED
+    if complete["linear_solver"] != defaults["linear_solver"] and not by_need:
+        solver = complete["linear_solver"]
+        lines.append(f"#   {linear}.solverType = exu.LinearSolverType.{solver}")
+    if complete["ignore_singular"] == "enable" and not by_need:
+        lines.append(f"#   {linear}.ignoreSingularJacobian = True")
+    title = "ONLY TO MEASURE AS WE DID, in a system with nothing else in it:"
+    redundant = (
+        f"Where joints are redundant: {linear}.solverType = exu.LinearSolverType.EigenDense and "
+        "ignoreSingularJacobian = True; elsewhere a singular matrix is a fault to be told of. "
+        f"Of more than {MOST_DENSE} coordinates and constraints EigenSparse is faster."
+    )
+    return [
+        *(_comment([title]) if lines else []),
+        *lines,
+        *(_comment([redundant]) if by_need else []),
+    ]
+
+
+def _comment(paragraphs: Sequence[str]) -> list[str]:
+    lines: list[str] = []
+    for paragraph in paragraphs:
+        lines += [
+            f"# {line}" for line in textwrap.wrap(paragraph, WIDTH - 2, break_on_hyphens=False)
+        ]
+    return lines
+
+
+SNIPPET = SnippetWriter("python", exudyn_snippet)

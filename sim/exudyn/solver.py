@@ -1,0 +1,96 @@
+"""A set of settings as exudyn's own structures, and read back from them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from models.array import Array
+from sim.engine import Settings, SettingValue
+from sim.exudyn.library import exu, quiet
+from sim.exudyn.settings import BY_NEED, MOST_DENSE
+
+
+def simulation(settings: Settings, dt_s: float) -> Any:
+    """exudyn's settings of a simulation that writes no files and prints nothing of its own.
+
+    Its sensors keep every step, and no step is longer than ``dt_s``.
+    """
+    asked = exu.SimulationSettings()
+    asked.solution.file.write = False
+    asked.solution.sensors.writePeriod = 0.0
+    stepping = asked.timeIntegration
+    stepping.verboseMode = 0
+    stepping.numberOfSteps, stepping.endTime = 1, dt_s
+    stepping.adaptiveStep = settings["adaptive_step"] == "enable"
+    trapezoidal = settings["integrator"] == "TrapezoidalIndex2"
+    stepping.generalizedAlpha.useNewmark = trapezoidal  # as exudyn's own SolveDynamic sets both
+    stepping.generalizedAlpha.useIndex2Constraints = trapezoidal
+    stepping.generalizedAlpha.spectralRadius = float(settings["spectral_radius"])
+    newton = stepping.newton
+    newton.relativeTolerance = float(settings["relative_tolerance"])
+    newton.absoluteTolerance = float(settings["absolute_tolerance"])
+    newton.maxIterations = int(settings["iterations"])
+    newton.useModifiedNewton = settings["jacobian"] != "each-iteration"
+    newton.modifiedNewtonJacUpdatePerStep = settings["jacobian"] == "each-step"
+    linear = str(settings["linear_solver"])
+    if linear != BY_NEED:
+        asked.linearSolver.solverType = getattr(exu.LinearSolverType, linear)
+    asked.linearSolver.ignoreSingularJacobian = settings["ignore_singular"] == "enable"
+    return asked
+
+
+def initialized(system: Any, asked: Any, settings: Settings) -> Any:
+    """A solver of the system, at its start, by the linear solver that it needs if that is left to
+    us."""
+    solver = exu.MainSolverImplicitSecondOrder()
+    if settings["linear_solver"] == BY_NEED:
+        with quiet([]):  # it warns of what is looked for here
+            solver.InitializeSolver(system, asked)
+        asked.linearSolver.solverType = _needed(solver, constraints(solver, system))
+    solver.InitializeSolver(system, asked)
+    return solver
+
+
+def _needed(solver: Any, held_by: Array) -> Any:
+    """The linear solver for a system of that size, and of constraints that are redundant or not."""
+    if solver.GetODE2size() + solver.GetAEsize() > MOST_DENSE:
+        return exu.LinearSolverType.EigenSparse
+    real = held_by[np.any(held_by != 0.0, axis=1)]  # a point on a line has an empty one
+    scale = np.abs(real).max(axis=1, keepdims=True)
+    if np.linalg.matrix_rank(real / scale, tol=1e-9) < len(real):
+        return exu.LinearSolverType.EigenDense
+    return exu.LinearSolverType.EXUdense
+
+
+def constraints(solver: Any, system: Any) -> Array:
+    """The derivatives of the constraints with respect to the coordinates, a row each, as exudyn has
+    them now; afterwards the solver has to be initialized again."""
+    count = solver.GetODE2size()
+    size = count + solver.GetAEsize()
+    solver.SetSystemJacobian(np.zeros((size, size)))
+    solver.ComputeJacobianAE(system)
+    return np.array(solver.GetSystemJacobian())[count:, :count]
+
+
+def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
+    """The settings by our names, as the solver and what it is given hold them.
+
+    What ``linear_solver`` came to is ``linear_solver_used``.
+    """
+    newton, linear = solver.newton, asked.linearSolver
+    trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
+    per_step = "each-step" if newton.modifiedNewtonJacUpdatePerStep else "as-needed"
+    return {
+        "timestep_s": float(solver.it.maxStepSize),
+        "integrator": "TrapezoidalIndex2" if trapezoidal else "GeneralizedAlpha",
+        "spectral_radius": float(asked.timeIntegration.generalizedAlpha.spectralRadius),
+        "relative_tolerance": float(newton.relativeTolerance),
+        "absolute_tolerance": float(newton.absoluteTolerance),
+        "iterations": int(newton.maxIterations),
+        "jacobian": per_step if newton.useModifiedNewton else "each-iteration",
+        "adaptive_step": "enable" if solver.it.adaptiveStep else "disable",
+        "linear_solver_used": str(linear.solverType.name),
+        "ignore_singular": "enable" if linear.ignoreSingularJacobian else "disable",
+    }

@@ -1,0 +1,142 @@
+"""The equality constraints of a compiled model: those that close loops, and those that do not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
+from models.array import Array
+from sim.mujoco.own_model.fault import ModelError
+from sim.mujoco.own_model.naming import REMARK
+
+SITE = mujoco.mjtObj.mjOBJ_SITE.value
+IDLE = int(mujoco.mjtDisableBit.mjDSBL_EQUALITY) | int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+"""Flags of a model that ties nothing."""
+KINDS = {
+    kind.value: kind.name.removeprefix("mjEQ_").lower()
+    for kind in mujoco.mjtEq.__members__.values()
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Closure:
+    """A `connect` or `weld` between two bodies.
+
+    ``anchors`` are the two copies of its point in space (3,) [m] as the model is drawn;
+    ``rotation`` (3, 3) is that of the second body when the weld holds, as the first stands. A weld
+    of no torque is a ``connect`` here: it leaves the angle free.
+    """
+
+    index: int
+    name: str
+    kind: Literal["connect", "weld"]
+    bodies: tuple[int, int]
+    anchors: tuple[Array, Array]
+    rotation: Array
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Any other equality, with the bodies that it ties; it couples coordinates, and closes no
+    loop."""
+
+    name: str
+    kind: str
+    bodies: tuple[int, ...]
+
+
+def name_of(model: Any, kind: Any, index: int) -> str:
+    """The name that the file gives; empty where it gives none."""
+    return mujoco.mj_id2name(model, kind.value, index) or ""
+
+
+def body_name(model: Any, body: int) -> str:
+    """The name of a body, or its number."""
+    return name_of(model, mujoco.mjtObj.mjOBJ_BODY, body) or f"body{body}"
+
+
+def equalities(model: Any, data: Any) -> tuple[list[Closure], list[Coupling]]:
+    """The active equalities of the model, at the pose of ``data``."""
+    closures, couplings = [], []
+    if int(model.opt.disableflags) & IDLE:
+        return [], []
+    for index in map(int, np.flatnonzero(model.eq_active0)):
+        kind = KINDS[int(model.eq_type[index])]
+        name = name_of(model, mujoco.mjtObj.mjOBJ_EQUALITY, index)
+        if kind in ("connect", "weld"):
+            closures.append(_closure(model, data, index, name, kind))
+        else:
+            couplings.append(
+                Coupling(name or f"equality {index}", kind, _coupled(model, index, kind))
+            )
+    return closures, couplings
+
+
+def _closure(model: Any, data: Any, index: int, name: str, kind: str) -> Closure:
+    ends = (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
+    own = model.eq_data[index]
+    if int(model.eq_objtype[index]) == SITE:
+        first, second = (int(model.site_bodyid[site]) for site in ends)
+        anchors = tuple(data.site_xpos[site].copy() for site in ends)
+        frames = [data.site_xmat[site].reshape(3, 3) for site in ends]
+        rotation = frames[0] @ frames[1].T @ _rotation(data, second)
+        sites = [name_of(model, mujoco.mjtObj.mjOBJ_SITE, site) for site in ends]
+        name = name or REMARK.join(filter(None, sites))
+    else:
+        first, second = ends
+        # In a weld the anchors stand the other way round.
+        locals_ = (own[0:3], own[3:6]) if kind == "connect" else (own[3:6], own[0:3])
+        anchors = tuple(
+            data.xpos[body] + _rotation(data, body) @ local
+            for body, local in zip(ends, locals_, strict=True)
+        )
+        relative = np.empty(9)
+        mujoco.mju_quat2Mat(relative, own[6:10] if kind == "weld" else np.array([1.0, 0, 0, 0]))
+        rotation = _rotation(data, first) @ relative.reshape(3, 3)
+    if not name:
+        name = " to ".join(body_name(model, body) for body in (first, second))
+    if not np.isfinite([*anchors, *rotation]).all():
+        raise ModelError(f"<{kind}> {name}: its anchor or pose is not finite")
+    turns = kind == "connect" or float(own[10]) == 0.0
+    return Closure(
+        index,
+        name,
+        "connect" if turns else "weld",
+        (first, second),
+        (anchors[0], anchors[1]),
+        rotation,
+    )
+
+
+def _rotation(data: Any, body: int) -> Array:
+    return np.array(data.xmat[body]).reshape(3, 3)
+
+
+def _coupled(model: Any, index: int, kind: str) -> tuple[int, ...]:
+    """The bodies whose coordinates an equality couples."""
+    ends = [int(model.eq_obj1id[index]), int(model.eq_obj2id[index])]
+    if kind == "joint":
+        return tuple(int(model.jnt_bodyid[joint]) for joint in ends if joint >= 0)
+    if kind == "tendon":
+        return tuple(
+            body for tendon in ends if tendon >= 0 for body in tendon_bodies(model, tendon)
+        )
+    return ()
+
+
+def tendon_bodies(model: Any, tendon: int) -> tuple[int, ...]:
+    """The bodies that a tendon goes over."""
+    first = int(model.tendon_adr[tendon])
+    bodies = []
+    for wrap in range(first, first + int(model.tendon_num[tendon])):
+        kind, index = int(model.wrap_type[wrap]), int(model.wrap_objid[wrap])
+        if kind == mujoco.mjtWrap.mjWRAP_JOINT.value:
+            bodies.append(int(model.jnt_bodyid[index]))
+        elif kind == mujoco.mjtWrap.mjWRAP_SITE.value:
+            bodies.append(int(model.site_bodyid[index]))
+        elif kind in (mujoco.mjtWrap.mjWRAP_SPHERE.value, mujoco.mjtWrap.mjWRAP_CYLINDER.value):
+            bodies.append(int(model.geom_bodyid[index]))
+    return tuple(bodies)

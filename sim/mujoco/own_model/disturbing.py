@@ -1,0 +1,214 @@
+"""What a model holds beside its linkage, and what of it can disturb a comparison."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
+from models.errors import few
+from sim.mujoco.own_model.closures import body_name, equalities, name_of, tendon_bodies
+from sim.mujoco.own_model.component import JOINTS, PARALLEL_DEG, WORLD, joint_name, rigid
+from sim.mujoco.own_model.linkage import Linkage
+from sim.mujoco.own_model.misses import misses
+from sim.mujoco.own_model.points import size
+from sim.own_models import Disturbance
+
+SHOWN = 6
+OPEN = 1e-4
+"""A loop that is open by more in a keyframe, over the size of the linkage, is not just rounded."""
+HEAVY = 1e3
+"""An armature over the largest inertia of a body: from there on soft loops give way first."""
+SOFT_S = 0.02
+"""MuJoCo's own time constant of a loop; one that is longer is softer."""
+
+
+def disturbances(linkage: Linkage) -> list[Disturbance]:
+    """All that there is, but for contacts, which depend on where the links are; a kind that can be
+    switched off is a key of `variants.OFF`."""
+    model = linkage.component.model
+    ids = {body.id for body in linkage.component.bodies}
+    return [
+        *_passive(model, ids, linkage.component.driven),
+        *_readings(model, ids),
+        *_keyframes(linkage),
+        *(Disturbance("missed", text) for text in misses(linkage)),
+        *_tendons(model, ids),
+        *_actuators(model, ids),
+        *_loads(linkage),
+        *_loops(linkage),
+        *_apart(linkage),
+        *_others(model, ids),
+    ]
+
+
+def _own(model: Any, ids: set[int]) -> Iterator[tuple[int, int, str]]:
+    """The joints of the linkage, their first freedom, and their name."""
+    for joint in range(model.njnt):
+        if rigid(model, int(model.jnt_bodyid[joint])) in ids:
+            yield joint, int(model.jnt_dofadr[joint]), joint_name(model, joint)
+
+
+def _passive(model: Any, ids: set[int], driven: int) -> Iterator[Disturbance]:
+    """Springs, damping, dry friction, heavy armatures and limits of joints; of the driven one too,
+    whose armature does not matter."""
+    for joint, dof, name in _own(model, ids):
+        hinge = JOINTS[int(model.jnt_type[joint])] == "hinge"
+        force, length = ("N m", "rad") if hinge else ("N", "m")
+        at = f"joint {name}"
+        for kind, value, what, unit in (
+            ("springs", model.jnt_stiffness[joint], "a spring", f"{force}/{length}"),
+            ("damping", model.dof_damping[dof], "damping", f"{force} s/{length}"),
+            ("friction", model.dof_frictionloss[dof], "dry friction", force),
+        ):
+            if np.any(value):
+                yield Disturbance(kind, f"{at}: {what} of {float(np.ravel(value)[0]):g} {unit}")
+        rotor = float(model.dof_armature[dof])
+        if rotor > HEAVY * float(model.body_inertia[1:].max()) and joint != driven:
+            inertia = f"{rotor:.3g} {'kg m^2' if hinge else 'kg'}"
+            yield Disturbance("armature", f"{at}: an armature of {inertia}, which is hard to move")
+        if model.jnt_limited[joint]:
+            span = " to ".join(_reading(float(end), hinge) for end in model.jnt_range[joint])
+            more = ", and it is the driven one" if joint == driven else ""
+            yield Disturbance("limits", f"{at}: limited to {span}{more}")
+            yield from _out_of_range(model, joint, at, hinge)
+
+
+def _out_of_range(model: Any, joint: int, at: str, hinge: bool) -> Iterator[Disturbance]:
+    """A joint that is drawn outside its limits: its ref is wrong, or they are."""
+    drawn = float(model.qpos0[model.jnt_qposadr[joint]])
+    low, high = (float(end) for end in model.jnt_range[joint])
+    if not low <= drawn <= high:
+        text = f"{at}: it reads {_reading(drawn, hinge)} as it is drawn, outside its limits"
+        yield Disturbance("reading", f"{text}; is its ref right?")
+
+
+def _readings(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+    """The joints that a ref makes read something as they are drawn."""
+    readings = [
+        f"{name} {_reading(ref, JOINTS[int(model.jnt_type[joint])] == 'hinge')}"
+        for joint, _, name in _own(model, ids)
+        if (ref := float(model.qpos0[model.jnt_qposadr[joint]]))
+    ]
+    if readings:
+        text = f"ref makes joints read as they are drawn: {few(readings, SHOWN)}"
+        yield Disturbance("reading", text)
+
+
+def _keyframes(linkage: Linkage) -> Iterator[Disturbance]:
+    """Keyframes in which the loops are open."""
+    component, extent = linkage.component, size(linkage)
+    model, data = component.model, mujoco.MjData(component.model)
+    own = {each.index for each in component.closures}
+    for key in range(model.nkey):
+        mujoco.mj_resetDataKeyframe(model, data, key)
+        mujoco.mj_kinematics(model, data)
+        gaps = [
+            (abs(component.plane.flat(each.anchors[1] - each.anchors[0])), each.name)
+            for each in equalities(model, data)[0]
+            if each.index in own
+        ]
+        gap, name = max(gaps)
+        if gap > OPEN * extent:
+            called = name_of(model, mujoco.mjtObj.mjOBJ_KEY, key) or str(key)
+            yield Disturbance("reading", f"keyframe {called}: loop {name} is open by {gap:.3g} m")
+
+
+def _reading(coordinate: float, hinge: bool) -> str:
+    """A joint coordinate in degrees or metres."""
+    return f"{math.degrees(coordinate):.4g} deg" if hinge else f"{coordinate:.4g} m"
+
+
+def _tendons(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+    for tendon in range(model.ntendon):
+        if any(rigid(model, body) in ids for body in tendon_bodies(model, tendon)):
+            name = name_of(model, mujoco.mjtObj.mjOBJ_TENDON, tendon) or str(tendon)
+            acts = [
+                kind
+                for kind, value in (
+                    ("springs", model.tendon_stiffness[tendon]),
+                    ("damping", model.tendon_damping[tendon]),
+                    ("friction", model.tendon_frictionloss[tendon]),
+                    ("limits", model.tendon_limited[tendon]),
+                )
+                if np.any(value)
+            ]
+            for kind in acts:
+                yield Disturbance(kind, f"tendon {name} goes over the linkage: {kind}")
+
+
+def _actuators(model: Any, ids: set[int]) -> Iterator[Disturbance]:
+    """Actuators of joints and tendons of the linkage; their control is 0, or that of the key."""
+    kinds = mujoco.mjtTrn
+    for index in range(model.nu):
+        kind, target = int(model.actuator_trntype[index]), int(model.actuator_trnid[index, 0])
+        if kind in (kinds.mjTRN_JOINT.value, kinds.mjTRN_JOINTINPARENT.value):
+            on, where = [int(model.jnt_bodyid[target])], f"joint {joint_name(model, target)}"
+        elif kind == kinds.mjTRN_TENDON.value:
+            on, where = list(tendon_bodies(model, target)), "a tendon"
+        elif kind in (kinds.mjTRN_SITE.value, kinds.mjTRN_SLIDERCRANK.value):
+            on, where = [int(model.site_bodyid[target])], "a site"
+        else:
+            on, where = list(range(model.nbody)), "bodies"
+        if any(rigid(model, body) in ids for body in on):
+            name = name_of(model, mujoco.mjtObj.mjOBJ_ACTUATOR, index) or str(index)
+            yield Disturbance("actuators", f"actuator {name} acts on {where}")
+
+
+def _loads(linkage: Linkage) -> Iterator[Disturbance]:
+    """Gravity, and a medium."""
+    opt, plane = linkage.component.model.opt, linkage.component.plane
+    gravity = np.array(opt.gravity, dtype=np.float64)
+    across = plane.height(gravity)
+    if abs(plane.flat(gravity)) > 0.0:
+        yield Disturbance(
+            "gravity", f"gravity of {abs(plane.flat(gravity)):.4g} m/s^2 in the plane"
+        )
+    if abs(across) > math.sin(math.radians(PARALLEL_DEG)) * (float(np.linalg.norm(gravity)) or 1.0):
+        yield Disturbance(
+            "gravity",
+            f"gravity of {abs(across):.4g} m/s^2 across the plane: the bearings carry it",
+        )
+    if float(opt.density) or float(opt.viscosity):
+        yield Disturbance(
+            "medium", f"a medium of density {opt.density:g}, viscosity {opt.viscosity:g}"
+        )
+
+
+def _loops(linkage: Linkage) -> Iterator[Disturbance]:
+    """Loops that are softer than MuJoCo's own."""
+    model = linkage.component.model
+    for each in linkage.component.closures:
+        time_s = float(model.eq_solref[each.index, 0])
+        if time_s > SOFT_S * (1 + 1e-9):
+            yield Disturbance(
+                "softness",
+                f"loop {each.name}: solref gives it a time constant of {time_s:g} s, "
+                f"{time_s / SOFT_S:.2g} times MuJoCo's own",
+            )
+
+
+def _apart(linkage: Linkage) -> Iterator[Disturbance]:
+    """Closures whose two points are at different heights over the plane: they never meet."""
+    component = linkage.component
+    for each in component.closures:
+        first, second = each.anchors
+        apart = abs(component.plane.height(second - first))
+        if apart > 1e-9 * max(1.0, float(np.abs(first).max())):
+            yield Disturbance(
+                "apart",
+                f"loop {each.name}: its two points are {apart:.4g} m apart across the plane",
+            )
+
+
+def _others(model: Any, ids: Iterable[int]) -> Iterator[Disturbance]:
+    """Bodies that move beside the linkage, and what is moved from outside."""
+    roots = {int(body) for body in model.body_weldid} - set(ids) - {WORLD}
+    moving = [body_name(model, body) for body in sorted(roots) if int(model.body_mocapid[body]) < 0]
+    if moving:
+        yield Disturbance("others", f"bodies beside the linkage: {few(moving, SHOWN)}")
+    if model.nmocap:
+        yield Disturbance("others", "mocap bodies count as ground")

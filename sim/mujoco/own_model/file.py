@@ -1,0 +1,112 @@
+"""Read and compile an MJCF file, and what it includes from its own folder."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+
+from models.errors import EngineError, cut
+from models.regular import UnreadableError, regular_bytes
+from sim.mujoco.own_model.closures import name_of
+from sim.mujoco.own_model.fault import ModelError
+from sim.mujoco.own_model.xml_tags import XmlError, tags
+from sim.mujoco.stepped import compiled_file
+
+MOST_BYTES = 20_000_000
+"""MJCF text is shorter; meshes stand in files of their own."""
+DEEPEST = 20
+"""Files that include one another."""
+MOST_FILES = 1000
+NUMBERS = (
+    *(("body", f"body_{name}") for name in ("pos", "quat", "ipos", "iquat", "mass", "inertia")),
+    *(("jnt", f"jnt_{name}") for name in ("pos", "axis", "range", "stiffness")),
+    *(("site", f"site_{name}") for name in ("pos", "quat")),
+)
+"""Numbers of a model that MuJoCo takes though they may not be finite."""
+KINDS = {
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "jnt": mujoco.mjtObj.mjOBJ_JOINT,
+    "site": mujoco.mjtObj.mjOBJ_SITE,
+}
+INCLUDING = ("include", "model")
+"""Elements that read another MJCF file."""
+CURE = "give an MJCF file, such as model.xml"
+
+
+def load(path: Path) -> Any:
+    """The compiled model.
+
+    Raises
+    ------
+    ModelError
+        No such file, no MJCF, an included file that is missing or outside the folder of the model,
+        or what MuJoCo refuses, in its own words.
+    """
+    files(path)
+    try:
+        model = compiled_file(path)
+    except EngineError as error:
+        raise ModelError(f"{path}: {cut(' '.join(str(error).split()), 600)}") from None
+    for kind, name in NUMBERS:
+        if len(wrong := np.argwhere(~np.isfinite(getattr(model, name)))):
+            at = _called(model, kind, int(wrong[0][0]))
+            raise ModelError(f"{path}: {name} of {at} is not finite")
+    return model
+
+
+def _called(model: Any, kind: str, index: int) -> str:
+    """What a file calls an element, or its number."""
+    return name_of(model, KINDS[kind], index) or f"{kind} {index}"
+
+
+def text_of(path: Path) -> bytes:
+    """What stands in the file. Raises ModelError for no plain file, and for a larger one."""
+    try:
+        return regular_bytes(path, MOST_BYTES)
+    except UnreadableError as error:
+        raise ModelError(f"{path}: {error}; {CURE}") from None
+
+
+def files(path: Path) -> list[Path]:
+    """The file and all that it includes. Raises ModelError for what can not be included."""
+    found = list(itertools.islice(_files(path, path.resolve().parent, 0), MOST_FILES + 1))
+    if len(found) > MOST_FILES:
+        raise ModelError(f"{path}: it includes more than {MOST_FILES} files")
+    return list(dict.fromkeys(found))
+
+
+def _files(path: Path, folder: Path, depth: int) -> Iterator[Path]:
+    """As `files`, some of them several times."""
+    try:
+        found = tags(text_of(path))
+    except XmlError as error:
+        raise ModelError(f"{path}: {error}; {CURE}") from None
+    root = found[0].path[0]
+    if depth == 0 and root != "mujoco":
+        raise ModelError(f"{path}: its root is <{cut(root)}>, that of MJCF is <mujoco>; {CURE}")
+    yield path
+    for tag in found:
+        kind, name = tag.path[-1], tag.attributes.get("file")
+        if kind not in INCLUDING or name is None:
+            continue
+        inner = _included(path, folder, name)
+        if not inner.resolve().is_relative_to(folder):
+            raise ModelError(
+                f"{path}: <{kind} file={name!r}> is outside the folder of the model; copy "
+                f"it into {folder}, or a folder below"
+            )
+        if depth == DEEPEST:
+            raise ModelError(f"{path}: more than {DEEPEST} files that include one another")
+        if kind == "include" or inner.suffix.lower() in ("", ".xml", ".mjcf"):
+            yield from _files(inner, folder, depth + 1)
+
+
+def _included(path: Path, folder: Path, name: str) -> Path:
+    """The file that MuJoCo takes: as seen from the main file, else from the including one."""
+    nearer = path.parent / name
+    return nearer if nearer.exists() and not (folder / name).exists() else folder / name

@@ -1,0 +1,190 @@
+"""A compiled model in MuJoCo, stepped and logged in C, and read back as poses of its bodies."""
+
+from __future__ import annotations
+
+import os
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from models.array import Array
+
+# Nothing is drawn here: without this, importing MuJoCo loads a window library by way of a process
+# of its own, which takes longer than the rest and outlives a worker that is told to end.
+os.environ.setdefault("MUJOCO_GL", "disable")
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+from mujoco import rollout
+
+from models.errors import EngineError
+from sim.engine import Log, Poses
+
+VERSION = str(mujoco.mj_versionString())
+"""Of the C library."""
+FULL = mujoco.mjtState.mjSTATE_FULLPHYSICS.value
+DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+
+class SteppedModel(ABC):
+    """A model and its data from ``start_s`` [s] on, in steps of ``dt_s`` [s]; its velocities belong
+    to ``shift`` steps after its positions."""
+
+    def __init__(self, start_s: float, dt_s: float, shift: float) -> None:
+        self._start_s, self._dt, self._shift = start_s, dt_s, shift
+        self._done = 0
+        self._warnings: list[str] = []
+        self._model: Any
+        self._data: Any
+
+    def _hold(self, model: Any, keyframe: int | None = None) -> None:
+        """Take a compiled model, at one of its keyframes."""
+        self._model, self._data = model, mujoco.MjData(model)
+        if keyframe is not None:
+            mujoco.mj_resetDataKeyframe(model, self._data, keyframe)
+
+    def _forward(self) -> None:
+        """Work out what follows from the state that was set."""
+        with self._quiet():
+            mujoco.mj_forward(self._model, self._data)
+
+    @abstractmethod
+    def _placed(self, states: Array, at: Array, push: Array) -> Poses:
+        """Poses of states with their joint accelerations (T, nv)."""
+
+    @abstractmethod
+    def _controls(self, steps: int) -> Array | None:
+        """The controls of each of the next steps, (steps, nu); None where there are none."""
+
+    @abstractmethod
+    def _control_at(self, at: Array) -> Array | None:
+        """The controls at the steps ``at``, (T, nu); None where there are none."""
+
+    @property
+    def _stays(self) -> bool:
+        """Whether `step` needs no control that differs from step to step."""
+        return True
+
+    def step(self, steps: int) -> None:
+        """Advance in C without logging."""
+        if not steps:
+            return
+        with self._quiet():
+            if self._stays:
+                mujoco.mj_step(self._model, self._data, steps)
+            else:
+                self._roll(steps)
+        self._done += steps
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance in C, log every step, keep every ``every``-th."""
+        first = self._full_state()[None]
+        began = time.perf_counter()
+        with self._quiet():
+            states = self._roll(steps)
+        wall = time.perf_counter() - began
+        kept = np.concatenate([first, states[every - 1 :: every]])
+        at = self._done + every * np.arange(len(kept), dtype=np.float64)
+        good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
+        diverged = any(self._data.warning[kind].number for kind in DIVERGED)
+        count = len(kept) if good.all() else int(np.argmin(good))
+        with self._quiet():
+            poses = self._poses(kept[:count], at[:count])
+        self._done += steps
+        return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
+
+    def read(self) -> Poses:
+        """The current state."""
+        with self._quiet():
+            return self._poses(self._full_state()[None], np.array([float(self._done)]))
+
+    def taken(self) -> tuple[str, ...]:
+        """The warnings so far, each once."""
+        return tuple(dict.fromkeys(self._warnings))
+
+    def _roll(self, steps: int) -> Array:
+        """States after each of the next steps, (steps, n)."""
+        warm = self._data.qacc_warmstart[None].copy()
+        control = self._controls(steps)
+        given: dict[str, Any] = {} if control is None else {"control": control[None]}
+        states, _ = rollout.rollout(
+            self._model,
+            self._data,
+            self._full_state()[None],
+            nstep=steps,
+            initial_warmstart=warm,
+            **given,
+        )
+        return np.asarray(states[0])
+
+    def _full_state(self) -> Array:
+        """Time, positions and velocities as MuJoCo stores them."""
+        state = np.empty(mujoco.mj_stateSize(self._model, FULL))
+        mujoco.mj_getState(self._model, self._data, state, FULL)
+        return state
+
+    def _poses(self, states: Array, at: Array) -> Poses:
+        """Poses of logged states; accelerations are those of `mj_forward` at each state."""
+        return self._placed(states, at, self._accelerations(states, at))
+
+    def _accelerations(self, states: Array, at: Array) -> Array:
+        """Joint accelerations of the states (T, nv), computed on a copy of the data."""
+        model, data = self._model, mujoco.MjData(self._model)
+        rows = np.empty((len(states), model.nv))
+        control = self._control_at(at)
+        for row, state in enumerate(states):
+            mujoco.mj_setState(model, data, state, FULL)
+            if control is not None:
+                data.ctrl[:] = control[row]
+            mujoco.mj_forward(model, data)
+            rows[row] = data.qacc
+            data.qacc_warmstart[:] = data.qacc
+        return rows
+
+    def _joints(self, states: Array) -> tuple[Array, Array]:
+        """Joint coordinates (T, nq) and their rates (T, nv) of states."""
+        nq, nv = self._model.nq, self._model.nv
+        return states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
+
+    @contextmanager
+    def _quiet(self) -> Iterator[None]:
+        """Collect MuJoCo's warnings."""
+        with heard(self._warnings.append):
+            yield
+
+
+@contextmanager
+def heard(hear: Callable[[str], object]) -> Iterator[None]:
+    """Hear MuJoCo's warnings, instead of having them printed and written to MUJOCO_LOG.TXT."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(hear)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def compiled(xml: str) -> Any:
+    """The compiled model. Raises EngineError with MuJoCo's own words."""
+    try:
+        return mujoco.MjModel.from_xml_string(xml)
+    except ValueError as error:
+        raise EngineError(f"MuJoCo refuses the model: {error}") from error
+
+
+def compiled_file(path: Path, text: bytes | None = None) -> Any:
+    """The compiled model of a file, or of another text in its place. Raises EngineError with
+    MuJoCo's own words."""
+    with heard(lambda _: None):
+        try:
+            others = {} if text is None else {str(path): text}
+            return mujoco.MjModel.from_xml_path(str(path), others)
+        except ValueError as error:
+            raise EngineError(f"MuJoCo refuses the model: {error}") from error

@@ -1,0 +1,181 @@
+"""An engine that is not ours, watched: what it gives back is looked at before it is used.
+
+A fault in it is told with the place and the command that says more, and not as one of crankcheck.
+Stepping is handed through, so that times are its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from models.errors import CrankcheckError, EngineError, shown
+from models.joints import bodies
+from models.motion import State
+from models.scene import Scene
+from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Session, Settings
+from sim.own_engine.spelling import failure
+
+PAIRS = ("origin", "velocity", "origin_acceleration")
+"""What of a `BodyPose` is (T, 2); all else is (T,)."""
+
+
+class BrokenContractError(EngineError):
+    """An engine that does not do what an engine has to; ``fault`` says what, without where."""
+
+    def __init__(self, name: str, spelling: str, fault: str) -> None:
+        self.fault = fault
+        self._parts = name, spelling, fault
+        super().__init__(
+            f"engine {name}: {fault}; `crankcheck engines check {spelling}` says what it has to do"
+        )
+
+    def __reduce__(self) -> tuple[type[BrokenContractError], tuple[str, str, str]]:
+        """Rebuilt from its parts, in another process too."""
+        return type(self), self._parts
+
+
+def watched(spelling: str, engine: Engine) -> Engine:
+    """The engine, with every answer looked at."""
+    place = _Place(engine.name, spelling)
+
+    def guarded(name: str, call: Callable[..., Any], kind: type) -> Callable[..., Any]:
+        def answer(*arguments: object) -> object:
+            with place.told(name):
+                given = call(*arguments)
+            return place.as_kind(name, given, kind)
+
+        return answer
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> WatchedSession:
+        with place.told("open"):
+            session = engine.open(scene, state, settings, dt_s, drive)
+        lacking = [
+            name for name in ("facts", "step", "record", "read") if not hasattr(session, name)
+        ]
+        if lacking:
+            raise place.fault("open", f"gave a session that lacks {', '.join(lacking)}")
+        return WatchedSession(session, place, bodies(scene))
+
+    return replace(
+        engine,
+        version=guarded("version", engine.version, str),
+        check=guarded("check", engine.check, object),
+        holds=guarded("holds", engine.holds, Mapping),
+        in_seconds=guarded("in_seconds", engine.in_seconds, tuple),
+        open=opened,
+    )
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Which engine it is that a fault is in."""
+
+    name: str
+    spelling: str
+
+    def fault(self, what: str, text: str) -> BrokenContractError:
+        """A fault in one of the things that are asked of an engine."""
+        return BrokenContractError(self.name, self.spelling, f"{what} {text}")
+
+    @contextmanager
+    def told(self, what: str) -> Iterator[None]:
+        """Whatever is raised, but for what is meant to be, is a fault of the engine."""
+        try:
+            yield
+        except (CrankcheckError, MemoryError):
+            raise
+        except (Exception, SystemExit) as error:
+            raise self.fault(what, f"raised {failure(error)}") from error
+
+    def as_kind(self, what: str, given: object, kind: type) -> object:
+        """What was given, where it is of the kind that is wanted."""
+        if isinstance(given, kind):
+            return given
+        raise self.fault(what, f"gave {shown(given)}, and has to give a {kind.__name__}")
+
+
+class WatchedSession:
+    """A session whose answers are looked at."""
+
+    def __init__(self, session: Session, place: _Place, names: tuple[str, ...]) -> None:
+        self._session, self._place, self._names = session, place, names
+        self.step = session.step
+
+    def facts(self) -> Facts:
+        """The model as the engine holds it now."""
+        with self._place.told("facts"):
+            facts = self._session.facts()
+        self._place.as_kind("facts", facts, Facts)
+        if text := next(_facts(facts), "") or self._wrong(facts.start, 1):
+            raise self._place.fault("facts", text)
+        return facts
+
+    def read(self) -> Poses:
+        """The current state."""
+        with self._place.told("read"):
+            poses = self._session.read()
+        if text := self._wrong(poses, 1):
+            raise self._place.fault("read", text)
+        return poses
+
+    def record(self, steps: int, every: int) -> Log:
+        """Advance and log. What is raised in it ends the run, as of any engine."""
+        try:
+            log = self._session.record(steps, every)
+        except SystemExit as error:
+            raise RuntimeError(f"it asked to end the process: {failure(error)}") from error
+        self._place.as_kind("record", log, Log)
+        count = None if log.diverged else steps // every + 1
+        if text := self._wrong(log.poses, count):
+            raise self._place.fault("record", text)
+        return log
+
+    def _wrong(self, poses: object, count: int | None) -> str:
+        """What is wrong with poses of so many samples; of any number, from 1 on, for None."""
+        if not isinstance(poses, Poses):
+            return f"gave {shown(poses)} for poses, and has to give Poses"
+        size = getattr(poses.time_s, "size", -1)
+        if size < 1 or (count is not None and size != count):
+            return f"gave {max(size, 0)} samples, and has to give {count or 'the first at least'}"
+        for name in self._names:
+            if name not in poses.bodies:
+                return f"gave no pose of {name}; it has {', '.join(poses.bodies)}"
+            if text := _pose(poses.bodies[name], size):
+                return f"gave for {name} {text}"
+        return ""
+
+
+def _pose(pose: object, size: int) -> str:
+    """What is wrong with the pose of a body; nothing of whether it is true."""
+    if not isinstance(pose, BodyPose):
+        return f"{shown(pose)}, and has to give a BodyPose"
+    for each in fields(BodyPose):
+        values, shape = getattr(pose, each.name), (size, 2) if each.name in PAIRS else (size,)
+        kind = values.dtype if isinstance(values, np.ndarray) else None
+        if kind is None or values.shape != shape or kind != np.float64:
+            what = f"{kind} of shape {values.shape}" if kind is not None else shown(values)
+            return f"{each.name} as {what}, and has to give float64 of shape {shape}"
+    return ""
+
+
+def _facts(facts: Facts) -> Iterator[str]:
+    """What is of a wrong kind in facts."""
+    for name in ("mass_kg", "inertia_kg_m2", "centre_m", "settings"):
+        if not isinstance(getattr(facts, name), Mapping):
+            yield f"gave {shown(getattr(facts, name))} for {name}, and has to give a dict"
+    for name in ("velocity_shift", "acceleration_shift"):
+        value = getattr(facts, name)
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            yield f"gave {shown(value)} for {name}, and has to give a number of steps"
+    for what, pairs in (("gravity_m_s2", [facts.gravity_m_s2]), ("centre_m", facts.centre_m)):
+        each = pairs.values() if isinstance(pairs, Mapping) else pairs
+        if not all(isinstance(pair, tuple) and len(pair) == 2 for pair in each):
+            yield f"gave {shown(list(each))} for {what}, and has to give pairs (x, y)"

@@ -1,0 +1,209 @@
+"""`crankcheck verify --mjcf`: what it takes, what it refuses, and what it writes."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pandas as pd
+import pytest
+from click.testing import Result
+from rich.console import Console
+from typer.testing import CliRunner
+
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.cli import app
+from reports.cli.checking import VerifyRequest
+from reports.cli.commands import verify_model
+from reports.cli.commands.verify_model import IN_FOLDER
+from reports.own_model.account import Account, Line, checked_line, read_here
+from reports.own_model.checked_line import CheckedLine
+from tests.worlds.own_models import SLIDER_CRANK
+
+DRIVEN = ["verify", "--mjcf", "engine.xml", "--drive", "motor", "--speed", "10", "--turns", "1"]
+INCLUDING = SLIDER_CRANK.replace('<option timestep="0.002"/>', '<include file="parts/option.xml"/>')
+
+
+def run_here(account: Account, _: object, done: Callable[[CheckedLine], None]) -> list[CheckedLine]:
+    """All lines in this process."""
+    lines = [checked_line(Line(account, name)) for name in account.profiles]
+    for line in lines:
+        done(line)
+    return lines
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with models; reading and running them takes no process here, as starting one takes
+    longer than all of it (tests/test_docs.py has it)."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(verify_model, "read", lambda request, _: read_here(request))
+    monkeypatch.setattr(verify_model, "run_lines", run_here)
+    Path("engine.xml").write_text(SLIDER_CRANK)
+    Path("parts").mkdir()
+    Path("parts/option.xml").write_text('<mujoco><option timestep="0.002"/></mujoco>')
+    Path("whole.xml").write_text(INCLUDING)
+    return tmp_path
+
+
+def ran(*arguments: str) -> Result:
+    return CliRunner().invoke(app, arguments, catch_exceptions=False)
+
+
+REFUSED: dict[str, tuple[Sequence[str], str]] = {
+    "no joint": (DRIVEN[:3], "--speed is missing: .* rad/s"),
+    "no drive": ([*DRIVEN[:3], *DRIVEN[5:]], "engine.xml: --drive is missing: .* drivable: motor"),
+    "another joint": ([*DRIVEN, "--drive", "moter"], "no joint of that name; did you mean motor"),
+    "no hinge": ([*DRIVEN, "--drive", "bore"], "--drive 'bore': it is a slide, .* drivable: motor"),
+    "no speed": ([*DRIVEN, "--speed", "0"], "--speed 0: give that of the crank in rad/s"),
+    "a speed that is none": ([*DRIVEN, "--speed", "nan"], "--speed nan: give"),
+    "a start that is none": ([*DRIVEN, "--start", "inf"], "--start inf: give an angle"),
+    "no assembly": ([*DRIVEN, "--branch", "piston=2"], "--branch 'piston=2': give NAME=1"),
+    "another key": ([*DRIVEN, "--key", "home"], "--key 'home': no keyframe of that name"),
+    "no step": ([*DRIVEN, "--dt", "0"], "--dt 0: give a number above 0"),
+    "two steps": ([*DRIVEN, "--dt", "1e-3", "--steps-per-turn", "720"], "both set the step"),
+    "a scene": ([*DRIVEN, "shaper"], "--mjcf and SCENE: .* leave out one"),
+    "an engine": ([*DRIVEN, "--engine", "mujoco"], "--mjcf and --engine"),
+    "a profile": ([*DRIVEN, "--profile", "tuned"], "--mjcf and --profile"),
+    "jobs": ([*DRIVEN, "--jobs", "2"], "--mjcf and --jobs"),
+    "a baseline": ([*DRIVEN, "--baseline", "."], "--mjcf and --baseline"),
+    "no time": ([*DRIVEN, "--limit-s", "0"], "--limit-s 0: give a number above 0"),
+    "no file": ([*DRIVEN, "--mjcf", "gone.xml"], "gone.xml: not there"),
+    "the model as output": ([*DRIVEN, "--json", "engine.xml"], "engine.xml, which is read"),
+    "a part of it as output": (
+        [*DRIVEN, "--mjcf", "whole.xml", "--csv", "parts/option.xml"],
+        "--csv parts/option.xml: that is .*parts/option.xml, which is read",
+    ),
+    "a scene of another kind": ([*DRIVEN, "--write-scene", "a.xml"], "'.xml'; use .toml"),
+    "two outputs in one": ([*DRIVEN, "--json", "a", "--csv", "a"], "both name a"),
+    "a file as folder": ([*DRIVEN, "-o", "engine.xml"], "engine.xml is a file; name a folder"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_can_not_be_asked_is_refused_before_anything_is_written(name: str) -> None:
+    arguments, message = REFUSED[name]
+    before = sorted(Path().rglob("*"))
+    result = ran(*arguments)
+    assert result.exit_code == 2, result.output
+    told = " ".join(result.stderr.split())
+    assert told.count("crankcheck: ") == 1
+    assert re.search(message, told), told
+    assert sorted(Path().rglob("*")) == before
+    assert Path("engine.xml").read_text() == SLIDER_CRANK
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["--speed 3", "--key home", "--start 3", "--branch C=1", "--write-scene a.toml", "--limit-s 3",
+     "--memory-gb 3"],
+)  # fmt: skip
+def test_what_is_asked_of_models_alone_is_refused_of_scenes(option: str) -> None:
+    result = ran("verify", "fourbar-lecture-1", *option.split())
+    assert result.exit_code == 2
+    assert f"{option.split()[0]}: it is of a model of your own; name that with --mjcf" in (
+        result.stderr
+    )
+    assert not Path("a.toml").exists()
+
+
+def test_a_joint_without_a_model_is_refused_with_the_cure() -> None:
+    result = ran("verify", "fourbar-lecture-1", "--drive", "motor")
+    assert result.exit_code == 2
+    assert "with --mjcf FILE" in result.stderr
+
+
+def test_every_output_is_written_and_holds_what_it_should() -> None:
+    result = ran(*DRIVEN, "-o", "out", "--write-scene", "mine.toml", "--json", "mine.json")
+    assert result.exit_code == 1, result.output
+    out = Path("out")
+    assert {path.name for path in out.iterdir()} == set(IN_FOLDER)
+    assert load_scene("mine.toml") == load_scene(out / "scene.toml")
+    told = json.loads(Path("mine.json").read_text())
+    assert told == json.loads((out / "verify.json").read_text())
+    assert [cell["profile"] for cell in told["cells"]] == [
+        "as-written", "contacts-off", "gravity-off", "recommended",
+    ]  # fmt: skip
+    assert told["verdict"] == "out"
+    assert told["cells"][-1]["gains"][0] > 100
+    assert told["joints"][0]["joint"] == "wrist"
+    assert set(told["joints"][0]["gap_m"]) == {"as-written", "contacts-off", "recommended"}
+    kinds = {group["kind"]: group for group in told["model"]["disturbances"]}
+    assert kinds["contacts"]["texts"] == ["piston touches rod in 100% of the poses"]
+    bodies = {row["body"] for row in told["cells"][0]["errors"]}
+    assert bodies >= {"crank", "rod", "piston", "wrist"}
+    cases = list(ElementTree.parse(out / "verify.junit.xml").iter("testcase"))
+    assert [case.find("failure") is not None for case in cases] == [True, False, False, False]
+    assert len(pd.read_csv(out / "verify.csv")) == 4
+    assert set(pd.read_parquet(out / "errors.parquet")["profile"]) == {
+        cell["profile"] for cell in told["cells"]
+    }
+    assert (out / "recommended.diff").read_text().startswith("--- engine.xml\n+++ engine.xml\n")
+    assert "<title>crankcheck: engine.xml</title>" in (out / "page.html").read_text()
+
+
+def test_a_second_run_replaces_the_first_and_leaves_the_rest() -> None:
+    out = Path("out")
+    out.mkdir()
+    (out / "mine.txt").write_text("kept")
+    for name in IN_FOLDER:
+        (out / name).write_text("of an earlier run")
+    assert ran(*DRIVEN, "--no-convergence", "-o", "out").exit_code == 1
+    assert {path.name for path in out.iterdir()} == {*IN_FOLDER, "mine.txt"}
+    assert not any((out / name).read_bytes() == b"of an earlier run" for name in IN_FOLDER)
+
+
+def test_two_such_folders_can_be_compared() -> None:
+    ran(*DRIVEN, "--no-convergence", "-o", "old")
+    Path("engine.xml").write_text(SLIDER_CRANK.replace("<option", '<option solver="PGS"'))
+    ran(*DRIVEN, "--no-convergence", "-o", "new")
+    result = ran("diff", "old", "new")
+    assert result.exit_code in (0, 1), result.output
+    assert "0 new, 0 missing" in result.stdout
+
+
+def test_steps_in_a_turn_and_a_step_of_its_own_are_taken() -> None:
+    for option, dt_s in (("--steps-per-turn", 0.000872664625997), ("--dt", 0.001)):
+        given = "720" if option == "--steps-per-turn" else "0.001"
+        result = ran(*DRIVEN, "--no-convergence", option, given, "--json", "a.json")
+        assert result.exit_code == 1, result.output
+        cell = json.loads(Path("a.json").read_text())["cells"][0]
+        assert cell["dt_s"] == pytest.approx(dt_s, rel=1e-12)
+
+
+def test_a_full_disk_costs_the_file_and_not_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, _: object) -> None:
+        raise CrankcheckError(f"{path}: can not be written: no space left")
+
+    monkeypatch.setattr(verify_model, "write", full)
+    result = ran(*DRIVEN, "--no-convergence", "--json", "a.json")
+    assert result.exit_code == 2
+    assert "OUT OF TOLERANCE as written" in result.stdout
+    assert "a.json: can not be written" in result.stderr
+
+
+def test_the_help_has_a_part_for_models() -> None:
+    text = " ".join(ran("verify", "-h").stdout.split())
+    own = text[text.index("A model of your own") :]
+    assert text.index("--tol") < text.index("A model of your own")
+    for option in ("--mjcf", "--speed", "--key", "--start", "--branch", "--write-scene"):
+        assert option in own
+
+
+def test_all_that_is_asked_reaches_the_request() -> None:
+    request = VerifyRequest(
+        mjcf=Path("engine.xml"), drive="motor", speed_rad_s=-3.0, start_deg=20.0, turns=0.5,
+        branch=["piston=+1"], dt_s=1e-3, tolerance=["angle=1e-2"], converge=False,
+        write_scene=Path("a.toml"),
+    )  # fmt: skip
+    nowhere = Console(quiet=True)
+    verify_model.verify_model(request, nowhere, nowhere)
+    scene = load_scene("a.toml")
+    assert scene.driver.law.speed_rad_s == -3.0
+    assert scene.branch == {"piston": 1}
+    one = verify_model._asked(request)
+    assert (one.turns, one.dt_s, one.tolerance, one.converge) == (0.5, 1e-3, {"angle": 1e-2}, False)

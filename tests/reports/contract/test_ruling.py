@@ -1,0 +1,69 @@
+"""The clauses on an engine that ends its process, hangs or raises; and what is printed of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from reports.contract.ruling import SCENES, Ruling, put_to_all
+from reports.contract.table import show
+from reports.workers.isolated import Limits
+from sim.registry import engine
+from tests.worlds.own_engines import fresh, with_faults
+
+
+def test_an_engine_that_crashes_hangs_or_raises_costs_its_clauses_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In processes of their own: 3 s, two of them for the one that hangs."""
+    faults = {
+        "law, last = self.scene": "FAULTS[steps](steps)\n        law, last = self.scene",
+        "import time\n": "import os\nimport time\nfrom collections import defaultdict\n",
+        '\nVERSION, SHIFT = "1.0", -0.5\n': (
+            '\nVERSION, SHIFT = "1.0", -0.5\n'
+            "FAULTS = defaultdict(lambda: lambda n: None)\n"
+            "FAULTS[8] = lambda n: os.abort()\nFAULTS[60] = lambda n: time.sleep(60)\n"
+        ),
+        "        return self._poses([self._row()])": "        raise KeyError('no reading')",
+    }
+    (tmp_path / "faulty_penalty.py").write_text(with_faults(faults))
+    with fresh(tmp_path, monkeypatch):
+        assert engine("faulty_penalty:ENGINE").name == "penalty"
+        hung, ended, raised, sound = put_to_all(
+            "penalty", ["EC31", "EC32", "EC34", "EC11"], 2, Limits(2.0, 4.0)
+        )
+    assert hung.breaches == ("no end within 2 s",)
+    assert ended.breaches == ("the engine ended its process (signal SIGABRT)",)
+    assert raised.breaches[0].startswith("read raised KeyError: 'no reading' (faulty_penalty.py, ")
+    assert sound.answer == "held"
+
+
+def told(*rulings: Ruling) -> str:
+    console = Console(width=100, record=True, force_terminal=False)
+    with console.capture() as heard:
+        show(console, "mine 1.0", rulings, SCENES)
+    return "\n".join(line.rstrip() for line in heard.get().splitlines())
+
+
+def test_what_is_broken_is_told_with_its_reason_and_its_cure() -> None:
+    breaches = tuple(f"{name}: it is off" for name in SCENES)
+    text = told(Ruling("EC11", SCENES[:1]), Ruling("EC41", breaches=breaches))
+    assert "ok  EC11  profiles as-shipped" in text
+    assert "OUT EC41  velocities belong" in text
+    assert "          sixbar-watt: it is off\n" in text
+    assert "          and 2 more\n          why: Half a step" in text
+    assert "          cure: Set Facts.velocity_shift" in text
+    assert "BREAKS THE CONTRACT: mine 1.0, 1 clause of 2: EC41" in text
+
+
+def test_what_was_refused_is_told_once() -> None:
+    untried = tuple(f"{name}: it has no sliders" for name in SCENES[2:])
+    text = told(*(Ruling(name, SCENES[:2], untried=untried) for name in ("EC21", "EC31")))
+    assert "HOLDS THE CONTRACT: mine 1.0, 2 of 2 clauses" in text
+    assert "Tried on fourbar-lecture-1, sixbar-watt." in text
+    assert text.count("Refused: shaper: it has no sliders") == 1
+    nothing = told(Ruling("EC21", untried=("shaper: it has no joints",)))
+    assert "-   EC21" in nothing
+    assert "NOTHING COULD BE TRIED: mine 1.0 refuses every scene" in nothing

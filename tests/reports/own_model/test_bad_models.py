@@ -1,0 +1,291 @@
+"""Models that can not be read or held to a closed form: one message, with place, fault and cure."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.mjcf import build
+from reports.own_model.account import Account, Line, checked_line, read, read_here, run_lines
+from reports.own_model.request import ModelRequest
+from reports.workers.isolated import Limits
+from tests.worlds.own_four_bar import CLOSED, HEALTHY, ROCKER_JOINT, planted
+
+PLATES = """<mujoco>
+  <option gravity="0 0 0"/>
+  <default><geom type="capsule" size="0.01" contype="0" conaffinity="0"/></default>
+  <worldbody>
+    <body name="crank">
+      <joint name="A"/>
+      <geom fromto="0 0 0 0 0.1 0"/>
+      <body name="bar" pos="0 0.1 0"><joint name="B"/><geom fromto="0 0 0 0.4 0 0"/></body>
+    </body>
+    <body name="rocker" pos="0.4 0 0"><joint name="D"/><geom fromto="0 0 0 0 0.1 0"/></body>
+    <!-- more -->
+  </worldbody>
+  <equality>
+    <connect name="C" body1="bar" body2="rocker" anchor="0.4 0 0"/>
+    <!-- ties -->
+  </equality>
+</mujoco>
+"""
+"""A parallelogram."""
+THIRD = (
+    '<body name="third" pos="0.2 {off} 0"><joint name="F"/><geom fromto="0 0 0 0 0.1 0"/></body>'
+)
+TIED = '<connect name="G" body1="bar" body2="third" anchor="0.2 0 0"/>'
+FIVE = PLATES.replace(
+    '<body name="rocker" pos="0.4 0 0"><joint name="D"/><geom fromto="0 0 0 0 0.1 0"/></body>',
+    '<body name="other" pos="0.6 0 0"><joint name="E"/><geom fromto="0 0 0 0 0.1 0"/>'
+    '<body name="rocker" pos="0 0.1 0"><joint name="D"/><geom fromto="0 0 0 -0.2 0.1 0"/></body>'
+    "</body>",
+).replace('anchor="0.4 0 0"', 'anchor="0.4 0.1 0"')
+TRIAD = """<mujoco>
+  <default><geom type="capsule" size="0.01" contype="0" conaffinity="0"/></default>
+  <worldbody>
+    <body name="crank"><joint name="A"/><geom fromto="0 0 0 0 0.05 0"/>
+      <body name="rod" pos="0 0.05 0"><joint name="B"/><geom fromto="0 0 0 0.2 0.05 0"/>
+        <body name="plate" pos="0.2 0.05 0"><joint name="P"/><geom fromto="0 0 0 0.1 0 0"/></body>
+      </body>
+    </body>
+    <body name="right" pos="0.35 -0.1 0"><joint name="Q"/><geom fromto="0 0 0 -0.05 0.2 0"/></body>
+    <body name="up" pos="0.2 0.4 0"><joint name="R"/><geom fromto="0 0 0 0.05 -0.22 0"/></body>
+  </worldbody>
+  <equality>
+    <connect body1="plate" body2="right" anchor="0.1 0 0"/>
+    <connect body1="plate" body2="up" anchor="0.05 0.08 0"/>
+  </equality>
+</mujoco>
+"""
+
+
+def read_text(folder: Path, text: str | bytes, **more: object) -> Account:
+    path = folder / "model.xml"
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    asked = {"joint": "A", "speed_rad_s": 10.0, **more}
+    return read_here(ModelRequest(path, **asked))  # type: ignore[arg-type]
+
+
+DEEP = "<mujoco><worldbody>" + "<body>" * 5000 + "</body>" * 5000 + "</worldbody></mujoco>"
+BOMB = '<!DOCTYPE m [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;">]><mujoco model="&b;"/>'
+REFUSED: dict[str, tuple[str | bytes, str]] = {
+    "empty": ("", "no XML: no element found"),
+    "urdf": ('<robot name="x"/>', "its root is <robot>, that of MJCF is <mujoco>"),
+    "deep": (DEEP, "more than 300 elements within each other"),
+    "bomb": (BOMB, "it declares entities"),
+    "controls": (HEALTHY.replace("rocker", "ro&#27;ck"), "no XML: reference to invalid character"),
+    "no mesh": (
+        planted("<worldbody>", '<asset><mesh file="no.stl"/></asset><worldbody>'),
+        "MuJoCo refuses the model: Error: Error opening file 'no.stl'",
+    ),
+    "nan": (planted('pos="0 0 0.1"', 'pos="0 0 nan"'), "body_pos of coupler is not finite"),
+    "infinite": (planted(ROCKER_JOINT, '<joint name="D" stiffness="inf"/>'), "jnt_stiffness of D"),
+    "nan in an anchor": (
+        planted('anchor="0.23373437 0', 'anchor="nan 0'),
+        "<connect> C: its anchor or pose is not finite",
+    ),
+    "no mass": (planted('"rocker-bar"', '"rocker-bar" mass="0"'), "mass and inertia of moving"),
+    "outside": (
+        planted("<worldbody>", '<include file="../x.xml"/><worldbody>'),
+        "<include file='../x.xml'> is outside the folder of the model; copy it into",
+    ),
+    "itself": (
+        planted("<worldbody>", '<include file="model.xml"/><worldbody>'),
+        "more than 20 files that include one another",
+    ),
+    "not there": (planted("<worldbody>", '<include file="x.xml"/><worldbody>'), "x.xml: not there"),
+    "no loop": (planted(CLOSED, ""), "no loop: the model has no <equality>"),
+    "loop that is off": (
+        planted('<connect name="C"', '<connect active="false" name="C"'),
+        "no loop: no equality is active",
+    ),
+    "loops switched off": (
+        planted('tolerance="1e-16"/>', 'tolerance="1e-16"><flag equality="disable"/></option>'),
+        'no loop: <flag equality="disable"/>',
+    ),
+    "loop elsewhere": (
+        planted(
+            "</worldbody>", '<body name="far"><freejoint/><geom size="1" type="sphere"/></body>'
+            "</worldbody>", CLOSED, '<connect body1="far" anchor="0 0 0"/>',
+        ),
+        "no equality ties a body that moves with the driven joint",
+    ),
+    "ball": (planted(ROCKER_JOINT, '<joint name="D" type="ball"/>'), "a ball joint leaves"),
+    "free": (planted(ROCKER_JOINT, '<freejoint name="D"/>'), "joint D of body rocker: a free"),
+    "slide across": (
+        planted(ROCKER_JOINT, '<joint name="D" type="slide" axis="0 1 0"/>'),
+        "it slides 90 deg off the plane",
+    ),
+    "two hinges": (
+        planted(ROCKER_JOINT, ROCKER_JOINT + '<joint name="D2" pos="0 0 0.05"/>'),
+        "body rocker: its joints are hinge hinge",
+    ),
+    "held": (
+        planted("</equality>", '<weld body1="crank"/></equality>'),
+        "joint A can not turn: a weld ties its body to the ground",
+    ),
+    "tilting weld": (
+        planted("</equality>", '<weld body1="coupler" body2="rocker" '
+                'relpose="0 0 0 0.9 0.1 0 0"/></equality>'),
+        "deg out of the plane",
+    ),
+    "tendon": (
+        planted("<equality>", '<tendon><fixed name="t"><joint joint="D" coef="1"/></fixed></tendon>'
+                '<equality><tendon tendon1="t"/>'),
+        "a <tendon> equality couples coordinates",
+    ),
+    "no step": (planted('timestep="0.001"', 'timestep="0"'), "its timestep is 0 s; give it one"),
+    "two cranks": (FIVE, "(with A held these still move: B, E, D)"),
+    "no closed form": (TRIAD, "form an Assur group of 4 links"),
+    "a third link that does not fit": (
+        PLATES.replace("<!-- more -->", THIRD.format(off=0.001)).replace("<!-- ties -->", TIED),
+        "redundant link third fits in place only",
+    ),
+    "held twice": (
+        planted(
+            "</equality>", '<connect body1="coupler" body2="rocker" anchor="0.1 0 0"/></equality>'
+        ),
+        "= -1; one driver needs mobility 1",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_it_is_refused_in_one_message(name: str, tmp_path: Path) -> None:
+    text, words = REFUSED[name]
+    with pytest.raises(CrankcheckError) as refused:
+        read_text(tmp_path, text)
+    assert words in str(refused.value)
+    assert ".xml" in str(refused.value)
+    assert [each.name for each in tmp_path.iterdir()] == ["model.xml"]
+
+
+def test_what_is_no_plain_file_is_not_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with (tmp_path / "large.xml").open("wb") as file:
+        file.truncate(100_000_000)
+    compiled = tmp_path / "model.mjb"
+    mujoco.mj_saveModel(mujoco.MjModel.from_xml_string(HEALTHY), str(compiled), None)
+    for name, words in {
+        "": "a folder",
+        "nothing.xml": "not there",
+        "pipe": "a pipe",
+        "large.xml": "100000000 bytes; at most 20000000",
+        "model.mjb": "no XML: not well-formed",
+    }.items():
+        with pytest.raises(CrankcheckError, match="give an MJCF file") as refused:
+            read_here(ModelRequest(tmp_path / name, "A", 10.0))
+        assert words in str(refused.value)
+
+
+def test_a_link_to_a_file_elsewhere_is_not_included(tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "x.xml").write_text("<mujoco/>", encoding="utf-8")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "x.xml").symlink_to(tmp_path / "other" / "x.xml")
+    with pytest.raises(CrankcheckError, match="outside the folder of the model"):
+        read_text(tmp_path / "mine", planted("<worldbody>", '<include file="x.xml"/><worldbody>'))
+
+
+ASKED = {
+    "no such joint": ({"joint": "crnk"}, "no joint of that name"),
+    "not against the ground": ({"joint": "B"}, "it turns against body crank; drivable: A, D"),
+    "no such keyframe": ({"key": "home"}, "--key 'home': no keyframe of that name"),
+    "no such choice": ({"branch": {"X": 1}}, "--branch X: it chooses between no two assemblies"),
+    "no number": ({"start_deg": float("nan")}, "--start nan"),
+    "too coarse": ({"dt_s": 0.5}, "a turn needs at least 8"),
+    "too short": ({"turns": 0.1}, "take 0.127 turns or more"),
+}
+
+
+@pytest.mark.parametrize("case", ASKED)
+def test_what_is_asked_for_is_checked(case: str, tmp_path: Path) -> None:
+    more, words = ASKED[case]
+    with pytest.raises(CrankcheckError) as refused:
+        read_text(tmp_path, HEALTHY, **more)
+    assert words.split(";")[0] in str(refused.value)
+
+
+NAMES = {
+    "markup": ('name="B"', 'name="[red]B[/]"'),
+    "none": (' name="B"', "", ' name="D"', "", ' name="C"', ""),
+    "of other things": ('name="B"', 'name="crank"', 'name="D"', 'name="ground"'),
+    "alike": ('name="B"', 'name="p 1"', 'name="D"', 'name="p_1"', 'name="C"', 'name="p-1"'),
+    "long": ('name="B"', f'name="{"b" * 5000}"'),
+    "letters": ('name="B"', 'name="\u202eB\u00df"'),
+}
+
+
+@pytest.mark.parametrize("case", NAMES)
+def test_any_names_make_a_scene(case: str, tmp_path: Path) -> None:
+    scene = read_text(tmp_path, planted(*NAMES[case])).scene
+    assert len({point for link in scene.links.values() for point in link.points}) == 4
+    assert all(len(name) <= 40 and name.isascii() for name in scene.pins)
+
+
+def test_a_parallelogram_passes_its_change_points_with_a_note(tmp_path: Path) -> None:
+    account = read_text(tmp_path, PLATES, converge=False)
+    assert "continued smoothly through the change points of C" in account.notes[-1]
+    assert checked_line(Line(account, "recommended")).verdict == "within"
+
+
+def test_redundant_links_are_no_fault(tmp_path: Path) -> None:
+    text = PLATES.replace("<!-- more -->", THIRD.format(off=0)).replace("<!-- ties -->", TIED)
+    account = read_text(tmp_path, text, converge=False)
+    assert checked_line(Line(account, "recommended")).verdict == "within"
+
+
+def test_both_assemblies_of_a_flat_pose_may_be_chosen(tmp_path: Path) -> None:
+    flat = PLATES.replace("0 0 0 0 0.1 0", "0 0 0 0.1 0 0").replace(
+        'pos="0 0.1 0"', 'pos="0.1 0 0"'
+    )
+    with pytest.raises(CrankcheckError, match="two assemblies equally well, C"):
+        read_text(tmp_path, flat)
+    assert read_text(tmp_path, flat, branch={"C": -1}).scene.branch == {"C": -1}
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize("key", ["home", "turned"])
+def test_it_runs_backwards_and_from_whole_turns(speed: float, key: str, tmp_path: Path) -> None:
+    keys = '</equality><keyframe><key name="home"/><key name="turned" qpos="6.5 0 6.3"/></keyframe>'
+    account = read_text(
+        tmp_path, planted("</equality>", keys), key=key, speed_rad_s=speed, converge=False
+    )
+    assert checked_line(Line(account, "as-written")).verdict == "within"
+
+
+def test_a_reading_that_takes_too_long_or_too_much_ends(tmp_path: Path) -> None:
+    """In a process of its own (0.4 s each): what it is limited to is said."""
+    beside = '<body pos="0 0 9"><freejoint/><geom size="0.1" type="sphere"/></body>'
+    path = tmp_path / "model.xml"
+    path.write_text(planted("</worldbody>", beside * 1000 + "</worldbody>"), encoding="utf-8")
+    with pytest.raises(CrankcheckError, match=r"reading it crashed: .* and --memory-gb 1"):
+        read(ModelRequest(path, "A", 10.0), Limits(30.0, 1.0))
+    with pytest.raises(CrankcheckError, match=r"reading it came to no end: .* --limit-s 0\.01 s"):
+        read(ModelRequest(path, "A", 10.0), Limits(0.01, 8.0))
+
+
+def test_a_line_that_hangs_is_a_row_with_its_reason(tmp_path: Path) -> None:
+    """In a process of its own (0.4 s), which is ended."""
+    account = replace(read_text(tmp_path, HEALTHY, converge=False), profiles=["as-written"])
+    (line,) = run_lines(account, Limits(0.01, 2.0))
+    assert (line.verdict, line.status, line.reason) == ("out", "timeout", "no end within 0.01 s")
+
+
+def test_a_run_to_a_singular_position_is_refused_with_the_range_that_can_be_set(
+    tmp_path: Path,
+) -> None:
+    scene = load_scene("tangent")
+    state = solve(scene, np.zeros(1), bound=False).state()
+    with pytest.raises(CrankcheckError) as refused:
+        read_text(tmp_path, build(scene, state), joint="lever.A")
+    assert "at driver 90 deg the dyad of" in str(refused.value)
+    assert "--start and --turns set the range of joint lever.A" in str(refused.value)

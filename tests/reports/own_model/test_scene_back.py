@@ -1,0 +1,291 @@
+"""A scene, drawn as a model in any way, is read off it again: lengths, masses, and the verdict."""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+import math
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.files import load_scene, shipped
+from models.laws import ConstantSpeed
+from models.mjcf import build
+from models.mjcf_options import driver_joint
+from models.motion import State
+from models.scene import Driver, Scene
+from reports.judge.cell import Cell, check
+from reports.own_model.account import Line, checked_line, read_here
+from reports.own_model.assembly import assembled
+from reports.own_model.request import ModelRequest
+from sim.mujoco.own_model.fault import ModelError
+from sim.mujoco.own_model.patch import advice, patched
+from sim.mujoco.own_model.read import read_model
+from tests.worlds.drawn_model import HALF, UPRIGHT, Drawing, drawn, rotation
+from tests.worlds.own_four_bar import planted
+from tests.worlds.strategies import Designed, mechanisms
+
+SAME = 1e-12
+TILTED = rotation(random.Random(5))
+DRAWINGS = {
+    "as laid out": Drawing(),
+    "in the x-z plane": Drawing(turn=UPRIGHT),
+    "tilted": Drawing(turn=TILTED),
+    "far away": Drawing(turn=TILTED, shift_m=(300.0, -200.0, 100.0)),
+    "frames, order and axes anyhow": Drawing(turn=TILTED, askew=3),
+    "closed between bodies": Drawing(sites=False),
+    "closed between bodies, anyhow": Drawing(turn=UPRIGHT, askew=2, sites=False),
+    "all bodies free": Drawing(free=True),
+    "all bodies free, anyhow": Drawing(turn=TILTED, askew=4, free=True),
+    "another zero, in degrees": Drawing(degrees=True, reads=1.0),
+    "another zero, anyhow": Drawing(reads=0.3, askew=7),
+}
+"""All that may be done to every four-bar and slider-crank."""
+
+
+def start_of(scene: Scene) -> State:
+    return solve(scene, np.zeros(1), bound=False).state()
+
+
+def request(path: Path, scene: Scene, **more: object) -> ModelRequest:
+    return ModelRequest(path, driver_joint(scene), **{"speed_rad_s": 10.0, **more})  # type: ignore[arg-type]
+
+
+def read_back(path: Path, scene: Scene) -> Scene:
+    """What a model is read as, held in closed-form poses to what MuJoCo makes of it."""
+    asked = request(path, scene)
+    own = read_model(path, asked.joint)
+    back = assembled(own, asked).scene
+    motion = solve(back, np.linspace(0.0, 0.01, 3), bound=False)
+    own.tour(back, [motion.state(index) for index in range(3)])
+    return back
+
+
+def assert_same(back: Scene, scene: Scene, size_m: float = 0.0) -> None:
+    """Distances between the points of each link that the model has, masses, inertias; and the
+    motion that follows from them."""
+    scale = max(scene.longest_m, size_m)
+    for name, link in scene.links.items():
+        own = back.links.get(name) or back.links.get(name + HALF)
+        if own is None:  # a sliding link with one point, where its mass is: a block
+            slider = next(each for key, each in back.sliders.items() if key.endswith(name))
+            assert slider.mass_kg == pytest.approx(link.mass_kg, rel=SAME)
+            continue
+        assert own.mass_kg == pytest.approx(link.mass_kg, rel=SAME)
+        assert own.inertia_kg_m2 == pytest.approx(link.inertia_kg_m2, rel=SAME)
+        for a, b in itertools.combinations(own.points.keys() & link.points.keys(), 2):
+            found = math.dist(own.points[a], own.points[b])
+            assert abs(found - math.dist(link.points[a], link.points[b])) < SAME * scale
+    assert_moves_alike(back, scene)
+
+
+def assert_moves_alike(back: Scene, scene: Scene) -> None:
+    """The rates of all links and sliders at the start, at one driver speed, are the same."""
+    speed = back.driver.law.peak_speed_rad_s
+    theta = float(scene.driver.law.at(np.zeros(1))[0][0])
+    driver = Driver(scene.driver.link, ConstantSpeed(theta, speed))
+    wanted = solve(replace(scene, driver=driver), np.zeros(1), bound=False)
+    found = solve(back, np.zeros(1), bound=False)
+    for name in scene.links:
+        key = name if name in found.links else name + HALF
+        if key in found.links:
+            omega = float(wanted.links[name].omega[0])
+            assert float(found.links[key].omega[0]) == pytest.approx(omega, abs=1e-8 * speed)
+    for name, slider in scene.sliders.items():
+        keys = {name, f"block-{name}", slider.link or name} & back.sliders.keys()
+        for key in keys:
+            if back.sliders[key].on != slider.on:  # the other way about
+                continue
+            moved = float(wanted.sliders[name].speed[0])
+            assert float(found.sliders[key].speed[0]) == pytest.approx(moved, abs=1e-7 * speed)
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_each_shipped_scene_is_read_back_off_its_export(name: str, tmp_path: Path) -> None:
+    scene = load_scene(name)
+    path = tmp_path / "model.xml"
+    path.write_text(build(scene, start_of(scene)), encoding="utf-8")
+    assert_same(read_back(path, scene), scene)
+
+
+RANGES = {"fourbar-double-rocker": {"turns": 0.09, "start_deg": 25.0}, "tangent": {"turns": 0.2}}
+"""Where the driver of an export swings, a part of a turn is run at constant speed."""
+
+
+@pytest.mark.parametrize("name", sorted(shipped()))
+def test_its_verdict_is_that_of_the_scene(name: str, tmp_path: Path) -> None:
+    scene = load_scene(name)
+    path = tmp_path / "model.xml"
+    path.write_text(build(scene, start_of(scene)), encoding="utf-8")
+    speed = scene.driver.law.peak_speed_rad_s
+    asked = request(path, scene, converge=False, speed_rad_s=speed, **RANGES.get(name, {}))
+    account = read_here(asked)
+    own = checked_line(Line(account, "as-written"))
+    cell = Cell(scene, "mujoco", "tuned", account.dt_s, account.steps, converge=False)
+    assert own.verdict == check(cell).verdict == "within"
+    assert own.errors is not None
+
+
+@pytest.mark.parametrize("drawing", list(DRAWINGS.values()), ids=list(DRAWINGS))
+@pytest.mark.parametrize("name", ["fourbar-lecture-2", "slider-crank-offset"])
+def test_it_is_read_back_however_it_is_drawn(name: str, drawing: Drawing, tmp_path: Path) -> None:
+    scene = load_scene(name)
+    path = tmp_path / "model.xml"
+    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
+    assert_same(read_back(path, scene), scene, size_m=float(np.linalg.norm(drawing.shift_m)))
+
+
+@pytest.mark.parametrize(
+    ("name", "cut"),
+    [("fourbar-lecture-1", "coupler"), ("fourbar-lecture-1", "crank"), ("sixbar-watt", "rod")],
+)
+@pytest.mark.parametrize("askew", [None, 3])
+def test_a_link_that_a_weld_cuts_is_one(
+    name: str, cut: str, askew: int | None, tmp_path: Path
+) -> None:
+    scene = load_scene(name)
+    path = tmp_path / "model.xml"
+    drawing = Drawing(cut=cut, sites=False, askew=askew)
+    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
+    assert_same(read_back(path, scene), scene)
+
+
+APART = """<mujoco>
+  <compiler angle="radian"/>
+  <option gravity="0 0 0"/>
+  <default>
+    <geom type="capsule" size="0.004" contype="0" conaffinity="0"/>
+    <joint axis="0 0 1"/>
+  </default>
+  <worldbody>
+    <body name="near" pos="0.5 0.7 0" euler="0 0 0.4">
+      <joint type="slide" axis="1 0 0"/>
+      <joint type="slide" axis="0 1 0"/>
+      <joint/>
+      {near}
+      <site name="near.C"/>
+    </body>
+    <body name="crank">
+      <joint name="A"/>
+      <geom fromto="0 0 0 0.1 0 0"/>
+      <body name="rod" pos="0.1 0 0">
+        <joint name="B"/>
+        <geom fromto="0 0 0 0.3 0 0"/>
+        <site name="rod.C" pos="0.3 0 0"/>
+      </body>
+    </body>
+    <body name="far" pos="0.4 0 0" euler="0 0 {turned}">
+      <joint name="S" type="slide" axis="{axis} 0"/>
+      {far}
+    </body>
+  </worldbody>
+  <equality>
+    <connect site1="rod.C" site2="near.C"/>
+    {weld}
+  </equality>
+</mujoco>
+"""
+"""A slider-crank whose sliding link is two bodies, drawn apart, with the slide on the second one;
+what the weld asks for is that ``far`` is 0.1 m ahead of ``near``, turned by 0.2 rad."""
+
+
+@pytest.mark.parametrize("block", [False, True])
+@pytest.mark.parametrize("turned_round", [False, True])
+def test_bodies_that_a_weld_has_to_pull_together_are_one_link(
+    turned_round: bool, block: bool, tmp_path: Path
+) -> None:
+    # In the frame of the first body the pose of the second, either way round.
+    back = cmath.exp(-0.2j)
+    place, turn = (0.1 + 0j, 0.2) if not turned_round else (-0.1 * back, -0.2)
+    pose = f"{place.real!r} {place.imag!r} 0 {math.cos(turn / 2)!r} 0 0 {math.sin(turn / 2)!r}"
+    names = ("far", "near") if turned_round else ("near", "far")
+    weld = f'<weld body1="{names[0]}" body2="{names[1]}" relpose="{pose}"/>'
+    # Both masses are in the pin of a block, which is the origin of the near one.
+    pin = -0.1 * back
+    ball = '<geom type="sphere" size="0.01" pos="{} {} 0"/>'
+    bar = '<geom fromto="0 0 0 0.1 0 0"/>'
+    path = tmp_path / "model.xml"
+    text = APART.format(
+        turned=0.3,
+        axis=f"{math.cos(0.3)!r} {-math.sin(0.3)!r}",
+        weld=weld,
+        near=ball.format(0, 0) if block else bar,
+        far=ball.format(pin.real, pin.imag) if block else bar,
+    )
+    path.write_text(text, encoding="utf-8")
+    asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
+    account = read_here(asked)
+    (slider,) = account.scene.sliders.values()
+    assert (slider.mass_kg > 0.0) == block
+    assert math.sin(slider.direction_rad) == pytest.approx(0.0, abs=1e-12)
+    assert checked_line(Line(account, "recommended")).verdict == "within"
+
+
+@pytest.mark.parametrize(
+    ("kind", "error"),
+    [("tilted", 2e-6), ("far away", 2e-6), ("all bodies free", 5e-6), ("cut", 2e-6)],
+)
+def test_it_runs_as_recommended_however_it_is_drawn(
+    kind: str, error: float, tmp_path: Path
+) -> None:
+    scene = load_scene("fourbar-lecture-1")
+    drawing = DRAWINGS.get(kind, Drawing(cut="coupler", sites=False))
+    path = tmp_path / "model.xml"
+    path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
+    account = read_here(request(path, scene, converge=False, turns=0.5))
+    done = checked_line(Line(account, "recommended"))
+    assert done.verdict == "within", done.failures
+    assert done.errors is not None
+    assert done.errors.worst("angle").pure < error
+
+
+LINES_ONLY = ("RRR", "RPP block on guide")
+"""With a link that carries lines and has no pin."""
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(mechanisms() | mechanisms(LINES_ONLY), st.integers(0, 10**6), st.booleans())
+def test_any_mechanism_is_read_back_off_any_drawing(
+    tmp_path_factory: pytest.TempPathFactory, designed: Designed, seed: int, sites: bool
+) -> None:
+    scene, chance = designed.scene, random.Random(seed)
+    drawing = Drawing(
+        turn=rotation(chance),
+        shift_m=tuple(chance.uniform(-3.0, 3.0) for _ in "xyz"),
+        askew=seed,
+        sites=sites,
+        reads=chance.uniform(-1.0, 1.0),
+    )
+    path = tmp_path_factory.mktemp("drawn") / "model.xml"
+    try:
+        path.write_text(drawn(scene, start_of(scene), drawing), encoding="utf-8")
+        back = read_back(path, scene)
+    except (EngineError, ModelError) as error:
+        # Loops that no engine can close without a mass, and links that are all one point.
+        assume(not any(words in str(error) for words in ("mass_kg above 0", "have no length")))
+        raise
+    assert_same(back, scene, size_m=5.0)
+
+
+def test_the_patched_file_runs_as_the_line_recommended(tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    path.write_text(planted('solref="0.005 0.6"', 'solref="0.05 1"'), encoding="utf-8")
+    asked = ModelRequest(path, "A", 10.0, converge=False, turns=0.3)
+    account = read_here(asked)
+    own = read_model(path, "A")
+    advised = advice(own.planar.model, account.dt_s, touching=False)
+    recommended = checked_line(Line(account, "recommended"))
+    path.write_bytes(patched(path.read_bytes(), [0], 1, advised))
+    written = checked_line(Line(read_here(asked), "as-written"))
+    assert written.errors is not None
+    assert recommended.errors is not None
+    for quantity in ("angle", "gap", "acceleration"):
+        assert written.errors.worst(quantity) == recommended.errors.worst(quantity)

@@ -1,0 +1,224 @@
+"""An own model on the terminal: all that matters, short, in a narrow one as well."""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from reports.judge.cell import unfinished
+from reports.own_model import checked_line
+from reports.own_model.checked_line import without_run
+from reports.own_model.judged import JudgedModel, errors_of, judged_model
+from reports.own_model.sentences import (
+    EACH,
+    factor_text,
+    factor_words,
+    groups,
+    reading,
+    share_text,
+    still_out,
+    verdict_text,
+)
+from reports.own_model.table import show
+from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
+
+
+@pytest.fixture(scope="module")
+def rubbing() -> JudgedModel:
+    """A slider-crank whose rod rubs."""
+    return judged(SLIDER_CRANK, "motor")
+
+
+@pytest.fixture(scope="module")
+def crowded() -> JudgedModel:
+    """Forty actuators, and a limit that is hit."""
+    return judged(CROWDED, "hip")
+
+
+def printed(one: JudgedModel, width: int = 100) -> list[str]:
+    stream = io.StringIO()
+    show(Console(file=stream, width=width), one, FACTS)
+    return [line.rstrip() for line in stream.getvalue().splitlines()]
+
+
+def with_own(one: JudgedModel, status: str) -> JudgedModel:
+    """The same, but that nothing came of it as written."""
+    lost = without_run(unfinished(one.own.cell, status, "it [red]fell[/] apart"))
+    return judged_model(one.account, [lost, *one.lines[1:]])
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 100, 140])
+def test_every_line_and_its_gains_are_whole_at_every_width(
+    rubbing: JudgedModel, width: int
+) -> None:
+    lines = printed(rubbing, width)
+    start = next(i for i, line in enumerate(lines) if line.startswith("Recommended"))
+    end = next(i for i, line in enumerate(lines) if line.startswith("OUT OF TOLERANCE"))
+    assert max(len(line) for line in (*lines[:start], *lines[end:])) <= width
+    assert "\u2026" not in "\n".join(lines)
+    if width >= 60:
+        table = "\n".join(lines[:start])
+        for one in rubbing.three:
+            row = next(line for line in lines if line.split()[1:2] == [one.cell.profile])
+            assert [f"{error:.1e}" for error in errors_of(one)] == [
+                f"{float(word):.1e}" for word in row.split()[2:5]
+            ]
+        for one in rubbing.three[1:]:
+            gains = [factor_text(gain) for gain in rubbing.gains(one)]
+            assert any(line.split() == ["gain", *gains] for line in table.split("\n"))
+
+
+def test_failures_come_first_and_the_verdict_last(rubbing: JudgedModel) -> None:
+    lines = printed(rubbing)
+    assert lines[0].startswith("OUT  ")
+    assert lines[1].startswith("  CC103 angle: link rod: ")
+    verdict = next(i for i, line in enumerate(lines) if line == verdict_text(rubbing))
+    order = ["CC103", "read as:", "as-written ", "joints:", "can disturb", "Recommended,", "+++ "]
+    places = [next(i for i, line in enumerate(lines) if word in line) for word in order]
+    assert [*places, verdict] == sorted([*places, verdict])
+    assert "crankcheck 0.0.0" in "\n".join(lines[verdict:])
+
+
+def test_gains_are_the_error_as_written_over_that_of_a_line(rubbing: JudgedModel) -> None:
+    last = rubbing.lines[-1]
+    for gain, own, other in zip(
+        rubbing.gains(last), errors_of(rubbing.own), errors_of(last), strict=True
+    ):
+        assert gain == own / other > 100
+    assert rubbing.gains(rubbing.own) == (1.0, 1.0, 1.0)
+    assert rubbing.verdict == "out"
+    assert "recommended: within, " in verdict_text(rubbing)
+
+
+def test_what_disturbs_is_told_by_kind_and_short(crowded: JudgedModel) -> None:
+    found = {group.kind: group for group in groups(crowded)}
+    assert len(found["actuators"].texts) == ACTUATORS
+    assert f"and {ACTUATORS - EACH} more" in found["actuators"].short()
+    lines = printed(crowded)
+    assert sum("acts on" in line for line in lines) <= 2
+    assert "less error" in found["limits"].effect
+    assert found["actuators"].effect == "without: the same error"
+    text = " ".join(" ".join(lines).split())
+    assert "joint knee is led past its limit by" in text
+    assert " limits-off " in text  # it says something
+    assert " actuators-off " not in text
+
+
+def test_how_open_the_pose_is_and_which_joint_is_worst_are_told(crowded: JudgedModel) -> None:
+    worst = crowded.joints()[0]
+    assert worst.name == "toe"
+    assert worst.share > 1.0
+    assert f"{worst.open_m:.1e}" == "1.0e-03"
+    assert "open at toe by 1.00e-3 m" in reading(crowded.account)["pose"]
+    assert {joint.name for joint in crowded.joints()} == set(crowded.account.open_m)
+    assert "joints: the widest as written is toe, " in "\n".join(printed(crowded))
+
+
+def test_the_cure_of_a_model_names_its_own_settings(rubbing: JudgedModel) -> None:
+    cures = {finding.cure for one in rubbing.lines for finding in one.findings}
+    assert not any("profile tuned" in cure for cure in cures)
+    assert any(cure.startswith("The recommended settings: ") for cure in cures)
+
+
+@pytest.mark.parametrize("status", ["crashed", "timeout", "unsupported"])
+def test_a_line_that_did_not_end_is_a_row_with_its_reason(
+    rubbing: JudgedModel, status: str
+) -> None:
+    one = with_own(rubbing, status)
+    for width in (60, 100):
+        text = " ".join(" ".join(printed(one, width)).split())
+        assert "it [red]fell[/] apart" in text
+        assert "nan" not in text
+    assert one.verdict == ("unsupported" if status == "unsupported" else "out")
+    assert all(math.isnan(gain) for gain in one.gains(one.lines[-1]))
+    assert one.joints()
+
+
+def test_a_line_that_ends_where_the_model_does_not_says_so(rubbing: JudgedModel) -> None:
+    one = with_own(rubbing, "timeout")
+    assert one.others == list(one.lines[2:-1])
+    assert {group.effect for group in groups(one)} == {"without: it runs to its end"}
+
+
+def test_settings_that_are_there_already_and_those_in_words_are_told(rubbing: JudgedModel) -> None:
+    for patch, told in (
+        ("", "The file has the recommended settings already."),
+        ("set in <option>: [bold]x", "Recommended:"),
+    ):
+        one = replace(rubbing, account=replace(rubbing.account, patch=patch))
+        lines = printed(one)
+        assert told in lines
+        assert not patch or patch in lines
+
+
+def test_without_finer_steps_there_is_one_column_of_errors(rubbing: JudgedModel) -> None:
+    request = replace(rubbing.account.request, converge=False)
+    lines = [replace(one, convergence=None) for one in rubbing.lines]
+    one = JudgedModel(account=replace(rubbing.account, request=request), lines=lines)
+    text = "\n".join(printed(one))
+    assert "dt/2" not in text
+    assert "half" not in text
+    assert math.isnan(one.gains(one.lines[-1])[1])
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (1.0, "the same error"),
+        (27.3, "27 x less error"),
+        (1.2e5, "1.2e5 x less error"),
+        (0.25, "4 x more error"),
+        (math.inf, "no error at all"),
+        (0.0, "all of the error"),
+        (math.nan, "not to be told"),
+    ],
+)
+def test_factors_in_words(factor: float, words: str) -> None:
+    assert factor_words(factor) == words
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [
+        (0.0, "below 0.1% of its limit"),
+        (0.123, "12.3% of its limit"),
+        (137.2, "137 times its limit"),
+    ],
+)
+def test_shares_of_a_limit_in_words(share: float, words: str) -> None:
+    assert share_text(share) == words
+
+
+def test_a_long_course_keeps_its_largest_error(
+    rubbing: JudgedModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(checked_line, "MOST", 30)
+    long = judged.__wrapped__(SLIDER_CRANK, "motor").own
+    whole, course = rubbing.own.course, long.course
+    assert whole is not None
+    assert course is not None
+    assert whole.time_s.size == long.cell.steps + 1
+    assert course.time_s.size <= 30
+    assert (course.time_s[0], course.time_s[-1]) == (0.0, whole.time_s[-1])
+    assert course.error.max() == whole.error.max() == errors_of(long)[0]
+    assert set(course.error) <= set(whole.error)
+    assert long.errors is not None
+    gap = long.errors.worst("gap")
+    assert gap is not None
+    assert whole.gap.max() == pytest.approx(gap.pure, rel=1e-12)
+
+
+def test_why_the_recommended_settings_are_out_is_told(rubbing: JudgedModel) -> None:
+    assert still_out(rubbing) == ""
+    own, last = rubbing.own, rubbing.lines[-1]
+    failing = replace(last, findings=own.findings)
+    one = replace(rubbing, lines=[*rubbing.lines[:-1], failing])
+    worst = max(own.failures, key=lambda finding: finding.number / finding.limit)
+    assert still_out(one).startswith(f"out by {worst.rule} ")
+    assert still_out(one).endswith(f"; and by {len(own.failures) - 1} more rules")
+    text = " ".join(" ".join(printed(one)).split())
+    assert f"recommended: out by {worst.rule}" in text

@@ -1,0 +1,170 @@
+"""The page of a judged model: whole, escaped, small enough, and alive in a browser."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from reports.judge.cell import unfinished
+from reports.own_model.checked_line import without_run
+from reports.own_model.judged import JudgedModel, judged_model
+from reports.page.build import _plotly
+from reports.page.model_page import model_page
+from sim.own_models import Disturbance
+from tests.reports.page.conftest import Opened
+from tests.reports.page.test_browser import CONTROLS, NAMELESS, OUT
+from tests.reports.page.test_log_page import NASTY, embedded, words
+from tests.reports.page.test_page import Outline
+from tests.worlds.own_models import ACTUATORS, CROWDED, FACTS, SLIDER_CRANK, judged
+
+Open = Callable[..., Opened]
+SECTIONS = ["verdict", "lines", "motion", "disturbing", "recommended", "made"]
+MEGABYTE = 1_000_000
+
+
+@pytest.fixture(scope="module")
+def rubbing() -> JudgedModel:
+    return judged(SLIDER_CRANK, "motor")
+
+
+@pytest.fixture(scope="module")
+def text(rubbing: JudgedModel) -> str:
+    return model_page(rubbing, FACTS)
+
+
+def lost(one: JudgedModel) -> JudgedModel:
+    """The same, with no line that logged anything."""
+    lines = [without_run(unfinished(line.cell, "crashed", NASTY)) for line in one.lines]
+    return judged_model(one.account, lines)
+
+
+def test_every_section_is_there_in_its_order_and_named(text: str) -> None:
+    outline = Outline(text)
+    assert outline.open == []
+    assert [each["id"] for each in outline.named("section")] == SECTIONS
+    ids = [attributes["id"] for _, attributes in outline.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    links = [each["href"] or "" for each in outline.named("a")]
+    assert {link[1:] for link in links} <= set(ids)
+    assert {each["for"] for each in outline.named("label") if "for" in each} <= set(ids)
+
+
+def test_the_page_is_small_and_needs_nothing_from_outside(text: str) -> None:
+    assert len(text.encode()) - len(_plotly().encode()) < MEGABYTE
+    bare = text.replace(_plotly(), "")
+    assert not re.search(r"""(?:src|href)\s*=\s*["'](?!#|data:)""", bare)
+
+
+def test_it_tells_the_lines_the_joints_and_the_diff(text: str, rubbing: JudgedModel) -> None:
+    told = words(text)
+    for part in ("as-written", "contacts-off", "recommended", "gain", "Every joint and loop"):
+        assert part in told
+    for joint in rubbing.joints():
+        assert joint.name in told
+    for line in rubbing.patch.splitlines():
+        assert line.replace("<", "&lt;").replace(">", "&gt;").replace('"', "&#34;") in text
+    assert "piston touches rod in 100% of the poses" in told
+    lines = embedded(text, "lines")["lines"]
+    assert len(lines) == 3
+    assert all(line["course"]["error"]["samples"] > 100 for line in lines)
+    assert [line["look"] for line in embedded(text, "motion")["lines"]] == [0, 1, 2]
+
+
+def test_many_disturbances_of_a_kind_stand_in_a_drawer() -> None:
+    text = model_page(judged(CROWDED, "hip"), FACTS)
+    assert f"and {ACTUATORS - 1} more</summary>" in text
+    assert text.count("acts on joint knee</li>") == ACTUATORS
+
+
+def test_a_model_of_which_nothing_ran_still_has_its_page(rubbing: JudgedModel) -> None:
+    text = model_page(lost(rubbing), FACTS)
+    ids = [each["id"] for each in Outline(text).named("section")]
+    assert ids == [name for name in SECTIONS if name != "lines"]
+    assert "Not drawn, as nothing was logged" in text
+
+
+def test_nothing_of_a_file_acts_on_the_page(rubbing: JudgedModel) -> None:
+    account = rubbing.account
+    request = replace(account.request, path=Path(f"{NASTY.replace('/', '')}.xml"), joint=NASTY)
+    hostile = replace(
+        account,
+        request=request,
+        notes=[NASTY],
+        disturbances=[Disturbance("contacts", NASTY)],
+        patch=f"--- {NASTY}\n",
+        open_m={NASTY: 1.0, **account.open_m},
+    )
+    text = model_page(JudgedModel(account=hostile, lines=lost(rubbing).lines), FACTS)
+    outline = Outline(text)
+    assert outline.open == []
+    assert next(each["id"] for each in outline.named("section")) == "verdict"
+    assert "\u202e" not in text
+    assert "\x1b" not in text
+    assert len(outline.named("script")) == len(
+        Outline(model_page(lost(rubbing), FACTS)).named("script")
+    )
+
+
+@pytest.fixture(scope="module")
+def opened(open_page: Open, text: str, tmp_path_factory: pytest.TempPathFactory) -> Opened:
+    path = tmp_path_factory.mktemp("model") / "page.html"
+    path.write_text(text, encoding="utf-8")
+    found = open_page(path)
+    found.page.set_default_timeout(5000)
+    found.show("lines")
+    found.show("motion")
+    return found
+
+
+def test_the_scripts_draw_every_line_and_say_nothing(opened: Opened) -> None:
+    page = opened.page
+    drawn = page.evaluate("document.getElementById('lines-course').data.map(each => each.name)")
+    assert drawn == ["as-written", "contacts-off", "recommended", "limit"]
+    steps = page.evaluate("document.getElementById('lines-steps').data.map(each => each.y.length)")
+    assert steps == [3, 3, 3]
+    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+    assert low < -6.0 < -2.0 < high
+    assert page.locator("#motion-picture .run").count() == 3
+    assert "as-written" in page.locator("#motion-readout").inner_text()
+    assert opened.said == []
+    assert all(url.startswith("file:") for url in opened.asked)
+    assert page.evaluate(NAMELESS, CONTROLS) == []
+
+
+def test_a_line_that_is_switched_off_is_drawn_nowhere(opened: Opened) -> None:
+    page = opened.page
+    page.locator("#motion-legend [data-item='0']").click()
+    page.locator("#lines-legend [data-item='0']").click()
+    page.select_option("#lines-what", "gap")
+    page.wait_for_function("document.getElementById('lines-course').data.length === 3")
+    assert page.locator("#motion-picture .run").count() == 2
+    page.locator("#lines-legend [data-item='1']").click()
+    low, high = page.evaluate("document.getElementById('lines-steps').layout.yaxis.range")
+    assert high - low >= 1.0
+    assert "gap" in page.evaluate("document.getElementById('lines-course').layout.yaxis.title.text")
+    opened.restore()
+
+
+def test_without_finer_steps_there_is_no_diagram_of_them(
+    open_page: Open, rubbing: JudgedModel, tmp_path: Path
+) -> None:
+    request = replace(rubbing.account.request, converge=False)
+    one = replace(rubbing, account=replace(rubbing.account, request=request))
+    (tmp_path / "page.html").write_text(model_page(one, FACTS), encoding="utf-8")
+    found = open_page(tmp_path / "page.html")
+    found.show("lines")
+    assert found.page.locator(".chart").count() == 1
+    assert found.said == []
+
+
+def test_it_fits_a_phone(open_page: Open, text: str, tmp_path: Path) -> None:
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    found = open_page(tmp_path / "page.html", phone=True, color_scheme="dark")
+    found.show("lines")
+    assert found.page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert found.said == []
+    assert found.page.evaluate(OUT) == []

@@ -1,0 +1,215 @@
+"""Sessions of exudyn: its clock, its silence, its redundant joints, its drives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from models.errors import EngineError
+from models.files import load_scene
+from models.hard import double_parallelogram
+from models.laws import FromRest, Law, Oscillating, SpeedChange
+from models.scene import Scene
+from sim.engine import Drive, Run, Settings
+from sim.exudyn.crank import Course, speeds
+from sim.exudyn.engine import ENGINE
+from sim.exudyn.session import ExudynSession
+from sim.run import run
+from sim.settings import resolved
+
+FOURBAR = load_scene("fourbar-lecture-1")
+REDUNDANT = double_parallelogram("double-parallelogram", source="test")
+LAWS = {
+    "oscillating": Oscillating(1.6, 0.9, 10.0, 0.3),
+    "from rest": FromRest(1.57, 10.0, 0.3),
+    "jump": SpeedChange(1.57, 5.0, 10.0, 0.1, 0.0),
+}
+TRAPEZOIDAL: Settings = {"integrator": "TrapezoidalIndex2"}
+
+
+def driven_by(law: Law) -> Scene:
+    return replace(FOURBAR, driver=replace(FOURBAR.driver, law=law))
+
+
+def opened(scene: Scene = FOURBAR, profile: str = "tuned", **settings: object) -> ExudynSession:
+    asked = resolved(ENGINE.profiles[profile], settings)  # type: ignore[arg-type]  # values
+    state = solve(scene, np.zeros(1)).state()
+    session = ENGINE.open(scene, state, asked, 1e-3, "prescribed")
+    assert isinstance(session, ExudynSession)
+    return session
+
+
+def ran(
+    scene: Scene = FOURBAR,
+    profile: str = "tuned",
+    settings: Settings | None = None,
+    per_turn: int = 400,
+    drive: Drive = "prescribed",
+) -> Run:
+    """A turn."""
+    state = solve(scene, np.zeros(1)).state()
+    dt_s = scene.driver.law.period_s / per_turn
+    return run(
+        scene, state, ENGINE, profile, dt_s=dt_s, steps=per_turn, drive=drive, settings=settings
+    )
+
+
+def threads() -> int:
+    """Of this process, where the system tells."""
+    tasks = Path("/proc/self/task")
+    return len(list(tasks.iterdir())) if tasks.exists() else 0
+
+
+def off(scene: Scene, done: Run, link: str, what: str) -> np.ndarray:
+    """The errors of the angle of a link, or of a rate of it."""
+    assert done.status == "ok", done.reason
+    assert done.motion is not None
+    exact = solve(scene, done.motion.time_s)
+    found: np.ndarray = getattr(done.motion.links[link], what) - getattr(exact.links[link], what)
+    return np.abs(found)
+
+
+@pytest.mark.parametrize("adaptive", ["enable", "disable"])
+def test_the_clock_does_not_add_up_its_steps(adaptive: str) -> None:
+    """Late by 1e-10 s after some ten thousand steps, exudyn would do that as one more."""
+    session = opened(adaptive_step=adaptive)
+    session.step(3000)
+    assert session._solver.it.currentTime == pytest.approx(3.0, abs=1e-15)
+    assert session._system.systemData.GetTime() == session._solver.it.currentTime
+
+
+@pytest.mark.parametrize("adaptive", ["enable", "disable"])
+def test_the_sensors_keep_each_step_once_and_begin_anew_at_each_stretch(adaptive: str) -> None:
+    session = opened(adaptive_step=adaptive)
+    for steps in (100, 50):
+        session.record(steps, 5)
+        assert len(session._system.GetSensorStoredData(session._sensors[0])) == steps + 1
+
+
+def test_two_stretches_in_one_go_are_one() -> None:
+    whole, parts = (opened(adaptive_step="disable") for _ in range(2))
+    whole.step(150)
+    parts.step(100)
+    parts.record(50, 5)
+    for one, other in zip(whole.read().bodies.values(), parts.read().bodies.values(), strict=True):
+        np.testing.assert_allclose(one.theta, other.theta, atol=1e-12)
+        np.testing.assert_allclose(one.omega, other.omega, atol=1e-9)
+
+
+def test_steps_in_one_go_are_the_same_as_steps_one_by_one() -> None:
+    one, other = (ran(settings={"adaptive_step": each}) for each in ("enable", "disable"))
+    assert one.motion is not None
+    assert other.motion is not None
+    for name, link in one.motion.links.items():
+        np.testing.assert_allclose(link.theta, other.motion.links[name].theta, atol=1e-11)
+
+
+def test_nothing_is_said_written_or_left_running(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    before = threads()
+    ran()
+    failed = ran(REDUNDANT, "as-shipped")
+    assert failed.status == "diverged"
+    assert "zero initial accelerations" in failed.warnings[0]
+    assert threads() == before
+    shown = capfd.readouterr()
+    assert shown.out + shown.err == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_redundant_joints_are_found_and_taken_by_tuned_alone() -> None:
+    assert opened(REDUNDANT).facts().settings["linear_solver_used"] == "EigenDense"
+    assert opened().facts().settings["linear_solver_used"] == "EXUdense"
+    refused = ran(REDUNDANT, "as-shipped")
+    assert refused.reason.startswith("stopped after 0 s: ")
+    assert off(REDUNDANT, ran(REDUNDANT), "third", "theta").max() < 1e-9
+
+
+def test_stepping_where_exudyn_goes_no_further_is_an_error_in_its_words() -> None:
+    with pytest.raises(EngineError, match=r"exudyn: .*(singular|factorized)"):
+        opened(REDUNDANT, "as-shipped").step(10)
+
+
+def test_a_step_too_short_for_its_clock_is_refused() -> None:
+    state = solve(FOURBAR, np.zeros(1)).state()
+    with pytest.raises(EngineError, match=r"dt: found 1e-10 s; exudyn .* takes 1e-09 s or"):
+        ENGINE.open(FOURBAR, state, resolved(ENGINE.profiles["tuned"], None), 1e-10, "prescribed")
+
+
+def test_all_errors_of_the_trapezoidal_rule_are_of_second_order() -> None:
+    for what in ("theta", "omega", "alpha"):
+        coarse, fine = (
+            off(FOURBAR, ran(settings=TRAPEZOIDAL, per_turn=n), "rocker", what).max()
+            for n in (200, 800)
+        )
+        assert 10.0 < coarse / fine < 25.0, what
+
+
+def test_accelerations_are_off_by_a_step_at_the_start_and_settle_sooner_where_tuned() -> None:
+    ringing = []
+    for profile, settled in (("tuned", 10), ("as-shipped", 100)):
+        coarse, fine = (
+            off(FOURBAR, ran(profile=profile, per_turn=n), "rocker", "alpha") for n in (400, 1600)
+        )
+        assert 3.0 < coarse[:settled].max() / fine[:settled].max() < 5.0
+        assert fine[settled:].max() < 0.03 * fine[:settled].max()
+        ringing.append(fine[10:50].max())
+    assert ringing[1] > 100.0 * ringing[0]
+
+
+@pytest.mark.parametrize(
+    ("law", "settings"),
+    [("oscillating", {}), ("oscillating", TRAPEZOIDAL), ("from rest", {})],
+)
+def test_a_law_that_starts_accelerating_leaves_nothing_that_rings(
+    law: str, settings: Settings
+) -> None:
+    """The trapezoidal rule damps nothing: what is wrong at the start would be so ever after."""
+    scene = driven_by(LAWS[law])
+    coarse, fine = (
+        off(scene, ran(scene, settings=settings, per_turn=n), "rocker", "alpha") for n in (200, 800)
+    )
+    assert fine[40:].max() < coarse[10:].max() / 4**1.6
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_speeds_lead_by_the_trapezoidal_rule_to_the_angles_of_the_law(law: str) -> None:
+    dt_s, steps = 1e-3, 300
+    told = speeds(LAWS[law], 0.0, dt_s, steps)
+    angles = LAWS[law].at(dt_s * np.arange(steps + 1))[0]
+    np.testing.assert_allclose(np.diff(angles), (told[1:] + told[:-1]) / 2 * dt_s, atol=1e-15)
+
+
+def test_between_the_steps_the_crank_is_told_the_law_itself() -> None:
+    law = LAWS["oscillating"]
+    course = Course(law, 0.2, 1e-3)
+    course.reach(10)
+    turned, rate, _ = law.at(np.array([0.2, 0.2 + 4.3e-3, 0.2 + 5e-3]))
+    assert course.angle(None, 4.3e-3, None, 0.0) == pytest.approx(turned[1] - turned[0], abs=1e-15)
+    assert course.speed(None, 4.3e-3, None, 0.0) == rate[1]
+    assert course.angle(None, 5e-3, None, 0.0) == pytest.approx(turned[2] - turned[0], abs=1e-15)
+    assert course.speed(None, 5e-3, None, 0.0) == pytest.approx(rate[2], abs=1e-4)
+
+
+@pytest.mark.parametrize("law", [None, "oscillating"])
+def test_a_servo_lags_by_what_its_gain_leaves(law: str | None) -> None:
+    scene = FOURBAR if law is None else driven_by(LAWS[law])
+    stiff, soft = (
+        off(scene, ran(scene, settings={"servo_gain": gain}, drive="servo"), "crank", "theta").max()
+        for gain in (1e3, 1e2)
+    )
+    assert 1e-7 < stiff < 1e-3
+    assert soft == pytest.approx(10.0 * stiff, rel=0.2)
+
+
+def test_a_crank_without_mass_is_driven_all_the_same() -> None:
+    crank = replace(FOURBAR.links["crank"], mass_kg=0.0, inertia_kg_m2=0.0)
+    scene = replace(FOURBAR, links={**FOURBAR.links, "crank": crank})
+    assert off(scene, ran(scene), "rocker", "theta").max() < 1e-11
+    assert ran(scene, drive="servo").reason.startswith("crank: mass_kg 0")

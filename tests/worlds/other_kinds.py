@@ -1,0 +1,84 @@
+"""Mechanisms of other kinds than the linkages of the stranger, and parts of what may be logged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from models.files import load_scene, parse_scene
+from models.hard import double_parallelogram
+from models.scene import Scene
+from reports.logs.channel import Channel
+from tests.worlds.plantings import PLANTINGS
+from tests.worlds.sheets import Sheet, sheet
+
+LOOPS = """
+name = "three-loops"
+source = "crank, and three dyads one after the other; the data are ours"
+
+[ground]
+points = { A = [0.0, 0.0], D = [0.3, 0.0], G = [0.65, 0.0], J = [1.0, 0.05] }
+
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+coupler = { bar = ["B", "C"], length_m = 0.25 }
+rocker = { bar = ["D", "C"], length_m = 0.2 }
+rod = { bar = ["C", "F"], length_m = 0.36 }
+lever = { bar = ["G", "F"], length_m = 0.25 }
+strut = { bar = ["F", "H"], length_m = 0.35 }
+arm = { bar = ["J", "H"], length_m = 0.28 }
+
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+start_deg = 90.0
+"""
+KINDS: Mapping[str, Callable[[], Scene]] = {
+    "slotted lever": lambda: load_scene("slotted-lever"),
+    "Scotch yoke": lambda: load_scene("scotch-yoke"),
+    "inverted slider-crank": lambda: load_scene("whitworth"),
+    "swinging driver": lambda: load_scene("tangent"),
+    "parallel links": lambda: double_parallelogram("parallel", source="three rockers"),
+    "three loops": lambda: parse_scene(LOOPS, "three-loops"),
+}
+"""By kind, what makes a scene of it."""
+PARTS: Mapping[str, Callable[[Channel], bool]] = {
+    "all": lambda channel: True,
+    "places": lambda channel: channel.kind.order == 0,
+    "rates": lambda channel: channel.kind.order > 0,
+    "without the crank": lambda channel: channel.of not in ("crank", "B"),
+}
+"""What of a log is there."""
+SAMPLING: Mapping[str, tuple[int, float]] = {
+    "plain": (180, 3.0),
+    "coarse, many turns": (200, 29.0),
+    "part of a turn": (150, 0.6),
+}
+"""Rows and turns."""
+
+
+@cache
+def scene_of(kind: str) -> Scene:
+    """The scene of a kind, read once."""
+    return KINDS[kind]()
+
+
+def infected(kind: str, fault: str, part: str, sampling: str, limit: float) -> Sheet | None:
+    """The first log of a kind of mechanism with a fault that is seen in it, in a part of its
+    channels; None where there is none."""
+    rows, turns = SAMPLING[sampling]
+    for number in range(8):
+        rng = np.random.default_rng([number, *f"{kind}{fault}{part}{sampling}".encode()])
+        scene = scene_of(kind)
+        whole = sheet(scene, rng, rows=rows, turns=turns, even=number % 2 == 0, limit=limit)
+        channels = {c: each for c, each in whole.channels.items() if PARTS[part](each)}
+        if not channels:
+            continue
+        limits = {column: whole.limits[column] for column in channels}
+        planted = PLANTINGS[fault].plant(replace(whole, channels=channels, limits=limits), rng)
+        if planted is not None and (planted[0].case.out or not PLANTINGS[fault].names):
+            return planted[0]
+    return None

@@ -1,0 +1,381 @@
+"""Engines with one fault each: a sound one whose sessions are meddled with."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from models.motion import State
+from models.scene import Scene
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Engine,
+    Facts,
+    Log,
+    Placing,
+    Poses,
+    Session,
+    Setting,
+    Settings,
+)
+from tests.worlds.fake.engine import FakeEngine
+
+Opened = Callable[[Scene, State, Settings, float, Drive], Session]
+
+
+@dataclass
+class Meddled:
+    """A session that is handed on but for what a fault says, each with the session first."""
+
+    session: Session
+    facts_: Callable[[Facts], Facts] = lambda facts: facts
+    record_: Callable[[Meddled, Log, int], Log] = lambda self, log, every: log
+    read_: Callable[[Meddled, Poses], Poses] = lambda self, poses: poses
+    step_: Callable[[Meddled, int], int] = lambda self, steps: steps
+    notes: dict[str, Any] = field(default_factory=dict)
+    last: ClassVar[Meddled | None] = None
+
+    def facts(self) -> Facts:
+        return self.facts_(self.session.facts())
+
+    def step(self, steps: int) -> None:
+        self.session.step(self.step_(self, steps))
+
+    def record(self, steps: int, every: int) -> Log:
+        return self.record_(self, self.session.record(steps, every), every)
+
+    def read(self) -> Poses:
+        return self.read_(self, self.session.read())
+
+
+def meddled(sound: Engine, **faults: Any) -> Engine:
+    """An engine whose sessions have faults: see `Meddled`."""
+
+    def opened(*asked: Any) -> Meddled:
+        return Meddled(sound.open(*asked), **faults)
+
+    return replace(sound, open=opened)
+
+
+def opening(sound: Engine, change: Callable[..., tuple[Any, ...]]) -> Engine:
+    """An engine that opens something else than was asked for."""
+    return replace(sound, open=lambda *asked: sound.open(*change(*asked)))
+
+
+def of_log(change: Callable[[Poses], Poses], least: int = 0) -> Callable[..., Log]:
+    """A change of logs of so many samples at least."""
+
+    def record(_: Meddled, log: Log, every: int) -> Log:
+        return replace(log, poses=change(log.poses)) if log.poses.time_s.size >= least else log
+
+    return record
+
+
+def _without_reason(sound: Engine) -> Engine:
+    tuned = sound.profiles["tuned"]
+    settings = {name: Setting(each.value, "") for name, each in tuned.settings.items()}
+    return replace(sound, profiles={**sound.profiles, "tuned": replace(tuned, settings=settings)})
+
+
+def _without_as_shipped(sound: Engine) -> Engine:
+    return replace(sound, profiles={"tuned": sound.profiles["tuned"]})
+
+
+def _careless(sound: Engine) -> Engine:
+    """It takes every setting, and holds its own in place of a wrong one."""
+
+    def healed(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> tuple[Any, ...]:
+        own = {name: each.value for name, each in sound.profiles["tuned"].settings.items()}
+        wrong = {n for n, v in settings.items() if v != v or v == "no-such-choice"}
+        healthy = {n: own[n] if n in wrong else v for n, v in settings.items()}
+        return scene, state, healthy, dt_s, drive
+
+    return replace(opening(sound, healed), check=lambda settings: None)
+
+
+def _another_setting(facts: Facts) -> Facts:
+    return replace(facts, settings={**facts.settings, "iterations": 7})
+
+
+def _heavier(facts: Facts) -> Facts:
+    return replace(facts, mass_kg={name: 1.01 * mass for name, mass in facts.mass_kg.items()})
+
+
+def _from_zero(
+    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+) -> tuple[Any, ...]:
+    return scene, replace(state, time_s=0.0), settings, dt_s, drive
+
+
+def _thin_count(_: Meddled, log: Log, every: int) -> Log:
+    return replace(log, steps_done=log.steps_done // every)
+
+
+def _restarts(self: Meddled, log: Log, every: int) -> Log:
+    again = self.notes.setdefault("recorded", 0)
+    self.notes["recorded"] += 1
+    times = log.poses.time_s
+    return replace(log, poses=replace(log.poses, time_s=times - times[0])) if again else log
+
+
+def _lent(self: Meddled, poses: Poses) -> Poses:
+    self.notes["lent"] = poses
+    return poses
+
+
+def _overwritten(self: Meddled, steps: int) -> int:
+    for body in self.notes["lent"].bodies.values() if "lent" in self.notes else ():
+        body.theta[:] += 1.0
+    return steps
+
+
+def _shared(self: Meddled, log: Log, every: int) -> Log:
+    """What another session did last changes what this one logs."""
+    other = Meddled.last is not self and self.notes.get("recorded", False)
+    self.notes["recorded"], Meddled.last = True, self
+    turned = log.poses.changed(lambda body: replace(body, omega=1.01 * body.omega))
+    return replace(log, poses=turned) if other else log
+
+
+NOISE = np.random.default_rng(1)
+
+
+def _noisy(poses: Poses) -> Poses:
+    def shaken(body: BodyPose) -> BodyPose:
+        return replace(body, omega=body.omega + 1e-14 * NOISE.random(body.omega.shape))
+
+    return poses.changed(shaken)
+
+
+def _wrapped(poses: Poses) -> Poses:
+    return poses.changed(lambda body: replace(body, theta=np.remainder(body.theta, 2 * np.pi)))
+
+
+def _prints(self: Meddled, steps: int) -> int:
+    os.write(1, b"stepping\n")
+    return steps
+
+
+def _litters(self: Meddled, poses: Poses) -> Poses:
+    Path("ENGINE_LOG.TXT").write_text("read")
+    return poses
+
+
+def _late_rates(poses: Poses) -> Poses:
+    def late(body: BodyPose) -> BodyPose:
+        omega = np.concatenate([body.omega[:1], body.omega[:-1]])
+        return replace(body, omega=omega)
+
+    return poses.changed(late)
+
+
+def _zero_accelerations(poses: Poses) -> Poses:
+    return poses.changed(
+        lambda body: replace(
+            body,
+            alpha=np.zeros_like(body.alpha),
+            origin_acceleration=np.zeros_like(body.origin_acceleration),
+        )
+    )
+
+
+def _late_accelerations(poses: Poses) -> Poses:
+    return poses.changed(
+        lambda body: replace(body, alpha=np.concatenate([body.alpha[:1], body.alpha[:-1]]))
+    )
+
+
+def _a_little_fast(
+    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+) -> tuple[Any, ...]:
+    law: Any = scene.driver.law
+    if hasattr(law, "speed_rad_s"):
+        law = replace(law, speed_rad_s=law.speed_rad_s * (1.0 + 1e-9))
+    driver = replace(scene.driver, law=law)
+    return replace(scene, driver=driver), state, settings, dt_s, drive
+
+
+def _weightless(sound: Engine) -> Engine:
+    """Free, it has no gravity, and says that it has."""
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> Session:
+        if drive != "free":
+            return sound.open(scene, state, settings, dt_s, drive)
+        level = replace(scene, gravity_m_s2=(0.0, 0.0))
+        session = sound.open(level, state, settings, dt_s, drive)
+        return Meddled(session, facts_=lambda f: replace(f, gravity_m_s2=scene.gravity_m_s2))
+
+    return replace(sound, open=opened)
+
+
+def _in_seconds(sound: Engine) -> Engine:
+    """A loss in a second, and not said."""
+    lossy = {"error_bias": 0.5}
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> Session:
+        session = sound.open(scene, state, {**settings, **lossy}, dt_s, drive)
+        return Meddled(
+            session, facts_=lambda f: replace(f, settings={**f.settings, **dict(settings)})
+        )
+
+    return replace(sound, open=opened, in_seconds=lambda settings: ())
+
+
+def _at_home(sound: Engine) -> Engine:
+    """It is off by a milliradian wherever the ground lies far from the origin."""
+
+    def opened(
+        scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+    ) -> Session:
+        session = sound.open(scene, state, settings, dt_s, drive)
+        if max(abs(x) for x, _ in scene.ground.values()) < 2.0:
+            return session
+        name = next(n for n in reversed(list(scene.links)) if n != scene.driver.link)
+
+        def off(poses: Poses) -> Poses:
+            body = poses.bodies[name]
+            off = np.minimum(np.arange(float(body.theta.size)), 50.0) * 2e-4
+            wrong = replace(body, theta=body.theta + off)
+            return replace(poses, bodies={**poses.bodies, name: wrong})
+
+        return Meddled(session, record_=of_log(off))
+
+    return replace(sound, open=opened)
+
+
+def _blunt(sound: Engine) -> Engine:
+    def refused(*asked: Any) -> tuple[Any, ...]:
+        if asked[-1] == "servo":
+            raise KeyError("motor")
+        return asked
+
+    return opening(sound, refused)
+
+
+class _Integrated(FakeEngine):
+    """It has its places from the reference, and says otherwise."""
+
+    def placing(self, settings: Settings) -> Placing:
+        return "integrated"
+
+
+def _exact(_: Engine) -> Any:
+    return _Integrated(drives=("prescribed", "servo"))
+
+
+FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
+    # name: clause, words, fault; other clauses that can not but break too
+    "no reason": ("EC11", "iterations has no reason", _without_reason, set()),
+    "one profile": ("EC11", "there is no profile as-shipped", _without_as_shipped, set()),
+    "other version": (
+        "EC12",
+        "version() gives '2.0'",
+        lambda e: replace(e, version=lambda: "2.0"),
+        set(),
+    ),
+    "takes everything": ("EC13", "error_bias = nan is taken", _careless, set()),
+    "other setting held": (
+        "EC14",
+        "iterations is asked to be 150, held 7",
+        lambda e: meddled(e, facts_=_another_setting),
+        set(),
+    ),
+    "heavier": ("EC21", "has mass_kg", lambda e: meddled(e, facts_=_heavier), set()),
+    "from zero": ("EC22", "the samples are at", lambda e: opening(e, _from_zero), set()),
+    "one step more": (
+        "EC31",
+        "after 60 steps step and record differ by",
+        lambda e: meddled(e, step_=lambda self, steps: steps + 1),
+        set(),
+    ),
+    "counts samples": (
+        "EC32",
+        "record(40, 8) says 5 steps done",
+        lambda e: meddled(e, record_=_thin_count),
+        set(),
+    ),
+    "restarts": (
+        "EC33",
+        "the second begins at 0 s",
+        lambda e: meddled(e, record_=_restarts),
+        set(),
+    ),
+    "lends its memory": (
+        "EC34",
+        "what read gave changes",
+        lambda e: meddled(e, read_=_lent, step_=_overwritten),
+        set(),
+    ),
+    "shared state": ("EC35", "it differs by", lambda e: meddled(e, record_=_shared), set()),
+    "noise": (
+        "EC36",
+        "100 steps twice differ by",
+        lambda e: meddled(e, record_=of_log(_noisy)),
+        set(),
+    ),
+    "wrapped": (
+        "EC37",
+        "jumps by",
+        lambda e: meddled(e, record_=of_log(_wrapped, 1000)),
+        {"EC41", "EC51", "EC52", "EC53"},
+    ),
+    "talks": (
+        "EC38",
+        "writes to the terminal: 'stepping'",
+        lambda e: meddled(e, step_=_prints),
+        set(),
+    ),
+    "leaves files": (
+        "EC38",
+        "leaves files in the working folder: ENGINE_LOG.TXT",
+        lambda e: meddled(e, read_=_litters),
+        set(),
+    ),
+    "velocities late": (
+        "EC41",
+        "is that of -0.50 steps, and velocity_shift says +0.50",
+        lambda e: meddled(e, record_=of_log(_late_rates, 700)),
+        set(),
+    ),
+    "lag unsaid": (
+        "EC41",
+        "Poses.lag_s is 0 steps",
+        lambda e: meddled(e, facts_=lambda f: replace(f, start=replace(f.start, lag_s=0.0))),
+        set(),
+    ),
+    "zero accelerations": (
+        "EC42",
+        "are not all NaN",
+        lambda e: meddled(e, record_=of_log(_zero_accelerations)),
+        {"EC41"},
+    ),
+    "a little fast": ("EC51", "the crank is off by", lambda e: opening(e, _a_little_fast), set()),
+    "third order": (
+        "EC52",
+        "shrink as dt^2.0, and order is 3",
+        lambda e: replace(e, order=3),
+        set(),
+    ),
+    "handed back": ("EC53", "placing is integrated with order 2", _exact, set()),
+    "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
+    "weightless": ("EC55", "falls 0 of what", _weightless, set()),
+    "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
+    "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
+}
+
+
+def late_accelerations(sound: Engine) -> Engine:
+    """Of an engine that reports them, those of links a step late."""
+    return meddled(sound, record_=of_log(_late_accelerations, 700))
