@@ -53,6 +53,7 @@ slow: $(VENV)/test
 
 benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/reference.py
+	$(BIN)/python benchmarks/forces.py
 	$(BIN)/python benchmarks/logging.py
 	$(BIN)/python benchmarks/window_chain.py
 

@@ -11,7 +11,7 @@ out once for a scene: a pure function of it, whose results for the last `KEPT` s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -83,13 +83,7 @@ def solve(
         Times that are no numbers, a name that the scene has not.
     """
     time_s = samples(time_s, "time_s")
-    law = scene.driver.law
-
-    def driver(span: slice) -> Driven:
-        t = time_s[span]
-        theta, omega, alpha = _law_at(law, t)
-        return theta, omega, alpha, _rounding_of(law, t, theta) if bound else None
-
+    driver = _driver_of(scene, time_s, bound=bound)
     ready = _prepared(Same(scene))
     return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
 
@@ -125,9 +119,36 @@ def solve_driven(
     return ready.motion(Selection.of(scene, links, points, sliders), labels, driver, bound=bound)
 
 
+def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
+    """The solved mechanism at the given times (T,), a chunk of samples at a time, for what builds
+    on more than its motion. Raises as `solve`."""
+    driver, ready = _driver_of(scene, time_s, bound=bound), _prepared(Same(scene))
+    for first in range(0, len(time_s), CHUNK):
+        span = slice(first, first + CHUNK)
+        yield span, ready.chunk(*driver(span))
+
+
+def unit_chunk(scene: Scene, theta: Array, *, bound: bool) -> Chunk:
+    """The mechanism at driver angles [rad] taken as exact, the driver at 1 rad/s and steady: rates
+    are derivatives by its angle then, accelerations second ones. Raises as `solve`."""
+    return _prepared(Same(scene)).chunk(theta, 1.0, STEADY, EXACT_ANGLE if bound else None)
+
+
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
     return ranges(_prepared(Same(scene)).stretched)
+
+
+def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
+    """The driver under its law, by spans of the times."""
+    law = scene.driver.law
+
+    def driver(span: slice) -> Driven:
+        t = time_s[span]
+        theta, omega, alpha = _law_at(law, t)
+        return theta, omega, alpha, _rounding_of(law, t, theta) if bound else None
+
+    return driver
 
 
 def _law_at(law: Law, t: Array) -> tuple[Array, Real, Real]:
@@ -202,11 +223,11 @@ class _Prepared:
             high = max(high, float(driven[0].max()))
             counted = wanted.links and low < high  # at the start itself there is nothing to count
             counter = Counter(self.turns, driven[0]) if counted else None
-            result.write(span, self._chunk(*driven), counter)
+            result.write(span, self.chunk(*driven), counter)
         return replace(result.motion(), crossings=passed(self.passages, low, high))
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def _chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
+    def chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
         """One chunk through all steps. Raises ReachError."""
         chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=self.passages)
         for step in self.steps:

@@ -5,8 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
 from models.errors import SceneError
+from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.load_tables import LawOfLoad, PolynomialLoad, SineLoad, TableLoad
+from models.loads import Load
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     LARGEST,
@@ -26,13 +30,16 @@ BLOCK_OF_LONGEST = 0.1
 """Side of a square slider block with mass, over the longest link, where no inertia is given."""
 
 
-def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scene:
+def scene_from_table(
+    table: SceneTable, driver: DriverTable, loads: Mapping[str, LawOfLoad], place: str
+) -> Scene:
     """The scene that the tables describe.
 
     Raises
     ------
     SceneError
-        Links without length or too far away, masses that cannot be derived.
+        Links without length or too far away, masses that cannot be derived, loads that have no
+        magnitude or act on no mass.
     """
     faults: list[str] = []
     points = {name: _points(link) for name, link in table.links.items()}
@@ -42,6 +49,7 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
     links = {name: _link(name, link, points[name], faults) for name, link in table.links.items()}
     longest = max(span(p) for p in points.values())
     sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
+    found = {name: _load(name, load, sliders, faults) for name, load in loads.items()}
     try:
         law = _law(driver)
     except ValueError as error:
@@ -63,6 +71,7 @@ def scene_from_table(table: SceneTable, driver: DriverTable, place: str) -> Scen
         branch=dict(table.branch),
         gravity_m_s2=table.gravity_m_s2,
         tolerance=dict(table.tolerance),
+        loads={name: load for name, load in found.items() if load is not None},
     )
 
 
@@ -164,3 +173,54 @@ def _law(driver: DriverTable) -> Law:
     if isinstance(driver, AcceleratingDriver):
         return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
     return ConstantSpeed(start_rad, driver.speed_rad_s)
+
+
+def _load(
+    name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
+) -> Load | None:
+    """The load of a table, or None and why it has no magnitude or acts on no mass."""
+    body, point = table.link, table.point
+    if table.block is not None:
+        block = sliders[table.block]
+        body, point = block_name(block), block.point
+        if block.mass_kg == 0.0:
+            faults.append(
+                f"loads.{name}.block: block {table.block} has no mass, so it is no body; give "
+                f"sliders.{table.block} mass_kg, or name a link that carries {block.point}"
+            )
+    assert body is not None
+    try:
+        characteristic = _characteristic(table)
+    except ValueError as error:
+        faults.append(f"loads.{name}: {error}")
+        return None
+    return Load(
+        name=name,
+        body=body,
+        point=None if table.magnitude[0] is None else point,
+        characteristic=characteristic,
+        over=getattr(table, "over", "time"),
+        slider=table.slider,
+        stroke=table.stroke,
+        direction_rad=_within_a_turn(table.direction_deg or 0.0),
+        frame=table.frame or "ground",
+    )
+
+
+def _characteristic(table: LawOfLoad) -> Characteristic:
+    """How the magnitude goes, angles in radians. Raises ValueError."""
+    magnitude = table.force_n if table.force_n is not None else table.torque_n_m
+    if isinstance(table, PolynomialLoad):
+        return Polynomial(tuple(magnitude))  # type: ignore[arg-type]
+    turning = getattr(table, "over", "time") == "angle"
+    if isinstance(table, SineLoad):
+        period = math.radians(table.period) if turning else table.period
+        return Sine(float(magnitude), period, _within_a_turn(table.phase_deg))  # type: ignore[arg-type]
+    if isinstance(table, TableLoad):
+        places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
+        if not turning:
+            return Tabulated(places, values, table.interpolation)
+        period = math.radians(table.period_deg or 360.0)
+        places = tuple(math.radians(place) for place in places)
+        return Tabulated(places, values, table.interpolation, period)
+    return Constant(float(magnitude))  # type: ignore[arg-type]

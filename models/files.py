@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
 from models.errors import CrankcheckError, SceneError, cut, nearest, shown, suggestion
+from models.load_tables import LOADS, LawOfLoad
 from models.names import faults_of_names
 from models.one_or_more import names_in
 from models.regular import UnreadableError, regular_text
@@ -101,10 +102,11 @@ def parse_scene(text: str, place: str) -> Scene:
     faults: list[str] = []
     table = _validated(SceneTable, raw, "", faults)
     driver = _driver(raw.get("driver"), faults)
+    loads = _loads(raw.get("loads"), faults)
     faults += faults_of_names(raw)
     if faults or table is None or driver is None:
         raise SceneError(place, faults)
-    return scene_from_table(table, driver, place)
+    return scene_from_table(table, driver, loads, place)
 
 
 def read_text(path: Path) -> str:
@@ -133,6 +135,21 @@ def _driver(raw: object, faults: list[str]) -> DriverTable | None:
         faults.append(f"driver.link: found {shown(raw['link'])}; a scene has one driver, one link")
         return None
     return _validated(model, raw, "driver.", faults)
+
+
+def _loads(raw: object, faults: list[str]) -> dict[str, LawOfLoad]:
+    """The tables of the loads under the models of their laws."""
+    loads: dict[str, LawOfLoad] = {}
+    for name, table in (raw if isinstance(raw, Mapping) else {}).items():
+        if not isinstance(table, Mapping):
+            continue  # already a fault of SceneTable
+        law, key = table.get("law", "constant"), f"loads.{cut(name)}"
+        model = LOADS.get(law) if isinstance(law, str) else None
+        if model is None:
+            faults.append(f"{key}.law: found {shown(law)}; use one of {', '.join(LOADS)}")
+        elif (load := _validated(model, table, f"{key}.", faults)) is not None:
+            loads[name] = load
+    return loads
 
 
 def _validated(
@@ -164,7 +181,7 @@ def _line(
 ) -> str:
     """One fault in one line: key, what was found, what would work."""
     parts = [str(part) for part in loc if part != "[key]"]
-    key = prefix + ".".join(map(cut, parts))
+    key = (prefix + ".".join(map(cut, parts))).removesuffix(".")
     if kind == "missing":
         return f"{key}: missing; add it"
     if kind == "extra_forbidden":

@@ -52,6 +52,8 @@ def build(
         A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop.
     """
     _check_masses(scene)
+    if scene.loads:
+        raise EngineError(f"{scene.name}: MJCF is written without loads yet; take them out")
     writing = exact(scene) if writing is None else writing
     tree = tree or plan(scene, state, writing.close, delay_s=writing.delay_s)
     lines = [

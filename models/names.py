@@ -27,6 +27,7 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
         *_links(points, sliders),
         *_sliders(sliders, points, ground),
         *_driver(_table(raw, "driver"), points, ground),
+        *_loads(_table(raw, "loads"), points, sliders),
         *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
     ]
 
@@ -101,6 +102,27 @@ def _driver(
         yield f"driver.link: found {cut(link)}; use one of {_list(points)}"
     elif not points[link] & ground:
         yield f"driver.link: {cut(link)} has no ground pin to turn about; give it a ground point"
+
+
+def _loads(
+    loads: Mapping[str, Any], points: Mapping[str, set[str]], sliders: Mapping[str, Any]
+) -> Iterator[str]:
+    """Loads on, at or over what is not there."""
+    blocks = [n for n, s in sliders.items() if isinstance(s, Mapping) and "link" not in s]
+    for name, load in loads.items():
+        if not isinstance(load, Mapping):
+            continue
+        key = f"loads.{cut(name)}"
+        link, point = load.get("link"), load.get("point")
+        for what, known in (("link", points), ("block", blocks), ("slider", sliders)):
+            one = load.get(what)
+            if isinstance(one, str) and one not in known:
+                have = f"use one of {_list(known)}" if known else "the scene has none"
+                yield f"{key}.{what}: found {cut(one)}; {have}"
+        own = points.get(link) if isinstance(link, str) else None
+        if own is not None and isinstance(point, str) and point not in own:
+            has = _list(sorted(own))
+            yield f"{key}.point: {cut(str(link))} has no point {cut(point)}; it has {has}"
 
 
 def _branch(branch: Mapping[str, Any], choices: set[str]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What a mechanism is: links, pins, sliders, one driver, and the assembly branch.
+"""What a mechanism is: links, pins, sliders, one driver, the assembly branch, loads.
 
 Pins are shared point names: two links, or a link and the ground, that list the same point are
 pinned there. A slider lets a point, or a whole link, run along a line of another body::
@@ -21,6 +21,7 @@ from functools import cached_property
 
 from models.fixed import FixedMapping
 from models.laws import Law
+from models.loads import Load
 
 Point = tuple[float, float]
 GROUND = "ground"
@@ -84,7 +85,7 @@ class Scene:
     where the pin lies to the left of the line from the first outer pin to the second, the links
     in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
     is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
-    unless the scene has it.
+    unless the scene has it; ``loads`` act from outside.
     """
 
     name: str
@@ -97,9 +98,10 @@ class Scene:
     gravity_m_s2: Point = (0.0, 0.0)
     tolerance: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
+    loads: Mapping[str, Load] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("ground", "links", "sliders", "branch", "tolerance"):
+        for name in ("ground", "links", "sliders", "branch", "tolerance", "loads"):
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 
     @cached_property

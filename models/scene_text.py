@@ -9,6 +9,7 @@ from numbers import Integral
 
 from models.errors import CrankcheckError
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
+from models.load_text import load_table
 from models.scene import Scene, Slider
 
 Table = Mapping[str, object]
@@ -49,6 +50,8 @@ def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
     yield "driver", {"link": scene.driver.link, **_law(scene.driver.law)}
     yield "branch", scene.branch
     yield "tolerance", scene.tolerance
+    for name, load in scene.loads.items():
+        yield f"loads.{name}", load_table(load)
 
 
 def _slider(slider: Slider) -> Table:

@@ -131,7 +131,8 @@ class AcceleratingDriver(Table):
 
 
 class SceneTable(Table):
-    """A whole scene file; its driver table is checked by `DRIVERS` after its law is known."""
+    """A whole scene file; its driver is checked by `DRIVERS` after its law is known, its loads by
+    `models.load_tables.LOADS`."""
 
     name: Name
     source: Annotated[Text, StringConstraints(min_length=1)]
@@ -143,6 +144,7 @@ class SceneTable(Table):
     branch: dict[Name, Literal[-1, 1]] = Field(default_factory=dict)
     gravity_m_s2: Coordinates = (0.0, 0.0)
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
+    loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
 DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver

@@ -40,6 +40,16 @@ def refuse_other_model(
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
 
 
+def refuse_loads(scene: Scene) -> None:
+    """Raise EngineError for a scene with loads, which would be left out without a word."""
+    if scene.loads:
+        names = ", ".join(f"loads.{name}" for name in scene.loads)
+        raise EngineError(
+            f"{scene.name}: no engine is given loads yet ({names}); take them out to run it, "
+            "or use the reference alone"
+        )
+
+
 def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
     """Differences of mass, inertia and gravity."""
     for body in bodies(scene):

@@ -11,7 +11,7 @@ import numpy as np
 from models.errors import EngineError, shown
 from models.motion import State
 from models.scene import Scene
-from sim.check import refuse_other_model
+from sim.check import refuse_loads, refuse_other_model
 from sim.drive import pace, period
 from sim.engine import Drive, Engine, Run, Settings, Setup
 from sim.own_engine.watched import BrokenContractError
@@ -74,6 +74,7 @@ def run(
         settings=told.asked,
     )
     try:
+        refuse_loads(scene)
         session = chosen.open(scene, state, told.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise

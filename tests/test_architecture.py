@@ -42,9 +42,9 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
-        mechanism
+        mechanism forces
         nearness kinematics
-        forces free change_points check reach result
+        free change_points check reach result
         turns
         dyads
         structure

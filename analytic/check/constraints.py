@@ -8,6 +8,7 @@ Dynamics of Mechanical Systems, chapters 3 and 4.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -39,15 +40,26 @@ class Constraints:
                 "a mechanism of mobility 1 has as many of each"
             )
 
+    def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
+        """The point and the two bodies of every two equations of pins, in the order of ``phi``."""
+        for point, held in self._places_of_pins().items():
+            for other, _ in held[1:]:
+                yield point, held[0][0], other
+
     def _pairs_of_pins(self) -> list[tuple[str, Point, str, Point]]:
         """Each pin as pairs of bodies, with the place of the pin in the frame of each."""
+        places = self._places_of_pins()
+        return [(*held[0], *other) for held in places.values() for other in held[1:]]
+
+    def _places_of_pins(self) -> dict[str, list[tuple[str, Point]]]:
+        """The bodies at every point, with its place in the frame of each."""
         places: dict[str, list[tuple[str, Point]]] = {}
         for point, bodies in self.scene.pins.items():
             places[point] = [(body, local_point(self.scene, body, point)) for body in bodies]
         for slider in self.scene.sliders.values():
             if slider.link is None:
                 places.setdefault(slider.point, []).append((block_name(slider), (0.0, 0.0)))
-        return [(*held[0], *other) for held in places.values() for other in held[1:]]
+        return places
 
     def tip(self, slider: Slider) -> tuple[str, Point]:
         """The body that slides and the place of its point on the line."""

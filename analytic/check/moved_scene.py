@@ -14,7 +14,10 @@ from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
-    """The scene turned about the origin, its gravity with it."""
+    """The scene turned about the origin, its gravity and its loads with it.
+
+    Not for loads over the driver's angle, which is another one then.
+    """
 
     def turn(place: Point) -> Point:
         return turned(place, angle_rad)
@@ -26,6 +29,11 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             direction_rad=slider.direction_rad + angle_rad,
         )
 
+    loads = {
+        name: replace(load, direction_rad=load.direction_rad + angle_rad)
+        for name, load in scene.loads.items()
+        if load.frame == "ground"
+    }
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -33,6 +41,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         sliders={n: on_ground(s) if s.on == GROUND else s for n, s in scene.sliders.items()},
         driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
         gravity_m_s2=turn(scene.gravity_m_s2),
+        loads={**scene.loads, **loads},
     )
 
 
@@ -101,7 +110,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with every length times ``factor``, made of rods of the same mass per length.
 
     Masses grow with the factor, inertias with its cube; gravity with the factor, so that the
-    motion stays similar at the same speed.
+    motion stays similar at the same speed. Loads stay as they are.
     """
 
     def grow(p: Point) -> Point:

@@ -1,1 +1,1 @@
-"""What the motion asks of the joints."""
+"""What the motion asks of the joints and of the drive."""

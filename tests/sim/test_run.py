@@ -15,8 +15,11 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from models.characteristics import Constant
 from models.errors import EngineError
 from models.files import load_scene
+from models.loads import Load
+from models.mjcf import build
 from models.scene import Scene
 from sim.engine import Facts, Run
 from sim.registry import ENGINES, available, declaration, engine
@@ -57,6 +60,19 @@ def test_a_run_may_start_at_any_time_of_the_law(name: str) -> None:
     assert result.motion.time_s[0] == 0.3
     off = result.motion.links["rocker"].theta - exact.links["rocker"].theta
     assert np.abs(off).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
+    pushed = replace(FOURBAR, loads={"push": Load("push", "rocker", None, Constant(1.0))})
+    state = solve(pushed, np.zeros(1)).state()
+    done = run(pushed, state, name, dt_s=1e-3, steps=10)
+    assert done.status == "unsupported"
+    assert "no engine is given loads yet (loads.push); take them out" in done.reason
+    with pytest.raises(EngineError, match="no engine is given loads yet"):
+        time_run(pushed, state, name, dt_s=1e-3, steps=10)
+    with pytest.raises(EngineError, match="MJCF is written without loads yet"):
+        build(pushed, state)
 
 
 def test_a_diverging_run_stops_early_quietly_and_says_when(

@@ -1,0 +1,97 @@
+"""The second opinion on forces: Lagrange multipliers of all constraints at once.
+
+Nothing here knows of dyads, groups or an order of solving. With the positions and velocities of a
+motion, accelerations and multipliers are the unknowns of one linear system for each sample::
+
+    | M      Phi_q^T |  | q''    |     | Q     |
+    | Phi_q  0       |  | lambda |  =  | gamma |
+
+Q holds weights, loads and what of inertia goes with the squares of rates. Source: E. J. Haug,
+Computer Aided Kinematics and Dynamics of Mechanical Systems, chapter 6.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
+from analytic.check.constraints import Constraints
+from models.array import Array
+from models.errors import CrankcheckError
+from models.forces import Forces, SliderForces
+from models.motion import Motion
+from models.scene import Scene
+
+
+def forces(scene: Scene, motion: Motion) -> Forces:
+    """Driving torque and reactions, without bounds.
+
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism of mobility 1 without redundant links; its groups need no closed form.
+    motion : Motion
+        Its positions and velocities; of its accelerations the driver's alone is looked at.
+
+    Raises
+    ------
+    CrankcheckError
+        As many constraints as coordinates there are not, or they are singular at a sample.
+    """
+    system = Constraints(scene)
+    bodies = body_samples(scene, motion)
+    own = [bodies[name] for name in system.bodies]
+    q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
+    rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
+    alpha, size = motion.links[scene.driver.link].alpha, system.size
+    saddle = np.zeros((len(q), 2 * size, 2 * size))
+    right = np.zeros((len(q), 2 * size))
+    for k in range(len(q)):
+        saddle[k, size:, :size] = jacobian = system.jacobian(q[k])
+        saddle[k, :size, size:] = jacobian.T
+        right[k, size:] = system.gamma(q[k], rates[k], float(alpha[k]))
+    for name, body in bodies.items():
+        _inertia(body, system.at[name], saddle, right)
+    for name, place, force, torque in weights_and_loads(scene, motion):
+        at = system.at[name]
+        right[:, at : at + 2] += force
+        right[:, at + 2] += torque + cross(bodies[name].arm(place), force)
+    try:
+        solution = np.asarray(np.linalg.solve(saddle, right[:, :, None])[:, :, 0], np.float64)
+    except np.linalg.LinAlgError:
+        raise CrankcheckError(
+            f"{scene.name}: the constraints are singular at a sample, where the multipliers are "
+            "not determined; leave it out"
+        ) from None
+    return _reactions(scene, system, motion.time_s, -solution[:, size:])
+
+
+def _columns(places: Array, angles: Array) -> Array:
+    return np.concatenate([places, angles[:, None]], axis=1)
+
+
+def _inertia(body: BodySamples, at: int, saddle: Array, right: Array) -> None:
+    """The mass matrix of a body about its frame's origin, and its centrifugal force."""
+    mass, arm = body.mass, body.arm(body.centre)
+    saddle[:, at, at] = saddle[:, at + 1, at + 1] = mass
+    saddle[:, at, at + 2] = saddle[:, at + 2, at] = -mass * arm[:, 1]
+    saddle[:, at + 1, at + 2] = saddle[:, at + 2, at + 1] = mass * arm[:, 0]
+    saddle[:, at + 2, at + 2] = body.inertia + mass * np.sum(arm**2, axis=1)
+    right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
+
+
+def _reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
+    """What the multipliers mean: pushes along the gradients of the equations, in their order."""
+    pins: dict[str, dict[str, Array]] = {}
+    row = 0
+    for point, first, other in system.pin_pairs():
+        push = pushes[:, row : row + 2]
+        held = pins.setdefault(point, {})
+        held[first] = held.get(first, 0.0) + push
+        held[other] = held.get(other, 0.0) - push
+        row += 2
+    sliders: dict[str, SliderForces] = {}
+    for name in scene.sliders:
+        sliders[name] = SliderForces(pushes[:, row], pushes[:, row + 1])
+        row += 2
+    return Forces(time_s, pins, sliders, pushes[:, row])

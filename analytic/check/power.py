@@ -1,0 +1,47 @@
+"""The third opinion on forces: power balances at every instant.
+
+What the drive puts in is what energy gains, less what loads put in::
+
+    torque omega = d/dt (T + V) - sum (F v + M omega),   dT/dt = sum (m a_S v_S + J alpha omega)
+
+Reactions do no work, so none is in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.check.body_samples import body_samples, weights_and_loads
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+
+
+@dataclass(frozen=True)
+class PowerBalance:
+    """Power of the drive [W], and what becomes of it, (T,); ``scale`` is the sum of its parts."""
+
+    put_in: Array
+    used: Array
+    scale: Array
+
+
+def power_balance(scene: Scene, motion: Motion, torque: Array) -> PowerBalance:
+    """The power of a driving torque [N m] beside what the motion and the loads take up."""
+    used, scale = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
+    bodies = body_samples(scene, motion)
+    parts = []
+    for body in bodies.values():
+        push = body.mass * body.acceleration_at(body.centre)
+        parts.append(np.sum(push * body.velocity_at(body.centre), axis=1))
+        parts.append(body.inertia * body.alpha * body.omega)
+    for name, place, force, moment in weights_and_loads(scene, motion):
+        body = bodies[name]
+        parts.append(-np.sum(force * body.velocity_at(place), axis=1) - moment * body.omega)
+    for part in parts:
+        used += part
+        scale += np.abs(part)
+    put_in = torque * motion.links[scene.driver.link].omega
+    return PowerBalance(put_in, used, scale + np.abs(put_in))

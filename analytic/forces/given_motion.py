@@ -1,0 +1,128 @@
+"""A given motion as the chunks that forces are worked out of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.dyads.chunk import SINES, Chunk
+from analytic.dyads.parts import SlideError, Sliding
+from analytic.dyads.plane import (
+    AngleError,
+    BodyKinematics,
+    PointError,
+    PointKinematics,
+    Vec,
+    direction,
+    fixed_body,
+)
+from analytic.dyads.riding import rounding_of_angles
+from analytic.kinematics import CHUNK
+from models.errors import CrankcheckError
+from models.joints import block_name
+from models.motion import Motion
+from models.scene import GROUND, Scene, Slider
+
+
+def chunks_of(scene: Scene, motion: Motion, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
+    """The motion, a chunk of samples at a time; certified where a bound is asked for.
+
+    Raises
+    ------
+    CrankcheckError
+        A link, point or slider that the motion lacks, accelerations that it does not give, or
+        bounds that it does not carry.
+    """
+    _check_whole(scene, motion, bound=bound)
+    for first in range(0, len(motion.time_s), CHUNK):
+        span = slice(first, first + CHUNK)
+        yield span, _Span(scene, motion, span, certified=bound).chunk()
+
+
+def _check_whole(scene: Scene, motion: Motion, *, bound: bool) -> None:
+    points = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
+    for what, wanted, found in (
+        ("link", scene.links, motion.links),
+        ("point", points, motion.points),
+        ("slider", scene.sliders, motion.sliders),
+    ):
+        for name in wanted:
+            if name not in found:
+                raise CrankcheckError(
+                    f"{scene.name}: forces need the whole motion, and {what} {name} is not in it; "
+                    "solve it without a choice of links, points and sliders"
+                )
+    for name, link in motion.links.items():
+        if not motion.conditioning and np.all(np.isnan(link.alpha)):
+            raise CrankcheckError(
+                f"{scene.name}: the motion has no acceleration of link {name}, which forces "
+                "follow from; give one that has"
+            )
+    if bound and motion.bound is None:
+        raise CrankcheckError(
+            f"{scene.name}: the motion carries no bounds, so its forces have none; solve it with "
+            "bound=True, or ask for forces with bound=False"
+        )
+
+
+class _Span:
+    """A span of a motion's samples."""
+
+    def __init__(self, scene: Scene, motion: Motion, span: slice, *, certified: bool) -> None:
+        self.scene, self.motion, self.span = scene, motion, span
+        self.bound = motion.bound if certified else None
+
+    def chunk(self) -> Chunk:
+        certified = self.bound is not None
+        bodies = {GROUND: fixed_body(certified=certified)}
+        bodies |= {name: self._link(name) for name in self.scene.links}
+        for slider in self.scene.sliders.values():
+            if slider.link is None:
+                bodies[block_name(slider)] = self._block(slider, bodies[slider.on])
+        chunk = Chunk(self.scene, certified, False, bodies)
+        chunk.points.update({name: self._point(name) for name in self.motion.points})
+        chunk.sines.update({key: s[self.span] for key, s in self.motion.conditioning.items()})
+        chunk.sliders.update({name: self._sliding(name) for name in self.scene.sliders})
+        return chunk
+
+    def _link(self, name: str) -> BodyKinematics:
+        one, span = self.motion.links[name], self.span
+        point, local = next(iter(self.scene.links[name].points.items()))
+        theta = one.theta[span]
+        error = None
+        if self.bound is not None:
+            own = self.bound.links[name]
+            error = AngleError(own.theta[span] + SINES, own.omega[span], own.alpha[span])
+        turn = Vec(np.cos(theta), np.sin(theta))
+        omega, alpha = one.omega[span], one.alpha[span]
+        return BodyKinematics(local, self._point(point), turn, omega, alpha, error, theta)
+
+    def _block(self, slider: Slider, guide: BodyKinematics) -> BodyKinematics:
+        """A block stands as its line."""
+        angle, error = slider.direction_rad, guide.error
+        if error is not None:
+            error = replace(error, theta=error.theta + rounding_of_angles(angle))
+        turn, at = guide.turn.turned(direction(angle)), self._point(slider.point)
+        return BodyKinematics((0.0, 0.0), at, turn, guide.omega, guide.alpha, error)
+
+    def _point(self, name: str) -> PointKinematics:
+        one, span = self.motion.points[name], self.span
+        p, v, a = (
+            Vec(series[span, 0], series[span, 1])
+            for series in (one.position, one.velocity, one.acceleration)
+        )
+        if self.bound is None:
+            return PointKinematics(p, v, a, None)
+        own = self.bound.points[name]
+        error = PointError(own.position[span], own.velocity[span], own.acceleration[span])
+        return PointKinematics(p, v, a, error)
+
+    def _sliding(self, name: str) -> Sliding:
+        one, span = self.motion.sliders[name], self.span
+        error = None
+        if self.bound is not None:
+            own = self.bound.sliders[name]
+            error = SlideError(own.displacement[span], own.speed[span], own.acceleration[span])
+        return Sliding(one.displacement[span], one.speed[span], one.acceleration[span], error)

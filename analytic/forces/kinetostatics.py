@@ -1,0 +1,149 @@
+"""Kinetostatics: the driving torque and the reactions in all joints of a known motion.
+
+What acts on each body, its inertia among it, is put on free-body diagrams; the Assur groups are
+solved in the reverse of their order of placing, in closed form (`analytic.forces.balance`), in
+chunks as their motion was. Source: I. I. Artobolevskii, Theory of Mechanisms, on kinetostatics.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import Real
+from analytic.forces.applied_loads import apply_loads
+from analytic.forces.balance import Balance
+from analytic.forces.bounded import Bounded
+from analytic.forces.force_arrays import ForceArrays
+from analytic.forces.free_body import free_bodies
+from analytic.forces.given_motion import chunks_of
+from analytic.forces.virtual_power import torque_by_power
+from analytic.kinematics import chunks, unit_chunk
+from analytic.structure.mobility import Structure, analyse
+from models.array import Array
+from models.errors import CrankcheckError
+from models.forces import Forces
+from models.motion import Motion
+from models.samples import samples
+from models.scene import Scene
+
+
+def forces(
+    scene: Scene,
+    when: ArrayLike | Motion,
+    *,
+    bound: bool = True,
+    skip_dead_points: bool = False,
+) -> Forces:
+    """The driving torque, and the reaction in every pin and slider.
+
+    Parameters
+    ----------
+    scene : Scene
+        The mechanism with its masses, gravity and loads.
+    when : ArrayLike or Motion
+        Times [s], (T,), at which it follows its driver's law, or a motion of it, whole and with
+        accelerations: one by `analytic.kinematics.solve_driven`, say.
+    bound : bool
+        Carry error bounds, which go on from those of the motion.
+    skip_dead_points : bool
+        Have no numbers (NaN), and infinite bounds, in dead points instead of raising.
+
+    Returns
+    -------
+    Forces
+        With redundant links the torque alone, by virtual power: how such links share the load is
+        not for statics to say.
+
+    Raises
+    ------
+    StructureError, ReachError
+        As `analytic.kinematics.solve`.
+    CrankcheckError
+        A driver in a dead point, where torque and reactions are not determined; a scene without
+        mass and load; a table of a load that does not reach as far as the motion; a motion that
+        lacks something.
+    """
+    structure = analyse(scene)
+    _check_loaded(scene)
+    if isinstance(when, Motion):
+        time_s, parts = when.time_s, chunks_of(scene, when, bound=bound)
+    else:
+        time_s = samples(when, "time_s")
+        parts = chunks(scene, time_s, bound=bound)
+    result = ForceArrays(time_s, structure, scene.sliders, bound=bound)
+    for span, chunk in parts:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # singular positions
+            _write(result, span, scene, structure, chunk)
+        dead = result.not_finite(span)
+        if not structure.redundant:
+            for sine in chunk.sines.values():
+                dead |= sine == 0.0
+        if skip_dead_points:
+            result.leave_out(span, dead)
+        elif dead.any():
+            raise CrankcheckError(_dead_point(scene, chunk, time_s[span], int(np.argmax(dead))))
+    return result.forces(_undetermined(structure))
+
+
+def _write(
+    result: ForceArrays, span: slice, scene: Scene, structure: Structure, chunk: Chunk
+) -> None:
+    """The forces of a chunk."""
+    free = free_bodies(scene, chunk)
+    if scene.loads:
+        apply_loads(scene, chunk, result.time_s[span], free)
+    if structure.redundant:
+        unit = unit_chunk(scene, chunk.theta, bound=chunk.certified)
+        result.write(span, torque_by_power(free, unit, chunk), {}, {})
+        return
+    displaced = {
+        name: Bounded(one.s, None if one.error is None else one.error.displacement)
+        for name, one in chunk.sliders.items()
+    }
+    balance = Balance(scene, structure, free, displaced)
+    result.write(span, balance.torque(), balance.pins, balance.sliders)
+
+
+def _undetermined(structure: Structure) -> str:
+    """Why there are no reactions, where there are none."""
+    if not structure.redundant:
+        return ""
+    return (
+        f"how redundant links ({structure.spare}) share the load depends on their stiffness and "
+        "fit: statics leaves the reactions open, and determines the driving torque alone"
+    )
+
+
+def _check_loaded(scene: Scene) -> None:
+    """Refuse a scene in which nothing makes a force."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    if not scene.loads and not any(masses):
+        raise CrankcheckError(
+            f"{scene.name}: no link or slider has a mass and nothing loads them, so every force is "
+            "0; give mass_kg to a link, or a [loads.NAME] table"
+        )
+
+
+def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
+    """Where the torque is not determined, by which dyad, and what would work."""
+    theta = math.degrees(_at(chunk.theta, index))
+    where = f"{scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s)"
+    worst = min(
+        chunk.sines,
+        key=lambda key: np.nan_to_num(abs(_at(chunk.sines[key], index)), nan=0.0),
+        default="",
+    )
+    dyad = f"the dyad at {worst} is singular there" if worst else "a dyad is singular there"
+    return (
+        f"{scene.name}: {where} stands in a dead point: {dyad}, so the driving torque and the "
+        "reactions are not determined; leave that instant out, or drive another link"
+    )
+
+
+def _at(values: Real, index: int) -> float:
+    return float(np.ravel(values)[index if np.size(values) > 1 else 0])

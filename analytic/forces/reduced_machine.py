@@ -1,0 +1,91 @@
+"""The whole machine as one flywheel on the driver's shaft.
+
+With rates v' and theta' per unit of the driver's rate, its reduced moment of inertia and the
+reduced torque of weights and loads are::
+
+    I = sum (m v'^2 + J theta'^2)         M = sum (F v' + M theta')
+    torque = I alpha + I' omega^2 / 2 - M          (I' = dI/dphi)
+
+Source: I. I. Artobolevskii, Theory of Mechanisms, on reduced masses.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import Vec
+from analytic.forces.applied_loads import apply_loads
+from analytic.forces.bounded import BoundedVec
+from analytic.forces.free_body import FreeBody
+from analytic.forces.virtual_power import torque_by_power
+from analytic.kinematics import chunks, unit_chunk
+from models.array import Array
+from models.joints import block_name
+from models.samples import samples
+from models.scene import GROUND, Point, Scene
+
+
+@dataclass(frozen=True)
+class ReducedMachine:
+    """Over the driver's angle ``theta`` [rad]: ``inertia`` I [kg m^2], its ``slope`` I' [kg m^2]
+    by the angle, ``torque`` M of weights and loads [N m]; (T,) each."""
+
+    theta: Array
+    inertia: Array
+    slope: Array
+    torque: Array
+
+
+def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
+    """The machine reduced to its driver, at the given times under its driver's law.
+
+    Raises as `analytic.forces.kinetostatics.forces`, but for dead points, where it is not finite.
+    """
+    instants = samples(time_s, "time_s")
+    parts = []
+    for span, chunk in chunks(scene, instants, bound=False):
+        unit = unit_chunk(scene, chunk.theta, bound=False)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            free = _still(scene, chunk)
+            apply_loads(scene, chunk, instants[span], free)
+            torque = -torque_by_power(free, unit, chunk)
+            rows = (chunk.theta, *_inertia(scene, free, unit), torque.value)
+        parts.append([np.broadcast_to(row, chunk.theta.shape) for row in rows])
+    return ReducedMachine(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+
+
+def _still(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
+    """All bodies under their weight alone."""
+    free = {GROUND: FreeBody(chunk.bodies[GROUND], (0.0, 0.0))}
+    for name, (mass, _, centre) in _masses(scene).items():
+        free[name] = body = FreeBody(chunk.bodies[name], centre)
+        if mass > 0.0 and any(scene.gravity_m_s2):
+            x, y = (mass * g for g in scene.gravity_m_s2)
+            body.force = BoundedVec(Vec(x, y), math.hypot(x, y), None)
+    return free
+
+
+def _masses(scene: Scene) -> dict[str, tuple[float, float, Point]]:
+    """Mass [kg], moment of inertia [kg m^2] and centre of each body."""
+    own = {n: (k.mass_kg, k.inertia_kg_m2, k.centre_m) for n, k in scene.links.items()}
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            own[block_name(slider)] = (slider.mass_kg, slider.inertia_kg_m2, (0.0, 0.0))
+    return own
+
+
+def _inertia(scene: Scene, free: dict[str, FreeBody], unit: Chunk) -> tuple[Array, Array]:
+    """The reduced moment of inertia and its derivative: with the driver at 1 rad/s, steady,
+    accelerations are the derivatives of rates by its angle."""
+    inertia, slope = np.zeros_like(unit.theta), np.zeros_like(unit.theta)
+    for name, (mass, moment, centre) in _masses(scene).items():
+        body = unit.bodies[name]
+        at = body.point(centre)
+        inertia += mass * at.v.square() + moment * body.omega**2
+        slope += 2.0 * (mass * at.v.dot(at.a) + moment * body.omega * body.alpha)
+    return inertia, slope

@@ -1,0 +1,187 @@
+"""How the magnitude of a load goes over time, over the driver's angle or over a displacement."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from models.array import Array
+from models.interpolation import slopes, spline
+
+Interpolation = Literal["linear", "pchip"]
+EPS = float(np.finfo(np.float64).eps)
+END = 1e-9
+"""By how much of its length a table may be left behind: a stroke ends where rounding has it."""
+
+
+class Characteristic(ABC):
+    """The magnitude of a load [N or N m] over time [s], driver angle [rad] or displacement [m].
+
+    Raises ValueError for numbers that give no magnitude.
+    """
+
+    @abstractmethod
+    def at(self, x: Array) -> Array:
+        """The magnitude, shape of ``x``. Raises ValueError where there is none."""
+
+    @abstractmethod
+    def steepest(self, x: Array, by: Array | float) -> Array | float:
+        """A bound on its slope within ``by`` of ``x``."""
+
+    @abstractmethod
+    def rounding(self, x: Array) -> Array | float:
+        """A bound on what rounding does to `at`."""
+
+
+@dataclass(frozen=True)
+class Constant(Characteristic):
+    """The same everywhere."""
+
+    value: float
+
+    def at(self, x: Array) -> Array:
+        return np.full_like(x, self.value)
+
+    def steepest(self, x: Array, by: Array | float) -> Array | float:
+        return 0.0
+
+    def rounding(self, x: Array) -> Array | float:
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Sine(Characteristic):
+    """amplitude sin(2 pi x / period + phase); a constant load beside it shifts it."""
+
+    amplitude: float
+    period: float
+    phase_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.period > 0.0:
+            raise ValueError(f"found a period of {self.period:g}; give one above 0")
+
+    def at(self, x: Array) -> Array:
+        return np.asarray(self.amplitude * np.sin(math.tau / self.period * x + self.phase_rad))
+
+    def steepest(self, x: Array, by: Array | float) -> Array | float:
+        return abs(self.amplitude) * math.tau / self.period
+
+    def rounding(self, x: Array) -> Array | float:
+        turned = np.abs(x) * (math.tau / self.period) + abs(self.phase_rad)
+        return np.asarray(3 * EPS * abs(self.amplitude) * (1.0 + turned))
+
+
+@dataclass(frozen=True)
+class Polynomial(Characteristic):
+    """c0 + c1 x + c2 x^2 + ..."""
+
+    coefficients: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.coefficients:
+            raise ValueError("found no coefficient; give one at least, that of x^0 first")
+
+    def at(self, x: Array) -> Array:
+        return np.asarray(np.polynomial.polynomial.polyval(x, self.coefficients))
+
+    def steepest(self, x: Array, by: Array | float) -> Array | float:
+        slope = [k * abs(c) for k, c in enumerate(self.coefficients)][1:] or [0.0]
+        return np.asarray(np.polynomial.polynomial.polyval(np.abs(x) + by, slope))
+
+    def rounding(self, x: Array) -> Array | float:
+        sizes = [abs(c) for c in self.coefficients]
+        size = np.asarray(np.polynomial.polynomial.polyval(np.abs(x), sizes))
+        return np.asarray(len(sizes) * EPS * size)
+
+
+@dataclass(frozen=True)
+class Tabulated(Characteristic):
+    """Values at places; in between straight (``linear``) or cubics without overshoot (``pchip``).
+
+    With ``period`` it goes on for ever; the places then lie within one period, and where they fill
+    it the last value is the first. Without, there is nothing before its first place and after its
+    last.
+    """
+
+    places: tuple[float, ...]
+    values: tuple[float, ...]
+    interpolation: Interpolation = "linear"
+    period: float | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.places) != len(self.values):
+            raise ValueError(
+                f"found {len(self.places)} places and {len(self.values)} values; give one each"
+            )
+        if len(self.places) < 2:
+            raise ValueError(f"found {len(self.places)} rows; a table needs two or more")
+        steps = np.diff(self.places)
+        if np.min(steps) <= 0.0:
+            k = int(np.argmin(steps > 0.0))
+            raise ValueError(
+                f"found {self.places[k + 1]:g} after {self.places[k]:g}; the places of a table "
+                "have to increase from row to row"
+            )
+        if self.period is not None:
+            self._check_period(self.period)
+
+    def _check_period(self, period: float) -> None:
+        span = self.places[-1] - self.places[0]
+        if span > period * (1.0 + END):
+            raise ValueError(
+                f"found rows over {span:g}, more than the period, {period:g}; leave out what is "
+                "there twice, or give the period"
+            )
+        if span > period * (1.0 - END) and self.values[0] != self.values[-1]:
+            raise ValueError(
+                f"found {self.values[0]:g} in the first row and {self.values[-1]:g} in the last, "
+                "a period later; give them one value, or leave out the last row"
+            )
+
+    def _knots(self) -> tuple[Array, Array]:
+        """Places and values, those of a period closed by the first row of the next."""
+        x, y = np.array(self.places), np.array(self.values)
+        if self.period is not None and x[-1] - x[0] <= self.period * (1.0 - END):
+            x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
+        return x, y
+
+    def at(self, x: Array) -> Array:
+        knots, values = self._knots()
+        if self.period is not None:
+            x = knots[0] + np.mod(x - knots[0], self.period)
+        else:
+            self._check_within(x)
+        x = np.clip(x, knots[0], knots[-1])
+        if self.interpolation == "linear":
+            return np.interp(x, knots, values)
+        return spline(x, knots, values, slopes(knots, values, closed=self.period is not None))
+
+    def _check_within(self, x: Array) -> None:
+        first, last = self.places[0], self.places[-1]
+        off = np.maximum(first - x, x - last)
+        k = int(np.nanargmax(off)) if np.any(off == off) else 0
+        if off[k] > END * (last - first):
+            raise ValueError(
+                f"the table goes from {first:g} to {last:g}, and {x[k]:g} is asked for; give it "
+                "rows up to there"
+            )
+
+    def steepest(self, x: Array, by: Array | float) -> Array | float:
+        knots, values = self._knots()
+        # A cubic without overshoot is nowhere steeper than three times its chord.
+        factor = 1.0 if self.interpolation == "linear" else 3.0
+        return factor * float(np.max(np.abs(np.diff(values) / np.diff(knots))))
+
+    def rounding(self, x: Array) -> Array | float:
+        size = float(np.max(np.abs(self.values)))
+        own = size * (16 * EPS if self.interpolation == "linear" else 128 * EPS)
+        if self.period is None:
+            return own
+        # Whole periods are taken off the argument, and one is added to the first place.
+        reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + self.period
+        return np.asarray(own + 4 * EPS * reach * self.steepest(x, 0.0))

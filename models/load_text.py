@@ -1,0 +1,49 @@
+"""A load as the table of a scene file that reads as it, angles in degrees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.errors import CrankcheckError
+from models.load_tables import UNIT
+from models.loads import Load
+
+
+def load_table(load: Load) -> Mapping[str, object]:
+    """The table. Raises CrankcheckError for a characteristic of another kind."""
+    table: dict[str, object] = {}
+    block = load.body.removeprefix("block ")  # no link has a space in its name
+    if block != load.body:
+        table["block"] = block
+    else:
+        table["link"] = load.body
+        if load.point is not None:
+            table["point"] = load.point
+    if load.point is not None:
+        table |= {"direction_deg": math.degrees(load.direction_rad), "frame": load.frame}
+    if load.stroke != "both" or load.over == "displacement":
+        table |= {"slider": load.slider, "stroke": load.stroke}
+    key = "torque_n_m" if load.point is None else "force_n"
+    return table | _characteristic(load, key)
+
+
+def _characteristic(load: Load, key: str) -> dict[str, object]:
+    """The law with its numbers; ``key`` is that of the magnitude."""
+    unit, factor = UNIT[load.over], 180.0 / math.pi if load.over == "angle" else 1.0
+    match load.characteristic:
+        case Constant(value):
+            return {"law": "constant", key: value}
+        case Sine(amplitude, period, phase_rad):
+            own = {f"period_{unit}": period * factor, "phase_deg": math.degrees(phase_rad)}
+            return {"law": "sine", "over": load.over, key: amplitude, **own}
+        case Polynomial(coefficients):
+            return {"law": "polynomial", "over": load.over, key: coefficients}
+        case Tabulated(places, values, interpolation, period):
+            rows = {f"at_{unit}": tuple(place * factor for place in places), key: values}
+            own = {} if period is None else {"period_deg": math.degrees(period)}
+            law = {"law": "table", "over": load.over, "interpolation": interpolation}
+            return {**law, **rows, **own}
+    kind = type(load.characteristic).__name__
+    raise CrankcheckError(f"load {load.name}: a scene file has no words for a {kind}")

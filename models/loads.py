@@ -1,0 +1,79 @@
+"""What acts on a mechanism from outside: forces at points and torques on links.
+
+A load has a direction, in the ground's frame or in that of its body, and a magnitude, which is
+constant or follows time, the driver's angle or the displacement of a slider by a `Characteristic`.
+It may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one
+point add up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from models.array import Array
+from models.characteristics import Characteristic
+from models.errors import CrankcheckError
+
+Over = Literal["time", "angle", "displacement"]
+Stroke = Literal["both", "forward", "backward"]
+UNITS: dict[str, str] = {"time": "s", "angle": "rad", "displacement": "m"}
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force at a point of a body, or a torque on it (``point`` is None).
+
+    ``body`` is a link, or a slider's block (`models.joints.block_name`). The force points along
+    ``direction_rad`` in the frame of the ``ground`` or of the ``body`` where its magnitude is
+    positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, or
+    whose stroke, counts: ``forward`` is where it moves along its direction.
+    """
+
+    name: str
+    body: str
+    point: str | None
+    characteristic: Characteristic
+    over: Over = "time"
+    slider: str | None = None
+    stroke: Stroke = "both"
+    direction_rad: float = 0.0
+    frame: Literal["ground", "body"] = "ground"
+
+    def magnitude(self, x: Array, speed: Array | None = None) -> Array:
+        """The force [N] or the torque [N m].
+
+        Parameters
+        ----------
+        x : Array
+            Times [s], driver angles [rad] or displacements of the slider [m], as ``over`` says.
+        speed : Array or None
+            Speeds of the slider [m/s], where it acts on one stroke only.
+
+        Raises
+        ------
+        CrankcheckError
+            A table that does not reach as far.
+        """
+        try:
+            magnitude = self.characteristic.at(x)
+        except ValueError as error:
+            raise CrankcheckError(
+                f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
+            ) from None
+        if self.stroke == "both" or speed is None:
+            return magnitude
+        return np.where(speed > 0.0 if self.stroke == "forward" else speed < 0.0, magnitude, 0.0)
+
+    def uncertain(
+        self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float
+    ) -> Array:
+        """A bound on the error of the magnitude where ``x`` and the speed are wrong by as much."""
+        own = self.characteristic
+        error = np.asarray(own.steepest(x, by) * by + own.rounding(x))
+        if self.stroke == "both" or speed is None:
+            return error
+        turns = np.abs(speed) <= speed_by  # it may act or not
+        return np.where(turns, error + np.abs(own.at(x)), error)

@@ -1,0 +1,49 @@
+"""Forces beside other forces, and the balance of power."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from analytic.check import power
+from analytic.kinematics import solve
+from models.array import Array
+from models.forces import Forces
+from models.scene import Scene
+
+AGREED = 1e-11
+SAMPLES = 61
+
+
+def turn(scene: Scene) -> Array:
+    """Times over a period, none of them in a position of symmetry."""
+    return np.linspace(0.0, scene.driver.law.period_s, SAMPLES) + 1e-3 * scene.driver.law.period_s
+
+
+def series(found: Forces) -> Iterator[tuple[str, Array]]:
+    """Everything, by name."""
+    yield "torque", found.torque
+    for point, by_body in found.pins.items():
+        for body, force in by_body.items():
+            yield f"pin {point} on {body}", force
+    for name, one in found.sliders.items():
+        yield f"normal {name}", one.normal
+        yield f"moment {name}", one.moment
+
+
+def apart(one: Forces, other: Forces) -> float:
+    """The largest difference over the largest torque or force of either."""
+    ours, theirs = dict(series(one)), dict(series(other))
+    assert ours.keys() == theirs.keys()
+    forces = max(float(np.abs(a).max()) for n, a in ours.items() if n[0] in "pn")
+    moments = max(float(np.abs(a).max()) for n, a in ours.items() if n[0] in "tm")
+    return max(
+        float(np.abs(a - theirs[n]).max()) / (forces if n[0] in "pn" else moments)
+        for n, a in ours.items()
+    )
+
+
+def out_of_balance(scene: Scene, time_s: Array, found: Forces) -> float:
+    balance = power.power_balance(scene, solve(scene, time_s), found.torque)
+    return float(np.max(np.abs(balance.put_in - balance.used)) / np.max(balance.scale))

@@ -1,0 +1,259 @@
+"""Reactions and driving torque in fifty digits: Newton's and Euler's equations of all bodies.
+
+Positions and their derivatives come from `tests.analytic.chain`; every body gives three equations
+for the unknown forces of its joints, and all of them are solved at once.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mpmath import matrix, mp, mpf
+
+from analytic.structure.mobility import sliding_body
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.joints import block_name, local_point
+from models.loads import Load
+from models.scene import GROUND, Point, Scene
+from tests.analytic.chain import Solved, law_at
+from tests.analytic.change_points.jets import Number
+
+Pair = tuple[Number, Number]
+
+
+@dataclass(frozen=True)
+class ExactForces:
+    """At one time: forces of pins on bodies, of guides on sliders (normal, moment), the torque."""
+
+    pins: Mapping[str, Mapping[str, Pair]]
+    sliders: Mapping[str, Pair]
+    torque: Number
+
+    @property
+    def largest(self) -> float:
+        """The largest of its numbers."""
+        pairs = [pair for held in self.pins.values() for pair in held.values()]
+        pairs += list(self.sliders.values())
+        return float(max(abs(self.torque), *(abs(n) for pair in pairs for n in pair)))
+
+
+@dataclass(frozen=True)
+class _Body:
+    """The frame of a body: origin with acceleration, angle, angular acceleration and velocity."""
+
+    origin: Pair
+    push: Pair
+    theta: Number
+    omega: Number
+    alpha: Number
+
+    def arm(self, local: Point) -> Pair:
+        c, s = mp.cos(self.theta), mp.sin(self.theta)
+        x, y = mpf(local[0]), mpf(local[1])
+        return c * x - s * y, s * x + c * y
+
+    def place(self, local: Point) -> Pair:
+        x, y = self.arm(local)
+        return self.origin[0] + x, self.origin[1] + y
+
+    def acceleration(self, local: Point) -> Pair:
+        x, y = self.arm(local)
+        w2 = self.omega**2
+        return (
+            self.push[0] - self.alpha * y - w2 * x,
+            self.push[1] + self.alpha * x - w2 * y,
+        )
+
+
+def exact_forces(scene: Scene, time_s: float, solved: Solved) -> ExactForces:
+    """The forces of an exact motion at a time."""
+    bodies = _bodies(scene, solved)
+    names = [name for name in bodies if name != GROUND]
+    at = {name: 3 * k for k, name in enumerate(names)}
+    a, b = matrix(3 * len(names), 3 * len(names)), matrix(3 * len(names), 1)
+    column = 0
+
+    def force(body: str, place: Pair, along: Pair, sign: int) -> None:
+        """The unknown of this column pushes a body at a place of the plane."""
+        if body == GROUND:
+            return
+        ox, oy = bodies[body].origin
+        row = at[body]
+        a[row, column] += sign * along[0]
+        a[row + 1, column] += sign * along[1]
+        a[row + 2, column] += sign * ((place[0] - ox) * along[1] - (place[1] - oy) * along[0])
+
+    hinges, slides = [], []
+    for point, held in _pins(scene).items():
+        for other in held[1:]:
+            place = bodies[held[0]].place(local_point(scene, held[0], point))
+            for along in ((mpf(1), mpf(0)), (mpf(0), mpf(1))):
+                force(held[0], place, along, 1)
+                force(other, place, along, -1)
+                column += 1
+            hinges.append((point, held[0], other))
+    for slider in scene.sliders.values():
+        body, angle = sliding_body(slider), bodies[slider.on].theta + mpf(slider.direction_rad)
+        place = bodies[body].place(local_point(scene, body, slider.point))
+        across = (-mp.sin(angle), mp.cos(angle))
+        force(body, place, across, 1)
+        force(slider.on, place, across, -1)
+        a[at[body] + 2, column + 1] += 1
+        if slider.on != GROUND:
+            a[at[slider.on] + 2, column + 1] -= 1
+        column += 2
+        slides.append(slider.name)
+    a[at[scene.driver.link] + 2, column] += 1
+    for name in names:
+        _inertia(scene, name, bodies[name], b, at[name])
+    for load in scene.loads.values():
+        _apply(scene, load, time_s, solved, bodies, b, at[load.body])
+    found = list(mp.lu_solve(a, b))
+    pins: dict[str, dict[str, Pair]] = {}
+    for k, (point, one, other) in enumerate(hinges):
+        for body, sign in ((one, 1), (other, -1)):
+            x, y = pins.setdefault(point, {}).get(body, (mpf(0), mpf(0)))
+            pins[point][body] = (x + sign * found[2 * k], y + sign * found[2 * k + 1])
+    start = 2 * len(hinges)
+    sliders = {
+        name: (found[start + 2 * k], found[start + 2 * k + 1]) for k, name in enumerate(slides)
+    }
+    return ExactForces(pins, sliders, found[-1])
+
+
+def _pins(scene: Scene) -> dict[str, list[str]]:
+    held = {point: list(names) for point, names in scene.pins.items()}
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            held.setdefault(slider.point, []).append(block_name(slider))
+    return {point: names for point, names in held.items() if len(names) > 1}
+
+
+def _bodies(scene: Scene, solved: Solved) -> dict[str, _Body]:
+    still = (mpf(0), mpf(0))
+    found = {GROUND: _Body(still, still, mpf(0), mpf(0), mpf(0))}
+    for link in scene.links.values():
+        point, local = next(iter(link.points.items()))
+        turn, at = solved.links[link.name], solved.points[point]
+        place, push = (at.x.value, at.y.value), (at.x.second, at.y.second)
+        own = _Body(place, push, turn.value, turn.rate, turn.second)
+        back = (-local[0], -local[1])
+        origin, shove = own.place(back), own.acceleration(back)
+        found[link.name] = _Body(origin, shove, turn.value, turn.rate, turn.second)
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            at, on = solved.points[slider.point], found[slider.on]
+            place, push = (at.x.value, at.y.value), (at.x.second, at.y.second)
+            theta = on.theta + mpf(slider.direction_rad)
+            found[block_name(slider)] = _Body(place, push, theta, on.omega, on.alpha)
+    return found
+
+
+def _inertia(scene: Scene, name: str, body: _Body, b: matrix, row: int) -> None:
+    """What joints and loads have to bring about: m (a - g), and the same about the origin."""
+    if name in scene.links:
+        holder = scene.links[name]
+        mass, moment, centre = holder.mass_kg, holder.inertia_kg_m2, holder.centre_m
+    else:
+        block = scene.sliders[name.removeprefix("block ")]
+        mass, moment, centre = block.mass_kg, block.inertia_kg_m2, (0.0, 0.0)
+    ax, ay = body.acceleration(centre)
+    x, y = body.arm(centre)
+    fx = mpf(mass) * (ax - mpf(scene.gravity_m_s2[0]))
+    fy = mpf(mass) * (ay - mpf(scene.gravity_m_s2[1]))
+    b[row] += fx
+    b[row + 1] += fy
+    b[row + 2] += x * fy - y * fx + mpf(moment) * body.alpha
+
+
+def _apply(
+    scene: Scene,
+    load: Load,
+    time_s: float,
+    solved: Solved,
+    bodies: Mapping[str, _Body],
+    b: matrix,
+    row: int,
+) -> None:
+    """Take a load off what the joints have to bring about."""
+    slider = None if load.slider is None else solved.sliders[load.slider]
+    x = mpf(time_s)
+    if load.over == "angle":
+        x = law_at(scene.driver.law, time_s).value
+    elif load.over == "displacement":
+        assert slider is not None
+        x = slider.value
+    size = value_of(load.characteristic, x)
+    if load.stroke != "both":
+        assert slider is not None
+        size = size if slider.rate * (1 if load.stroke == "forward" else -1) > 0 else mpf(0)
+    if load.point is None:
+        b[row + 2] -= size
+        return
+    body = bodies[load.body]
+    angle = mpf(load.direction_rad) + (body.theta if load.frame == "body" else 0)
+    fx, fy = size * mp.cos(angle), size * mp.sin(angle)
+    ax, ay = body.arm(local_point(scene, load.body, load.point))
+    b[row] -= fx
+    b[row + 1] -= fy
+    b[row + 2] -= ax * fy - ay * fx
+
+
+def value_of(own: Characteristic, x: Number) -> Number:
+    if isinstance(own, Constant):
+        return mpf(own.value)
+    if isinstance(own, Sine):
+        return mpf(own.amplitude) * mp.sin(2 * mp.pi * x / mpf(own.period) + mpf(own.phase_rad))
+    if isinstance(own, Polynomial):
+        return sum((mpf(c) * x**k for k, c in enumerate(own.coefficients)), mpf(0))
+    assert isinstance(own, Tabulated)
+    rows = [(mpf(p), mpf(v)) for p, v in zip(own.places, own.values, strict=True)]
+    if own.period is not None:
+        period = mpf(own.period)
+        x -= period * mp.floor((x - rows[0][0]) / period)
+        rows.append((rows[0][0] + period, rows[0][1]))
+    if own.interpolation == "pchip":
+        return _cubic(rows, x, closed=own.period is not None)
+    for (x0, y0), (x1, y1) in itertools.pairwise(rows):
+        if x <= x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    raise AssertionError("the table is too short")
+
+
+def _cubic(rows: list[Pair], x: Number, *, closed: bool) -> Number:
+    """The cubic of Fritsch and Butland, from Hermite's four polynomials."""
+    chords = [(b[0] - a[0], (b[1] - a[1]) / (b[0] - a[0])) for a, b in itertools.pairwise(rows)]
+    inner = [_harmonic(*pair) for pair in itertools.pairwise(chords)]
+    if closed:
+        slopes = [_harmonic(chords[-1], chords[0]), *inner, _harmonic(chords[-1], chords[0])]
+    else:
+        slopes = [_outer(*chords[:2]), *inner, _outer(*chords[:-3:-1])]
+    for k, ((x0, y0), (x1, y1)) in enumerate(itertools.pairwise(rows)):
+        if x <= x1:
+            h = x1 - x0
+            t = (x - x0) / h
+            return (
+                y0 * (1 + 2 * t) * (1 - t) ** 2
+                + h * slopes[k] * t * (1 - t) ** 2
+                + y1 * t**2 * (3 - 2 * t)
+                + h * slopes[k + 1] * t**2 * (t - 1)
+            )
+    raise AssertionError("the table is too short")
+
+
+def _harmonic(before: Pair, after: Pair) -> Number:
+    """The slope between two chords, each its length and its slope."""
+    (h0, d0), (h1, d1) = before, after
+    if d0 * d1 <= 0:
+        return mpf(0)
+    return 3 * (h0 + h1) / ((2 * h1 + h0) / d0 + (h1 + 2 * h0) / d1)
+
+
+def _outer(near: Pair, far: Pair) -> Number:
+    (h0, d0), (h1, d1) = near, far
+    slope = d0 + (d0 - d1) * h0 / (h0 + h1)
+    if slope * d0 <= 0:
+        return mpf(0)
+    return 3 * d0 if d0 * d1 <= 0 and abs(slope) > 3 * abs(d0) else slope

@@ -1,0 +1,35 @@
+"""Every file with loads gives forces or a message, whatever stands in it."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from models.errors import CrankcheckError
+from models.files import parse_scene
+from tests.models.test_loads import PRESS
+from tests.worlds.mutation import MUTATIONS
+
+FILES = 250
+
+
+def test_a_changed_file_gives_forces_or_a_message() -> None:
+    """Warnings are errors here, so that no number overflows unseen either."""
+    solved = refused = 0
+    for number in range(FILES):
+        rng = random.Random(number)
+        text = PRESS
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            text = rng.choices(list(MUTATIONS), list(MUTATIONS.values()))[0](rng, text)
+        try:
+            scene = parse_scene(text, "changed")
+            period = scene.driver.law.period_s
+            found = forces(scene, np.linspace(0.01, 0.99, 5) * period, skip_dead_points=True)
+            assert found.bound is not None
+            assert not np.isnan(found.bound.torque).any()
+            solved += 1
+        except CrankcheckError:
+            refused += 1
+    assert min(solved, refused) > 0.2 * FILES, (solved, refused)

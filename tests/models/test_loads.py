@@ -1,0 +1,258 @@
+"""Loads: what a scene file says of them, what they give, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.errors import CrankcheckError, SceneError
+from models.files import load_scene, parse_scene, shipped
+from models.interpolation import slopes, spline
+from models.loads import Load
+from models.scene_text import scene_text
+
+PRESS = """
+name = "press"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+rod = { bar = ["B", "C"], length_m = 0.3 }
+[sliders.C]
+on = "ground"
+mass_kg = 0.5
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+[loads.work]
+block = "C"
+direction_deg = 180.0
+force_n = 500.0
+slider = "C"
+stroke = "forward"
+[loads.gas]
+link = "rod"
+point = "C"
+frame = "body"
+law = "table"
+over = "displacement"
+slider = "C"
+at_m = [0.15, 0.2, 0.45]
+force_n = [900.0, 300.0, 0.0]
+interpolation = "pchip"
+[loads.valve]
+link = "crank"
+law = "table"
+over = "angle"
+at_deg = [0.0, 90.0, 270.0]
+period_deg = 720.0
+interpolation = "linear"
+torque_n_m = [0.0, 2.0, -1.0]
+[loads.hum]
+link = "rod"
+point = "B"
+direction_deg = 30.0
+law = "sine"
+over = "time"
+period_s = 0.02
+phase_deg = 90.0
+force_n = 3.0
+[loads.drag]
+link = "crank"
+law = "polynomial"
+over = "angle"
+torque_n_m = [1.0, -0.5, 0.25]
+"""
+
+
+def test_every_law_of_a_load_is_read() -> None:
+    loads = parse_scene(PRESS, "press").loads
+    assert loads["work"] == Load(
+        "work", "block C", "C", Constant(500.0), "time", "C", "forward", math.pi
+    )
+    gas = Tabulated((0.15, 0.2, 0.45), (900.0, 300.0, 0.0), "pchip")
+    assert loads["gas"] == Load("gas", "rod", "C", gas, "displacement", "C", frame="body")
+    quarter = math.pi / 2
+    valve = Tabulated((0.0, quarter, 3 * quarter), (0.0, 2.0, -1.0), "linear", 4 * math.pi)
+    assert loads["valve"] == Load("valve", "crank", None, valve, "angle")
+    hum = Load("hum", "rod", "B", Sine(3.0, 0.02, quarter), direction_rad=math.radians(30.0))
+    assert loads["hum"] == hum
+    assert loads["drag"] == Load("drag", "crank", None, Polynomial((1.0, -0.5, 0.25)), "angle")
+
+
+def test_loads_read_back_as_themselves() -> None:
+    scene = parse_scene(PRESS, "press")
+    again = parse_scene(scene_text(scene), "again")
+    assert again == scene
+    assert list(again.loads) == list(scene.loads)
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_a_scene_without_loads_says_nothing_of_them(name: str) -> None:
+    scene = load_scene(name)
+    assert scene.loads == {}
+    assert "loads" not in scene_text(scene)
+
+
+def test_a_characteristic_of_another_kind_has_no_words() -> None:
+    class Own(Characteristic):
+        at = steepest = rounding = lambda *_: 0.0  # type: ignore[assignment]
+
+    scene = load_scene("fourbar-lecture-1")
+    with pytest.raises(CrankcheckError, match="load x: a scene file has no words for a Own"):
+        scene_text(replace(scene, loads={"x": Load("x", "crank", None, Own())}))
+
+
+FAULTS = {
+    "no body": ('block = "C"\n', "", "loads.work: name what it acts on: link, or block"),
+    "two bodies": ('block = "C"', 'block = "C"\nlink = "rod"', "loads.work: name what it acts"),
+    "other link": ('link = "rod"', 'link = "rad"', "loads.gas.link: found rad; use one of crank"),
+    "other block": ('block = "C"', 'block = "B"', "loads.work.block: found B; use one of C"),
+    "other point": ('point = "B"', 'point = "D"', "loads.hum.point: rod has no point D; it has B"),
+    "other slider": ('slider = "C"', 'slider = "B"', "loads.work.slider: found B; use one of C"),
+    "no slider": ('slider = "C"\nstroke', "stroke", "loads.work: over displacement, or on one"),
+    "idle slider": ('stroke = "forward"', "", "loads.work: slider needs stroke = "),
+    "no point": ('point = "B"\n', "", "loads.hum: a force on link rod needs the point"),
+    "point of a block": ("force_n = 500.0", 'force_n = 5.0\npoint = "C"', "leave point out"),
+    "no magnitude": ("force_n = 500.0", "", "loads.work: give force_n or torque_n_m, one"),
+    "two magnitudes": ("force_n = 500.0", "force_n = 5.0\ntorque_n_m = 1.0", "one of the two"),
+    "torque with a point": (
+        "torque_n_m = [0.0", 'point = "B"\ntorque_n_m = [0.0', "point belongs to a force",
+    ),
+    "other law": ('law = "sine"', 'law = "saw"', "loads.hum.law: found 'saw'; use one of constant"),
+    "unknown key": ("phase_deg", "fase_deg", "loads.hum.fase_deg: unknown key; did you mean phase"),
+    "number as text": ("force_n = 3.0", 'force_n = "3"', "loads.hum.force_n: found '3'"),
+    "other unit": ("at_m", "at_s", 'loads.gas: over = "displacement" takes at_m; found at_s'),
+    "no places": ("at_m = [0.15, 0.2, 0.45]", "", 'loads.gas: over = "displacement" needs at_m'),
+    "other period": ("period_s", "period_m", 'loads.hum: over = "time" takes period_s; found'),
+    "period of no angle": (
+        "at_m = [0.15", "period_deg = 90.0\nat_m = [0.15", 'period_deg needs over = "angle"',
+    ),
+    "no interpolation": ('interpolation = "pchip"', "", "loads.gas.interpolation: missing"),
+    "falling places": (
+        "0.2, 0.45]", "0.1, 0.45]", "loads.gas: found 0.1 after 0.15; the places of a table have",
+    ),
+    "equal places": ("0.2, 0.45]", "0.15, 0.45]", "loads.gas: found 0.15 after 0.15"),
+    "one row": (
+        "[0.15, 0.2, 0.45]\nforce_n = [900.0, 300.0, 0.0]", "[0.15]\nforce_n = [900.0]",
+        "loads.gas: found 1 rows; a table needs two or more",
+    ),
+    "a row too few": ("300.0, 0.0]", "300.0]", "loads.gas: found 3 places and 2 values"),
+    "longer than the period": ("720.0", "180.0", "loads.valve: found rows over 4.71239, more than"),
+    "a period that does not close": (
+        "period_deg = 720.0", "period_deg = 270.0", "found 0 in the first row and -1 in the last",
+    ),
+    "a block without mass": (
+        "mass_kg = 0.5", "", "loads.work.block: block C has no mass, so it is no body; give",
+    ),
+    "a list": (
+        '[loads.hum]\nlink = "rod"', '[[loads.hum]]\nlink = "rod"', "loads.hum: found",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_fault_of_a_load_is_named(fault: str) -> None:
+    old, new, words = FAULTS[fault]
+    assert old in PRESS
+    with pytest.raises(SceneError) as caught:
+        parse_scene(PRESS.replace(old, new, 1), "press")
+    assert words in str(caught.value)
+    assert len(caught.value.faults) == 1
+
+
+def test_a_list_of_loads_is_refused() -> None:
+    text = PRESS[: PRESS.index("[loads.work]")] + '[[loads]]\nlink = "rod"\n'
+    with pytest.raises(SceneError, match="loads: found"):
+        parse_scene(text, "press")
+
+
+def test_a_table_over_the_angle_goes_on_with_its_period() -> None:
+    """Over two turns here; between the last row and the first of the next period too."""
+    valve = parse_scene(PRESS, "press").loads["valve"]
+    deg = np.array([45.0, 90.0, 495.0, 495.0 + 720.0, 495.0 - 7200.0, -225.0])
+    assert valve.magnitude(np.radians(deg)) == pytest.approx([1.0, 2.0, -0.5, -0.5, -0.5, -0.5])
+
+
+def test_a_table_does_not_go_on_past_its_ends() -> None:
+    gas = parse_scene(PRESS, "press").loads["gas"]
+    assert gas.magnitude(np.array([0.15, 0.45 + 1e-11])) == pytest.approx([900.0, 0.0])
+    with pytest.raises(CrankcheckError, match=r"loads.gas: over the displacement \[m\] the table"):
+        gas.magnitude(np.array([0.2, 0.46]))
+
+
+def test_a_load_acts_on_its_stroke_alone() -> None:
+    work = parse_scene(PRESS, "press").loads["work"]
+    speed = np.array([-1.0, 0.0, 1.0])
+    assert work.magnitude(np.zeros(3), speed).tolist() == [0.0, 0.0, 500.0]
+    back = replace(work, stroke="backward")
+    assert back.magnitude(np.zeros(3), speed).tolist() == [500.0, 0.0, 0.0]
+
+
+def test_interpolation_without_overshoot_worked_by_hand() -> None:
+    """Steps 1, 1, 2 and chords 1, 3, 0: (3 + 3) / (3/1 + 3/3) = 3/2, flat where a chord is, and at
+    the first row the parabola's (3 1 - 1 3) / 2 = 0."""
+    x, y = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 1.0, 4.0, 4.0])
+    slope = slopes(x, y, closed=False)
+    assert slope == pytest.approx([0.0, 1.5, 0.0, 0.0])
+    # Hermite in the middle of a step: (y0 + y1) / 2 + h (d0 - d1) / 8.
+    assert spline(np.array([0.5, 1.5, 3.0]), x, y, slope) == pytest.approx(
+        [0.5 - 1.5 / 8, 2.5 + 1.5 / 8, 4.0]
+    )
+
+
+def test_closed_interpolation_goes_on_smoothly() -> None:
+    x, y = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.0, 1.0, -1.0, 0.0])
+    slope = slopes(x, y, closed=True)
+    assert slope[0] == slope[-1] == 1.0
+    open_ends = slopes(x, y, closed=False)
+    assert open_ends[0] != 1.0
+
+
+def test_interpolation_rises_only_where_its_table_rises() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        x, y = np.cumsum(rng.uniform(0.1, 3.0, 8)), rng.uniform(-1.0, 1.0, 8)
+        fine = np.linspace(x[0], x[-1], 4001)
+        found = spline(fine, x, y, slopes(x, y, closed=False))
+        assert spline(x, x, y, slopes(x, y, closed=False)) == pytest.approx(y, abs=1e-14)
+        k = np.clip(np.searchsorted(x, fine, side="right") - 1, 0, 6)
+        assert np.all(found >= np.minimum(y[k], y[k + 1]) - 1e-12)
+        assert np.all(found <= np.maximum(y[k], y[k + 1]) + 1e-12)
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        Sine(3.0, 0.7, 0.2),
+        Polynomial((1.0, -2.0, 0.5, 3.0)),
+        Polynomial((2.0,)),
+        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0)),
+        Tabulated((-2.0, -1.0, 0.3, 2.1), (1.0, -4.0, 2.0, 2.0), "pchip"),
+        Tabulated((0.0, 0.2, 0.7), (1.0, -4.0, 2.0), "pchip", 1.0),
+        Constant(4.0),
+    ],
+    ids=str,
+)
+def test_no_characteristic_is_steeper_than_it_says(own: Characteristic) -> None:
+    x = np.linspace(-2.0, 2.0, 4001)
+    chord = np.abs(np.diff(own.at(x))) / np.diff(x)
+    assert np.all(chord <= np.asarray(own.steepest(x[:-1], 1e-3)) * (1.0 + 1e-9) + 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Sine(1.0, 0.0), "found a period of 0"),
+        (lambda: Polynomial(()), "found no coefficient"),
+        (lambda: Tabulated((0.0,), (1.0,)), "found 1 rows"),
+    ],
+)
+def test_a_characteristic_without_magnitude_is_refused(make: object, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        make()  # type: ignore[operator]

@@ -1,0 +1,150 @@
+"""Random mechanisms of all dyads with random masses and loads, half of them near a dead point."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.kinematics import reach
+from models.characteristics import (
+    Characteristic,
+    Constant,
+    Interpolation,
+    Polynomial,
+    Sine,
+    Tabulated,
+)
+from models.joints import block_name
+from models.laws import Accelerating, Oscillating
+from models.loads import Load, Over
+from models.scene import GROUND, Driver, Point, Scene
+from tests.worlds.layouts import Layout
+from tests.worlds.strategies import FORMS, SWINGS, Designed, swinging, with_dyads
+
+KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
+TRIES = 8
+OVER: tuple[Over, ...] = ("time", "angle", "displacement")
+
+
+def loaded_mechanism(number: int) -> tuple[Scene, bool]:
+    """The mechanism of a number, the kinds of its first dyad taking turns, and whether it stands
+    near a dead point at time 0: where the number is odd, but for some whose driver turns round."""
+    chance = random.Random(number)
+    kind = KINDS[number // 2 % len(KINDS)]
+    for _ in range(TRIES):
+        forms = [chance.choice([form for form in FORMS if form.startswith(kind)])]
+        if chance.random() < 0.4:
+            forms.append(chance.choice(FORMS))
+        designed = _laid_out(chance, forms)
+        if number % 2 == 0:
+            return loaded(swinging(designed, chance.uniform(0.5, 20.0)).scene, chance), False
+        near = near_dead_point(designed.scene, chance)
+        if near is not None:
+            return loaded(near, chance), True
+    return loaded(swinging(designed, 1.0).scene, chance), False
+
+
+def _laid_out(chance: random.Random, forms: list[str]) -> Designed:
+    at = Layout(chance.uniform, chance.choice)
+    pivot = at.arm(0.0, 1.0)
+    crank = at.link(pivot)
+    at.pin(pivot, GROUND, crank)
+    at.pin(pivot + at.arm(0.3, 0.8), crank)
+    return with_dyads(at, forms, crank, Oscillating(at.frames[crank][1], SWINGS[0], 1.0))
+
+
+def near_dead_point(scene: Scene, chance: random.Random) -> Scene | None:
+    """The scene with its driver, at time 0, as near to an end of its range as 1e-8 to 1e-2 rad;
+    None where it turns round."""
+    start = float(scene.driver.law.at(np.zeros(1))[0][0])
+    ranges = [(low, high) for low, high in reach(scene) if 0.02 < high - low < math.tau - 1e-9]
+    if not ranges:
+        return None
+    away = [abs(math.remainder(0.5 * sum(each) - start, math.tau)) for each in ranges]
+    low, high = ranges[int(np.argmin(away))]
+    off = 10 ** chance.uniform(-8.0, -2.0)
+    theta = chance.choice((low + off, high - off))
+    slow = chance.choice((1.0, 1e-20))  # where little but loads acts, the determinant decides
+    law = Accelerating(theta, slow * chance.uniform(-20.0, 20.0), slow * chance.uniform(1.0, 300.0))
+    return replace(scene, driver=Driver(scene.driver.link, law))
+
+
+def loaded(scene: Scene, chance: random.Random) -> Scene:
+    """The scene with masses, centres beside its points, gravity, and up to four loads; some of its
+    blocks stay without mass."""
+
+    def place() -> Point:
+        return chance.uniform(-0.5, 0.5), chance.uniform(-0.5, 0.5)
+
+    links = {
+        name: replace(
+            link,
+            mass_kg=10 ** chance.uniform(-1.0, 1.0),
+            centre_m=place(),
+            inertia_kg_m2=10 ** chance.uniform(-2.0, 0.0),
+        )
+        for name, link in scene.links.items()
+    }
+    sliders = {
+        name: replace(slider, mass_kg=mass, inertia_kg_m2=0.01 * mass)
+        if slider.link is None and (mass := chance.choice((0.0, chance.uniform(0.1, 3.0))))
+        else slider
+        for name, slider in scene.sliders.items()
+    }
+    gravity = (0.0, 0.0) if chance.random() < 0.3 else (chance.uniform(-3.0, 3.0), -9.81)
+    heavy = replace(scene, links=links, sliders=sliders, gravity_m_s2=gravity)
+    names = [f"load{k}" for k in range(chance.randrange(5))]
+    return replace(heavy, loads={name: _load(heavy, name, chance) for name in names})
+
+
+def _load(scene: Scene, name: str, chance: random.Random) -> Load:
+    """A force or a torque on a body of the scene."""
+    targets: list[tuple[str, str]] = [
+        (link.name, point) for link in scene.links.values() for point in link.points
+    ]
+    targets += [
+        (block_name(s), s.point)
+        for s in scene.sliders.values()
+        if s.link is None and s.mass_kg > 0.0
+    ]
+    body, point = chance.choice(targets)
+    over = chance.choice(OVER if scene.sliders else OVER[:2])
+    slider = chance.choice(list(scene.sliders)) if scene.sliders else None
+    stroke = chance.choice(("both", "forward", "backward")) if slider else "both"
+    if over != "displacement" and stroke == "both":
+        slider = None
+    torque = chance.random() < 0.3
+    return Load(
+        name,
+        body,
+        None if torque else point,
+        characteristic(over, chance),
+        over,
+        slider,
+        stroke,  # type: ignore[arg-type]
+        0.0 if torque else chance.uniform(-math.pi, math.pi),
+        "ground" if torque else chance.choice(("ground", "body")),  # type: ignore[arg-type]
+    )
+
+
+def characteristic(over: Over, chance: random.Random) -> Characteristic:
+    """Of any kind; tables are wide enough for every stroke, or repeat with a turn."""
+    size = 10 ** chance.uniform(0.0, 2.0)
+    kind = chance.choice(("constant", "sine", "polynomial", "table"))
+    if kind == "sine":
+        return Sine(size, chance.uniform(0.5, 5.0), chance.uniform(-3.0, 3.0))
+    if kind == "polynomial":
+        return Polynomial(tuple(chance.uniform(-size, size) for _ in range(chance.randrange(1, 5))))
+    interpolation: Interpolation = chance.choice(("linear", "pchip"))
+    if kind == "table" and over == "angle":
+        places = sorted(chance.uniform(0.0, math.tau) for _ in range(6))
+        values = tuple(chance.uniform(-size, size) for _ in places)
+        return Tabulated(tuple(places), values, interpolation, math.tau)
+    if kind == "table" and over == "displacement":
+        rows = sorted(sign * 4.0**k for k in range(-2, 12) for sign in (1, -1))
+        values = tuple(chance.uniform(-size, size) for _ in rows)
+        return Tabulated(tuple(rows), values, interpolation)
+    return Constant(size)
