@@ -21,7 +21,7 @@ MOST = 600
 
 
 @dataclass(frozen=True)
-class Course:
+class ErrorCourse:
     """The largest error of place of all bodies over time, and the widest gap, as pure numbers (T,):
     of a long run the largest of each stretch, at its own instant [s]."""
 
@@ -36,7 +36,7 @@ class CheckedLine(Checked):
     it logged nothing."""
 
     last_turn: Trace = field(default_factory=dict)
-    course: Course | None = None
+    course: ErrorCourse | None = None
 
 
 def checked(cell: Cell, adapter: Engine) -> CheckedLine:
@@ -52,7 +52,7 @@ def without_run(found: Checked) -> CheckedLine:
     return CheckedLine(**vars(found))
 
 
-def course_of(cell: Cell, run: Run) -> Course | None:
+def course_of(cell: Cell, run: Run) -> ErrorCourse | None:
     """The course of a run, None where it logged nothing. Raises CrankcheckError where there is no
     reference."""
     beside = Beside.of(truth_of(Same(cell.scene)), run)
@@ -62,7 +62,7 @@ def course_of(cell: Cell, run: Run) -> Course | None:
     error = np.max([length(each.error) / each.scale for each in beside.places], axis=0)
     gap = _widest(run.gaps, time_s.size) / (cell.scene.longest_m or 1.0)
     kept = _largest_rows(np.nan_to_num(error, nan=np.inf, posinf=np.inf))
-    return Course(time_s[kept], error[kept], gap[kept])
+    return ErrorCourse(time_s[kept], error[kept], gap[kept])
 
 
 def _widest(gaps: Mapping[str, Array], samples: int) -> Array:

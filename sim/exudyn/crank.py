@@ -21,7 +21,7 @@ def speeds(law: Law, start_s: float, dt_s: float, steps: int) -> Array:
     return first + dt_s * np.concatenate([[0.0], gained])
 
 
-class Course:
+class CrankCourse:
     """The angles and speeds of a law at the steps of a run, as functions that exudyn calls.
 
     Between the steps, where a step that failed was cut, they are those of the law itself. Times

@@ -14,7 +14,7 @@ from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Point, Scene
 from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings
-from sim.exudyn.crank import Course
+from sim.exudyn.crank import CrankCourse
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.settings import checked
 from sim.exudyn.solver import constraints, held, initialized, simulation
@@ -41,7 +41,7 @@ class ExudynSession:
             )
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
-        self._course: Course | None = None
+        self._course: CrankCourse | None = None
         self._heard: list[str] = []
         with quiet(self._heard):
             self._model = build(scene, state, prescribed=drive == "prescribed")
@@ -68,7 +68,7 @@ class ExudynSession:
         if isinstance(law, ConstantSpeed):
             told = {"velocityLevel": True, "offset": law.speed_rad_s}
         else:
-            self._course = course = Course(law, self._start_s, self._dt)
+            self._course = course = CrankCourse(law, self._start_s, self._dt)
             told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
         self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
 
@@ -106,7 +106,7 @@ class ExudynSession:
             for level in LEVELS
         ]
 
-    def _set_off(self, course: Course) -> None:
+    def _set_off(self, course: CrankCourse) -> None:
         """Start with the rates that go with the crank's, and accelerations that go with its own.
 
         exudyn leaves out what a driver's acceleration adds to its initial ones, and the trapezoidal

@@ -29,7 +29,7 @@ ATTRIBUTE = re.compile(rb"""([\w:.-]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
 
 @dataclass(frozen=True)
-class Advice:
+class RecommendedAttributes:
     """Attributes to set: of <option>, of its <flag>, and of each element that closes a loop."""
 
     option: Mapping[str, str]
@@ -50,7 +50,7 @@ class Advice:
         return "set " + "; ".join(parts)
 
 
-def advice(model: Any, dt_s: float, advised: Advised) -> Advice:
+def advice(model: Any, dt_s: float, advised: Advised) -> RecommendedAttributes:
     """What is recommended at a step, where the model has not got it."""
     option = {}
     if float(model.opt.timestep) != dt_s:
@@ -65,7 +65,7 @@ def advice(model: Any, dt_s: float, advised: Advised) -> Advice:
     if float(model.opt.tolerance) > TOLERANCE:
         option["tolerance"] = f"{TOLERANCE:g}"
     off = int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-    return Advice(
+    return RecommendedAttributes(
         option,
         {"contact": "disable"} if advised.contacts_off and not off else {},
         {
@@ -75,7 +75,7 @@ def advice(model: Any, dt_s: float, advised: Advised) -> Advice:
     )
 
 
-def patched(raw: bytes, loops: Iterable[int], count: int, advised: Advice) -> bytes:
+def patched(raw: bytes, loops: Iterable[int], count: int, advised: RecommendedAttributes) -> bytes:
     """The text of a model with the recommended attributes in it.
 
     ``loops`` are the numbers of its ``count`` equalities that close loops.
@@ -118,7 +118,9 @@ def _lines(raw: bytes) -> list[str]:
     ]
 
 
-def _options(raw: bytes, found: list[Tag], advised: Advice) -> Iterator[tuple[int, int, bytes]]:
+def _options(
+    raw: bytes, found: list[Tag], advised: RecommendedAttributes
+) -> Iterator[tuple[int, int, bytes]]:
     """Where <option> and its <flag> change, the last of each, as it overrides the ones before;
     elements that are not there are put in."""
     if not advised.option and not advised.flag:

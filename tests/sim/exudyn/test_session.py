@@ -15,7 +15,7 @@ from models.hard import double_parallelogram
 from models.laws import FromRest, Law, Oscillating, SpeedChange
 from models.scene import Scene
 from sim.engine import Drive, Run, Settings
-from sim.exudyn.crank import Course, speeds
+from sim.exudyn.crank import CrankCourse, speeds
 from sim.exudyn.engine import ENGINE
 from sim.exudyn.session import ExudynSession
 from sim.run import run
@@ -188,7 +188,7 @@ def test_speeds_lead_by_the_trapezoidal_rule_to_the_angles_of_the_law(law: str) 
 
 def test_between_the_steps_the_crank_is_told_the_law_itself() -> None:
     law = LAWS["oscillating"]
-    course = Course(law, 0.2, 1e-3)
+    course = CrankCourse(law, 0.2, 1e-3)
     course.reach(10)
     turned, rate, _ = law.at(np.array([0.2, 0.2 + 4.3e-3, 0.2 + 5e-3]))
     assert course.angle(None, 4.3e-3, None, 0.0) == pytest.approx(turned[1] - turned[0], abs=1e-15)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from models.errors import EngineError
-from sim.mujoco.own_model.patch import Advice, advice, patched
+from sim.mujoco.own_model.patch import RecommendedAttributes, advice, patched
 from sim.mujoco.own_model.read import ReadModel, read_model
 from sim.mujoco.own_model.variants import RECOMMENDED, applied, profiles
 from sim.own_models import Advised
@@ -159,7 +159,7 @@ def test_a_file_in_another_encoding_is_said_in_words(tmp_path: Path) -> None:
 
 def test_more_equalities_than_the_text_has_are_an_error() -> None:
     with pytest.raises(EngineError, match="1 of its 2 equalities"):
-        patched(PLAIN.encode(), [0], 2, Advice({}, {}, {}))
+        patched(PLAIN.encode(), [0], 2, RecommendedAttributes({}, {}, {}))
 
 
 def test_the_numbers_to_paste_are_those_that_are_run(tmp_path: Path) -> None:
