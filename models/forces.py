@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from models.array import Array
 
@@ -38,7 +40,8 @@ class Forces:
     frame. Bodies stand in the order of the pin, the ground first, then links, then slider blocks:
     where two meet, the force on the second is what the first exerts on it. All forces of a pin add
     up to 0. ``torque`` [N m], (T,), is what the drive exerts on the driver. ``undetermined`` says
-    why there are no reactions where the equations of statics leave them open.
+    why there are no reactions where the equations of statics leave them open. What a producer does
+    not give is NaN.
     """
 
     time_s: Array
@@ -47,3 +50,50 @@ class Forces:
     torque: Array
     bound: ForceBound | None = None
     undetermined: str = ""
+
+    def each_series(self, change: Callable[[Array], Array]) -> Forces:
+        """The forces, without bound, with every series changed; their instants stay."""
+        return replace(
+            self,
+            pins={
+                point: {body: change(force) for body, force in bodies.items()}
+                for point, bodies in self.pins.items()
+            },
+            sliders={
+                name: SliderForces(change(slider.normal), change(slider.moment))
+                for name, slider in self.sliders.items()
+            },
+            torque=change(self.torque),
+            bound=None,
+        )
+
+    def stretch(self, kept: slice) -> Forces:
+        """Some of the samples, one after the other, without bound."""
+        return replace(self.each_series(lambda series: series[kept]), time_s=self.time_s[kept])
+
+    @staticmethod
+    def joined(parts: Sequence[Forces]) -> Forces:
+        """Stretches of samples one after the other."""
+        first = parts[0]
+        if len(parts) == 1:
+            return first
+        return replace(
+            first,
+            time_s=np.concatenate([part.time_s for part in parts]),
+            pins={
+                point: {
+                    body: np.concatenate([part.pins[point][body] for part in parts])
+                    for body in bodies
+                }
+                for point, bodies in first.pins.items()
+            },
+            sliders={
+                name: SliderForces(
+                    np.concatenate([part.sliders[name].normal for part in parts]),
+                    np.concatenate([part.sliders[name].moment for part in parts]),
+                )
+                for name in first.sliders
+            },
+            torque=np.concatenate([part.torque for part in parts]),
+            bound=None,
+        )

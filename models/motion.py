@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from models.array import Array
+from models.forces import Forces
 from models.scene import Point
 
 
@@ -73,7 +74,8 @@ class Motion:
     What a producer does not give is NaN (an engine without accelerations). ``conditioning`` holds,
     per dyad of the reference (named by its inner joint), the sine of the transmission angle or its
     like: 1 is best, 0 is singular. ``bound`` is the reference's own error, where it was asked for.
-    ``crossings`` are the change points on the way from time 0 through the samples.
+    ``crossings`` are the change points on the way from time 0 through the samples. ``forces``,
+    where they were asked for, are as many samples, at instants of their own.
     """
 
     time_s: Array
@@ -83,11 +85,15 @@ class Motion:
     conditioning: Mapping[str, Array] = field(default_factory=dict)
     bound: Bound | None = None
     crossings: tuple[Crossing, ...] = ()
+    forces: Forces | None = None
 
     def each_series(self, change: Callable[[Array], Array]) -> Motion:
         """The motion with every series of its bodies changed; its instants stay."""
         links, points = _each(self.links, change), _each(self.points, change)
-        return replace(self, links=links, points=points, sliders=_each(self.sliders, change))
+        forces = self.forces and self.forces.each_series(change)
+        return replace(
+            self, links=links, points=points, sliders=_each(self.sliders, change), forces=forces
+        )
 
     def state(self, index: int = 0) -> State:
         """The sample ``index`` as a state."""

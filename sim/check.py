@@ -13,7 +13,7 @@ from models.motion import State
 from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
 from sim.drive import pace, start_speed
-from sim.engine import Drive, Facts
+from sim.engine import Drive, Engine, Facts
 from sim.measure import gaps
 
 SAME = 1e-9
@@ -40,14 +40,17 @@ def refuse_other_model(
         raise EngineError(f"the engine does not hold {scene.name}: " + "; ".join(faults))
 
 
-def refuse_loads(scene: Scene) -> None:
-    """Raise EngineError for a scene with loads, which would be left out without a word."""
-    if scene.loads:
+def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) -> None:
+    """Raise EngineError for a scene with loads in an engine that would leave them out without a
+    word, and for forces of an engine that reports none."""
+    if scene.loads and not engine.applies_loads:
         names = ", ".join(f"loads.{name}" for name in scene.loads)
         raise EngineError(
-            f"{scene.name}: no engine is given loads yet ({names}); take them out to run it, "
+            f"{scene.name}: {engine.name} is given no loads ({names}); take them out to run it, "
             "or use the reference alone"
         )
+    if with_forces and engine.forces_of == "nothing":
+        raise EngineError(f"{engine.name} reports no forces; run it without, or another engine")
 
 
 def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:

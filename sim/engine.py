@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from models.array import Array
+from models.forces import Forces
 from models.motion import Motion, State
 from models.scene import Point, Scene
 
@@ -24,6 +25,9 @@ Settings = Mapping[str, SettingValue]
 Placing = Literal["integrated", "solved"]
 """Integrated: places come of velocities, step by step, and are off by what a step leaves out.
 Solved: the joints are solved for in each step, so places may be exact to rounding."""
+ForcesOf = Literal["nothing", "states", "steps"]
+"""What forces an engine reports. States: those that go with a state, at every sample. Steps: what
+the last step took, so that they are NaN at the start of a run."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,8 @@ class Log:
 
     ``wall_s`` is the time that stepping and logging took; what is computed from the log
     afterwards (accelerations, poses) is not part of it. ``stopped`` says why the engine itself
-    went no further, in its own words; empty where it went to the end.
+    went no further, in its own words; empty where it went to the end. ``forces`` are those of the
+    logged steps, where they were asked for: their ``time_s`` says when they act.
     """
 
     poses: Poses
@@ -113,6 +118,7 @@ class Log:
     warnings: tuple[str, ...]
     wall_s: float
     stopped: str = ""
+    forces: Forces | None = None
 
 
 class Session(Protocol):
@@ -135,6 +141,15 @@ class Session(Protocol):
         ...
 
 
+class ForceSession(Session, Protocol):
+    """A session of an engine that reports forces."""
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `Session.record`, with the forces in all pins and sliders and the driving torque. The
+        motion is the same to the bit."""
+        ...
+
+
 @dataclass(frozen=True)
 class Engine:
     """A physics engine with its profiles, and what is asked of it.
@@ -147,7 +162,8 @@ class Engine:
     settings is its ``placing``; where they are integrated their errors shrink as the step to the
     power ``order`` at most. ``in_seconds`` names what of a complete set of settings is a time, or a
     loss in a time, of its own: without any, errors of place depend on the steps in a turn, not on
-    the speed. An engine that does not say has all of them so.
+    the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
+    sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported.
     """
 
     name: str
@@ -160,6 +176,8 @@ class Engine:
     placing: Callable[[Settings], Placing] = lambda settings: "integrated"
     order: int = 2
     in_seconds: Callable[[Settings], tuple[str, ...]] = tuple
+    forces_of: ForcesOf = "nothing"
+    applies_loads: bool = False
 
 
 @dataclass(frozen=True)
@@ -202,6 +220,7 @@ class Setup:
     start_s: float
     reports_accelerations: bool
     asked: Settings
+    with_forces: bool = False
 
 
 @dataclass(frozen=True)
@@ -214,7 +233,8 @@ class Run:
     is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
     logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
     that the run was given, and takes to be run again; ``settings`` what the engine then held.
-    ``energy`` is kept of free motion, where nothing adds to it.
+    ``energy`` is kept of free motion, where nothing adds to it. ``with_forces`` says that forces
+    were asked for; they are in ``motion``.
     """
 
     scene: str
@@ -239,3 +259,4 @@ class Run:
     every: int = 1
     reports_accelerations: bool = True
     energy: Energy | None = None
+    with_forces: bool = False

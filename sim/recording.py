@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from models.array import Array
+from models.forces import Forces
 from models.scene import Scene
 from sim.energy import energy
-from sim.engine import BodyPose, Cost, Facts, Log, Poses, Run, Session, Status
+from sim.engine import BodyPose, Cost, Facts, ForceSession, Log, Poses, Run, Session, Status
 from sim.measure import gaps, motion
 from sim.own_engine.watched import BrokenContractError
 
@@ -28,6 +30,8 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
     """The run, chunk by chunk, until its end or until it comes apart."""
     every = blank.every
     logs: list[Poses] = []
+    acting: list[Forces] = []
+    record = cast(ForceSession, session).record_forces if blank.with_forces else session.record
     opened: list[Mapping[str, Array]] = []
     warnings: list[str] = []
     wall, done = 0.0, 0
@@ -35,7 +39,7 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
     reason = ""
     for count in chunks(blank.steps, every):
         try:
-            log = session.record(count, every)
+            log = record(count, every)
         except BrokenContractError:
             raise
         except Exception as error:  # whatever an engine throws is a row of the result
@@ -48,17 +52,20 @@ def recorded(blank: Run, scene: Scene, session: Session, facts: Facts, runaway: 
         kept = slice(1 if logs else 0, sound)  # a stretch begins where the one before it ended
         opened.append({name: gap[kept] for name, gap in apart_m.items()})
         logs.append(stretch(log.poses, kept))
+        if log.forces is not None:
+            acting.append(log.forces.stretch(kept))
         if fault:
             status, reason = "diverged", fault
             break
     if not logs:
         logs, opened = [facts.start], [gaps(scene, facts.start)]
     poses = joined(logs)
+    forces = Forces.joined(acting) if acting else None
     return replace(
         blank,
         status=status,
         reason=reason,
-        motion=motion(scene, poses),
+        motion=replace(motion(scene, poses), forces=forces),
         gaps={name: np.concatenate([each[name] for each in opened]) for name in opened[0]},
         energy=energy(scene, poses) if blank.drive == "free" else None,
         velocity_time_s=poses.time_s + facts.velocity_shift * blank.dt_s,

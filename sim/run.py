@@ -11,7 +11,7 @@ import numpy as np
 from models.errors import EngineError, shown
 from models.motion import State
 from models.scene import Scene
-from sim.check import refuse_loads, refuse_other_model
+from sim.check import refuse_other_model, refuse_unknown_forces
 from sim.drive import pace, period
 from sim.engine import Drive, Engine, Run, Settings, Setup
 from sim.own_engine.watched import BrokenContractError
@@ -36,10 +36,12 @@ def run(
     drive: Drive = "prescribed",
     settings: Settings | None = None,
     open_m: float = 0.0,
+    with_forces: bool = False,
 ) -> Run:
     """Run ``scene`` from ``state`` for ``steps`` of ``dt_s`` [s], logging every ``every``-th step.
 
-    Joints of ``state`` may be open by ``open_m`` [m], to see what the engine makes of it.
+    Joints of ``state`` may be open by ``open_m`` [m], to see what the engine makes of it. With
+    forces, the motion has the reactions in all joints and the driving torque.
 
     Returns
     -------
@@ -65,6 +67,7 @@ def run(
         every=every,
         drive=drive,
         settings=settings,
+        with_forces=with_forces,
     )
     check_steps(scene, period(scene, state, drive), dt_s, steps, every)
     blank = Run(
@@ -74,7 +77,7 @@ def run(
         settings=told.asked,
     )
     try:
-        refuse_loads(scene)
+        refuse_unknown_forces(scene, chosen, with_forces=with_forces)
         session = chosen.open(scene, state, told.asked, dt_s, drive)
     except (SettingError, BrokenContractError):
         raise
@@ -97,6 +100,7 @@ def setup(
     every: int = 1,
     drive: Drive = "prescribed",
     settings: Settings | None = None,
+    with_forces: bool = False,
 ) -> Setup:
     """What `run` is asked for with these.
 
@@ -118,6 +122,7 @@ def setup(
         start_s=state.time_s,
         reports_accelerations=chosen.reports_accelerations,
         asked=resolved(profile_of(chosen, profile), settings),
+        with_forces=with_forces,
     )
 
 

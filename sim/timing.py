@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from models.motion import State
 from models.scene import Scene
-from sim.check import refuse_loads
+from sim.check import refuse_unknown_forces
 from sim.drive import period
 from sim.engine import Cost, Drive, Engine, Session, Settings
 from sim.recording import chunks
@@ -58,7 +58,7 @@ def time_run(
     chosen = engine_of(engine) if isinstance(engine, str) else engine
     asked = resolved(profile_of(chosen, profile), settings)
     check_steps(scene, period(scene, state, drive), dt_s, steps, max(every, 1))
-    refuse_loads(scene)
+    refuse_unknown_forces(scene, chosen, with_forces=False)
     walls = []
     collecting = gc.isenabled()
     gc.disable()

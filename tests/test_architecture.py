@@ -56,7 +56,7 @@ FLOORS: Mapping[str, str] = {
         remedies run snippets tuning viewing own_models
         recording
         check energy registry
-        measure drive tree_poses settings own_engine
+        measure drive tree_poses settings own_engine load_magnitudes
         engine
     """,
 }

@@ -68,9 +68,12 @@ def test_a_scene_with_loads_is_not_run_as_if_it_had_none(name: str) -> None:
     state = solve(pushed, np.zeros(1)).state()
     done = run(pushed, state, name, dt_s=1e-3, steps=10)
     assert done.status == "unsupported"
-    assert "no engine is given loads yet (loads.push); take them out" in done.reason
-    with pytest.raises(EngineError, match="no engine is given loads yet"):
+    assert f"{name} is given no loads (loads.push); take them out" in done.reason
+    with pytest.raises(EngineError, match=f"{name} is given no loads"):
         time_run(pushed, state, name, dt_s=1e-3, steps=10)
+    silent = run(FOURBAR, state, name, dt_s=1e-3, steps=10, with_forces=True)
+    assert silent.status == "unsupported"
+    assert silent.reason == f"{name} reports no forces; run it without, or another engine"
     with pytest.raises(EngineError, match="MJCF is written without loads yet"):
         build(pushed, state)
 
