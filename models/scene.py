@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from models.fixed import FixedMapping
+from models.friction import Friction
 from models.laws import Law
 from models.loads import Load
 
@@ -85,7 +86,7 @@ class Scene:
     where the pin lies to the left of the line from the first outer pin to the second, the links
     in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
     is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
-    unless the scene has it; ``loads`` act from outside.
+    unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies.
     """
 
     name: str
@@ -99,9 +100,10 @@ class Scene:
     tolerance: Mapping[str, float] = field(default_factory=dict)
     note: str = ""
     loads: Mapping[str, Load] = field(default_factory=dict)
+    friction: Mapping[str, Friction] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("ground", "links", "sliders", "branch", "tolerance", "loads"):
+        for name in ("ground", "links", "sliders", "branch", "tolerance", "loads", "friction"):
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 
     @cached_property

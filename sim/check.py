@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.errors import EngineError
+from models.friction import CoulombFriction
 from models.joints import bodies
 from models.motion import State
 from models.poses import centre_of, frames, mass_of
@@ -41,13 +42,23 @@ def refuse_other_model(
 
 
 def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) -> None:
-    """Raise EngineError for a scene with loads in an engine that would leave them out without a
-    word, and for forces of an engine that reports none."""
+    """Raise EngineError for a scene with loads or friction in an engine that would leave them out
+    without a word, and for forces of an engine that reports none."""
     if scene.loads and not engine.applies_loads:
         names = ", ".join(f"loads.{name}" for name in scene.loads)
         raise EngineError(
             f"{scene.name}: {engine.name} is given no loads ({names}); take them out to run it, "
             "or use the reference alone"
+        )
+    rubbing = [
+        f"friction.{name}"
+        for name, one in scene.friction.items()
+        if isinstance(one, CoulombFriction) or not engine.applies_constant_friction
+    ]
+    if rubbing:
+        raise EngineError(
+            f"{scene.name}: {engine.name} is given no such friction ({', '.join(rubbing)}); take "
+            "it out to run it, or use the reference alone"
         )
     if with_forces and engine.forces_of == "nothing":
         raise EngineError(f"{engine.name} reports no forces; run it without, or another engine")

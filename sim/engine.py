@@ -163,7 +163,8 @@ class Engine:
     power ``order`` at most. ``in_seconds`` names what of a complete set of settings is a time, or a
     loss in a time, of its own: without any, errors of place depend on the steps in a turn, not on
     the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
-    sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported.
+    sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported,
+    without ``applies_constant_friction`` those with friction that is constant.
     """
 
     name: str
@@ -178,6 +179,7 @@ class Engine:
     in_seconds: Callable[[Settings], tuple[str, ...]] = tuple
     forces_of: ForcesOf = "nothing"
     applies_loads: bool = False
+    applies_constant_friction: bool = False
 
 
 @dataclass(frozen=True)
