@@ -14,9 +14,10 @@ from sim.engine import Run
 
 BodyKind = Literal["driver", "link", "slider", "point"]
 Source = Literal["reported", "differenced"]
-Role = Literal["drive", "place", "closure", "derived"]
+Role = Literal["drive", "place", "closure", "derived", "force"]
 """Places are what convergence, geometric errors and differences are taken of. What is derived comes
-of them: its first samples, and those near change points, are rows of their own."""
+of them, and forces go with it: the first samples, and those near change points, are rows of their
+own. Forces are compared where they were asked for alone."""
 Series = Mapping[str, Array]
 """A number (T,) or two (T, 2) per sample, by body."""
 
