@@ -55,8 +55,8 @@ FLOORS: Mapping[str, str] = {
         timing
         remedies run snippets tuning viewing own_models
         recording
-        check energy registry
-        measure drive tree_poses settings own_engine load_magnitudes
+        check energy registry joint_forces
+        measure drive tree_poses settings own_engine load_magnitudes momentum_balance
         engine
     """,
 }

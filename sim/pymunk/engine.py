@@ -15,6 +15,7 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
 from sim.pymunk.space import SpaceModel, build
 
@@ -105,10 +106,26 @@ class PymunkSession:
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
         rows = rows.reshape(len(at), -1, WIDTH)
-        good = np.isfinite(rows).all(axis=(1, 2))
-        count = len(at) if good.all() else int(np.argmin(good))
+        count = _finite(rows)
         poses = self._poses(rows[:count], at[:count])
         return Log(poses, (count - 1) * every, count < len(at), (), wall)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the forces of each logged step; the first sample has none."""
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
+        reactions = Reactions(self._scene, self._model, self._rows, self._dt)
+        began = time.perf_counter()
+        self._make_room(2 * len(at))
+        self._log()
+        self._each(steps, every, reactions)
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        wall = time.perf_counter() - began
+        rows = rows.reshape(2 * len(at) - 1, -1, WIDTH)
+        before, after = rows[1::2], rows[0::2]
+        count = _finite(after)
+        poses = self._poses(after[:count], at[:count])
+        forces, doubts = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
+        return Log(poses, (count - 1) * every, count < len(at), doubts, wall, forces=forces)
 
     def read(self) -> Poses:
         """The current state."""
@@ -162,18 +179,42 @@ class PymunkSession:
         """
         step, dt = self._space.step, self._dt
         crank, motor = self._model.crank, self._model.motor
-        law, first = self._scene.driver.law, self._done + 1
-        theta = drives.angles(law, self._start_s, dt, first, first + steps - 1)
-        chord = drives.chords(law, self._start_s, dt, first, first + steps - 1)
-        for k, (angle, speed) in enumerate(zip(theta.tolist(), chord.tolist(), strict=True), 1):
+        for k, (angle, speed) in enumerate(self._turns(steps), 1):
             if motor is not None:
                 motor.rate = speed
             else:
-                crank.angle = angle - speed * dt
+                crank.angle = angle
                 crank.angular_velocity = speed
             step(dt)
             if every and k % every == 0:
                 self._log()
+
+    def _turns(self, steps: int) -> list[tuple[float, float]]:
+        """The angle and the speed that the crank is set to before each of the next steps."""
+        law, first = self._scene.driver.law, self._done + 1
+        theta = drives.angles(law, self._start_s, self._dt, first, first + steps - 1)
+        chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
+        return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
+
+    def _each(self, steps: int, every: int, reactions: Reactions) -> None:
+        """Step, and log every ``every``-th step before and after, with what its joints bore."""
+        space, dt, crank, motor = self._space, self._dt, self._model.crank, self._model.motor
+        turns = None if self._coasts else self._turns(steps)
+        for k in range(1, steps + 1):
+            if turns is not None:
+                angle, speed = turns[k - 1]
+                if motor is not None:
+                    motor.rate = speed
+                else:
+                    crank.angle, crank.angular_velocity = angle, speed
+            logged = k % every == 0
+            if logged:
+                pymunk.batch.get_space_bodies(space, BEFORE, self._buffer)
+            space.step(dt)
+            if logged:
+                self._log()
+                reactions.read()
+        self._done += steps
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
@@ -188,6 +229,12 @@ class PymunkSession:
 def _sum(a: Point, b: Point) -> Point:
     """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
+
+
+def _finite(rows: Array) -> int:
+    """How many samples (T, bodies, numbers) are finite, up to the first that is not."""
+    good = np.isfinite(rows).all(axis=(1, 2))
+    return len(rows) if good.all() else int(np.argmin(good))
 
 
 def _rows(model: SpaceModel) -> dict[str, int]:
@@ -228,4 +275,5 @@ ENGINE = Engine(
     open=PymunkSession,
     reports_accelerations=False,
     in_seconds=in_seconds,
+    forces_of="steps",
 )

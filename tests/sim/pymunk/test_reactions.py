@@ -1,0 +1,151 @@
+"""The forces of pymunk's joints: the reference's, to the order of its step, and pymunk's own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.files import load_scene
+from models.forces import Forces
+from models.hard import double_parallelogram
+from models.scene import Scene
+from sim.engine import Drive, Run
+from sim.pymunk.engine import ENGINE, PymunkSession
+from sim.pymunk.spoiler import SPOILER
+from sim.run import run
+from sim.settings import resolved
+
+START = 4
+"""The samples that the start takes: of the first there are no forces, in the next two the joints
+make up for half a step, and in one more for what that has left of places."""
+
+
+def of_a_turn(scene: Scene, steps: int, **given: object) -> Run:
+    period = scene.driver.law.period_s
+    state = solve(scene, np.zeros(1)).state()
+    return run(scene, state, ENGINE, dt_s=period / steps, steps=steps, with_forces=True, **given)  # type: ignore[arg-type]
+
+
+def acting(result: Run) -> Forces:
+    assert result.motion is not None
+    assert result.motion.forces is not None
+    return result.motion.forces
+
+
+def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
+    """Errors after the start: of reactions over the largest, of moments over that times the longest
+    link, of the torque over its own largest, (T,)."""
+
+    def off(pairs: list[tuple[Array, Array]]) -> Array:
+        parts = [np.abs(one - right).reshape(len(one), -1) for one, right in pairs]
+        return np.asarray(np.concatenate([np.zeros((len(found.time_s), 1)), *parts], axis=1).max(1))
+
+    forces = [(found.pins[p][b], exact.pins[p][b]) for p in exact.pins for b in exact.pins[p]]
+    forces += [(found.sliders[s].normal, exact.sliders[s].normal) for s in exact.sliders]
+    moments = [(found.sliders[s].moment, exact.sliders[s].moment) for s in exact.sliders]
+    largest = max(np.abs(right).max() for _, right in forces)
+    return {
+        "force": off(forces)[START:] / largest,
+        "moment": off(moments)[START:] / (largest * longest_m),
+        "torque": off([(found.torque, exact.torque)])[START:] / np.abs(exact.torque).max(),
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "fourbar-lecture-1",
+        "sixbar-stephenson",  # a pin of three bodies
+        "slider-crank-excel-350",  # a block without mass, on a rail
+        "slider-crank-offset",  # one with mass, in a groove
+        "scotch-yoke",  # a gear on a moving guide
+        "slotted-lever",  # a block without mass on a moving guide
+    ],
+)
+def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
+    scene = load_scene(name)
+    worst = {}
+    for steps in (360, 720):
+        found = acting(of_a_turn(scene, steps))
+        exact = forces(scene, found.time_s, bound=False)
+        assert {p: list(b) for p, b in found.pins.items()} == {
+            p: list(b) for p, b in exact.pins.items()
+        }
+        worst[steps] = {
+            key: off.max() for key, off in misses(found, exact, scene.longest_m).items()
+        }
+    for key, least in worst[720].items():
+        assert least < 5e-4, key
+        assert least < 1e-12 or 3.0 < worst[360][key] / least < 5.0, key  # or there is none
+
+
+def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
+    scene = load_scene("slider-crank-offset")
+    state = solve(scene, np.zeros(1)).state()
+    for drive in ("prescribed", "servo", "free"):
+        settings = resolved(ENGINE.profiles["tuned"], None)
+        one, other = (ENGINE.open(scene, state, settings, 1e-3, drive) for _ in range(2))
+        assert isinstance(other, PymunkSession)
+        for every in (3, 1):
+            told, alone = other.record_forces(10, every), one.record(10, every)
+            assert told.forces is not None
+            assert alone.forces is None
+            np.testing.assert_array_equal(told.forces.time_s, told.poses.time_s)
+            for name, pose in alone.poses.bodies.items():
+                for key, series in vars(pose).items():
+                    np.testing.assert_array_equal(vars(told.poses.bodies[name])[key], series)
+
+
+def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
+    found = acting(of_a_turn(load_scene("fourbar-lecture-1"), 90))
+    assert np.isnan(found.torque[0])
+    assert np.isfinite(found.torque[1:]).all()
+    assert np.isnan(found.pins["C"]["rocker"][0]).all()
+    scene = load_scene("fourbar-lecture-1")
+    state = solve(scene, np.zeros(1)).state()
+    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
+    assert isinstance(session, PymunkSession)
+    log = session.record_forces(5, 10)  # no step is logged
+    assert log.forces is not None
+    np.testing.assert_array_equal(log.forces.torque, [np.nan])
+    SPOILER.lose(session)
+    assert session.record_forces(5, 1).diverged
+
+
+@pytest.mark.parametrize("drive", ["prescribed", "servo", "free"])
+@pytest.mark.parametrize("name", ["sixbar-watt", "shaper", "scotch-yoke"])
+def test_momentum_says_of_every_joint_what_its_impulse_does(name: str, drive: Drive) -> None:
+    """Converged or not: iterations change what the joints bear, not what they did."""
+    result = of_a_turn(load_scene(name), 180, drive=drive, settings={"iterations": 5})
+    assert result.warnings == ()
+    if drive == "free":
+        assert not acting(result).torque[1:].any()
+
+
+def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = solve(scene, np.zeros(1)).state()
+    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
+    assert isinstance(session, PymunkSession)
+    assert session.record_forces(20, 1).warnings == ()
+    SPOILER.slip(session, 0.01)
+    said = "; ".join(session.record_forces(20, 1).warnings)
+    assert "pymunk's impulse on the pin C is" in said
+    assert "by the momentum of the bodies" in said
+
+
+def test_of_redundant_links_the_torque_alone_is_given() -> None:
+    scene = double_parallelogram("double-parallelogram", source="test")
+    scene = replace(scene, gravity_m_s2=(0.0, -9.81))
+    state = solve(scene, np.zeros(1)).state()
+    found = acting(run(scene, state, ENGINE, dt_s=1e-3, steps=200, with_forces=True))
+    exact = forces(scene, found.time_s, bound=False)
+    assert not found.pins
+    assert "redundant links" in found.undetermined
+    off = np.abs(found.torque - exact.torque)[START:]
+    assert off.max() < 1e-3 * np.abs(exact.torque).max()
