@@ -118,6 +118,7 @@ def compare(beside: Beside | None) -> Errors | None:
         uneven=far,
         uneven_rates=unevenly_turned(scene, far),
         unbalanced=borne.unbalanced,
+        start_load=borne.start_load,
     )
 
 
@@ -132,8 +133,9 @@ def force_rows(beside: Beside) -> ForceErrors:
     assert reference.forces is not None
     alive = np.isfinite(reference.forces.torque)
     at = _instants(beside, time_s, reference)[alive]
-    rows, missing = list[Error](), list[str]()
+    rows, missing, start = list[Error](), list[str](), 0.0
     for track in beside.tracks(named("force"), reference) if np.any(alive) else ():
+        start = max(start, float(length(track.truth)[alive][0]) / track.scale)
         if silent(run) and np.all(np.isnan(track.error)):
             missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
             continue
@@ -144,6 +146,7 @@ def force_rows(beside: Beside) -> ForceErrors:
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(~alive))),
         unbalanced(run, largest_reaction(beside.scene, reference)),
+        start if run.forces_of == "steps" else 0.0,
         off_stamps(run),
     )
 

@@ -94,7 +94,8 @@ class Errors:
     ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
     how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
     rates do too (`reports.compare.uneven`). ``unbalanced`` is the pin whose forces add up to most,
-    None where there are none.
+    None where there are none; ``start_load`` the largest force at the start, as a share of the
+    largest of its kind, where the engine's forces are those of steps, which start with half a step.
     """
 
     rows: tuple[Error, ...]
@@ -115,6 +116,7 @@ class Errors:
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
     unbalanced: Unbalanced | None = None
+    start_load: float = 0.0
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -24,6 +24,7 @@ class ForceErrors:
     not_reported: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     unbalanced: Unbalanced | None = None
+    start_load: float = 0.0
     incomplete: str = ""
 
 
@@ -51,7 +52,8 @@ def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
     sums = dict[str, float]()
     for point, bodies in (forces.pins if forces else {}).items():
         off = np.hypot(*np.sum(list(bodies.values()), axis=0).T)
-        sums[point] = float(np.max(off, where=np.isfinite(off), initial=0.0)) / largest_n
+        if np.any(np.isfinite(off)):
+            sums[point] = float(np.max(off, where=np.isfinite(off), initial=0.0)) / largest_n
     point = max(sums, key=lambda name: sums[name], default="")
     return Unbalanced(point, sums[point]) if point else None
 

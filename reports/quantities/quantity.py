@@ -46,7 +46,7 @@ class Measure:
 @dataclass(frozen=True)
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, and `reports.judge.start_allowance` that of ``jump`` and ``parts``."""
+    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``."""
 
     reason: str
     cap: float = math.inf
@@ -62,6 +62,7 @@ class Tolerance:
     rate: int = 0
     jump: float = 0.0
     parts: bool = False
+    makes_up: bool = False
 
 
 @dataclass(frozen=True)
