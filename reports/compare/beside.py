@@ -66,7 +66,10 @@ class Truth:
         instants = time_s.tobytes()
         motion = self._loaded.get(instants)
         if motion is None:
-            motion = self.at(time_s)
+            whole = self
+            if self.links is not None or self.points is not None:
+                whole = replace(self, links=None, points=None, _motions={}, _loaded={})
+            motion = whole.at(time_s)
             load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
             motion = replace(motion, forces=load)
             _keep(self._loaded, instants, motion)
