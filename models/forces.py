@@ -57,9 +57,9 @@ class Forces:
     where two meet, the force on the second is what the first exerts on it. All forces of a pin add
     up to 0. ``torque`` [N m], (T,), is what the drive exerts on the driver. ``undetermined`` says
     why there are no reactions where the equations of statics leave them open. What a producer does
-    not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its first
-    body exerts on its second, in a slider the force [N] of the guide on what slides, along the
-    line; ``friction_solution`` is how that was found where it is Coulomb's.
+    not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its
+    first body exerts on its second, in a slider the force [N] of the guide on what slides, along
+    the line; ``friction_solution`` is how that was found where it is Coulomb's.
     """
 
     time_s: Array

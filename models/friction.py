@@ -1,8 +1,8 @@
 """What rubs in a joint: Coulomb's friction, or one that is always as large.
 
-A joint is named as in the scene's file: a slider by its own name, a pin by its point. Where a slider
-has the name of its point, that name is the slider; another name for the slider leaves that of the
-point to the pin.
+A joint is named as in the scene's file: a slider by its own name, a pin by its point. Where a
+slider has the name of its point, that name is the slider; another name for the slider leaves that
+of the point to the pin.
 """
 
 from __future__ import annotations

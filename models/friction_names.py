@@ -44,8 +44,8 @@ def faults_of_friction(
             yield from _of_slider(key, joint, table)
         elif counts.get(joint, 0) > 2:
             yield (
-                f"{key}: {counts[joint]} bodies meet at {cut(joint)}, and what of them rubs against "
-                "what is open; give each two of them a pin of their own"
+                f"{key}: {counts[joint]} bodies meet at {cut(joint)}, and which of them rub on "
+                "which is open; give each two of them a pin of their own"
             )
         elif joint in pins:
             yield from _of_pin(key, table)

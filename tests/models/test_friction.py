@@ -84,7 +84,7 @@ FAULTS = {
     "radius in a slider": (
         "force_n = 3.0", "mu = 0.1\nradius_m = 0.01", "friction.piston.radius_m: belongs to a pin",
     ),
-    "unknown key": ("radius_m", "radus_m", "friction.B.radus_m: unknown key; did you mean radius_m"),
+    "unknown key": ("radius_m", "radus_m", "friction.B.radus_m: unknown key; did you mean r"),
     "no table": ("[friction.A]\ntorque_n_m = 0.2", "[friction]\nA = 0.2", "friction.A: found 0.2"),
     "a pin of three": (
         "[sliders", 'door = { bar = ["B", "E"], length_m = 0.3 }\n[sliders',
