@@ -16,4 +16,5 @@ ENGINE = Engine(
     holds=holds,
     in_seconds=in_seconds,
     forces_of="states",
+    applies_loads=True,
 )
