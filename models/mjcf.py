@@ -18,13 +18,14 @@ from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
 from models.joints import bodies, local_point
+from models.mjcf_friction import friction_of, planned
 from models.mjcf_loads import load_actuators, load_sites, load_sizes
 from models.mjcf_options import Attributes, Writing, armature, driver_joint, exact, has_control
 from models.mjcf_text import AttributeRow, attributes, commentable
 from models.motion import State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from models.tree import Limb, Tree, plan
+from models.tree import Limb, Tree
 
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
@@ -46,7 +47,7 @@ def build(
     """
     _check_masses(scene)
     writing = exact(scene) if writing is None else writing
-    tree = tree or plan(scene, state, writing.close, delay_s=writing.delay_s)
+    tree = tree or planned(scene, state, writing)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
         f"  <!-- {commentable(scene.source)} -->",
@@ -139,6 +140,7 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
         row["ref"] = freedom.ref
         if freedom.name == driver_joint(scene) and writing.flywheel:
             row["armature"] = armature(scene, writing)
+        row |= friction_of(scene, limb, freedom, writing)
         lines.append(f"{pad}<joint{attributes(row)}/>")
     return lines
 

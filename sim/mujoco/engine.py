@@ -17,4 +17,5 @@ ENGINE = Engine(
     in_seconds=in_seconds,
     forces_of="states",
     applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -29,6 +29,7 @@ class JointForces:
         self._wrenches: list[Array] = []
         self._centres: list[Array] = []
         self._loops: list[Array] = []
+        self._friction: list[Array] = []
         self._first_load, self._sizes = first_load, list[Array]()
 
     def look(self, model: Any, data: Any) -> None:
@@ -37,9 +38,14 @@ class JointForces:
         self._wrenches.append(data.cfrc_int[self._bodies, 2:5])
         self._centres.append(data.subtree_com[self._roots, :2])
         loops = np.zeros((model.neq, 3))
-        # Equalities come first among the rows of constraints; one that is off has none.
+        # Equalities come first among the rows of constraints; one that is off has none. Friction
+        # follows them, a row for each joint that has some.
         loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
         self._loops.append(loops[:, :2])
+        friction = np.zeros(model.nv)
+        rubbing = slice(data.ne, data.ne + data.nf)
+        friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
+        self._friction.append(friction)
         self._sizes.append(data.ctrl[self._first_load :].copy())
 
     def from_parent(self, limb: Limb) -> Wrench:
@@ -52,6 +58,10 @@ class JointForces:
     def of_load(self, load: int) -> Array:
         """The size of a load, (T,)."""
         return np.array([each[load] for each in self._sizes])
+
+    def of_friction(self, joint: int) -> Array:
+        """What friction does along a coordinate, (T,)."""
+        return np.array([each[joint] for each in self._friction])
 
     def at_loop(self, equality: int) -> Array:
         """What a connect exerts on its first body, (T, 2)."""

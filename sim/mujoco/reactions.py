@@ -7,6 +7,7 @@ import numpy as np
 from models.array import Array
 from models.forces import Forces, SliderForces
 from models.joints import block_name, joined_at, local_point
+from models.mjcf_friction import rubbing_freedom
 from models.mjcf_loads import point_of_application
 from models.scene import GROUND, Point, Scene, Slider
 from models.tree import Limb, Tree
@@ -44,7 +45,32 @@ class _Reactions:
             taker, giver = closure.bodies
             self._pin(closure.point, giver, taker, self._found.at_loop(k))
         sliders = {name: self._sliders[name] for name in self._scene.sliders}
-        return Forces(self._poses.time_s, self._pins, sliders, self._torque)
+        friction = self._friction()
+        pivot = self._scene.driver_pivot
+        if pivot in friction:  # the hinge is given the drive's torque and the friction
+            self._torque = self._torque - friction[pivot]
+        time_s = self._poses.time_s
+        return Forces(time_s, self._pins, sliders, self._torque, friction=friction)
+
+    def _friction(self) -> dict[str, Array]:
+        """What rubs: in pins the couple of the first body on the second, in sliders the force of
+        the guide along the line."""
+        found = {}
+        freedoms = [(limb, freedom) for limb in self._tree.limbs for freedom in limb.freedoms]
+        for one in self._scene.friction.values():
+            for k, (limb, freedom) in enumerate(freedoms):
+                if rubbing_freedom(self._scene, limb, one.joint) is freedom:
+                    sign = self._sense(limb, one.joint) if freedom.kind == "hinge" else 1.0
+                    found[one.joint] = sign * self._found.of_friction(k)
+        return found
+
+    def _sense(self, limb: Limb, point: str) -> float:
+        """1 where the limb turns with the second body of a pin, -1 where with the first."""
+        turning = limb.body
+        slider = limb.slider
+        if slider is not None and slider.on == limb.body:  # a block turns with its guide
+            turning = block_name(slider)
+        return 1.0 if joined_at(self._scene)[point][1] == turning else -1.0
 
     def _pin(self, point: str, giver: str, taker: str, force: Array) -> None:
         """A body exerts a force on another by the pin that they share."""

@@ -11,6 +11,7 @@ import numpy as np
 from models.array import Array
 from models.errors import EngineError
 from models.mjcf import build
+from models.mjcf_friction import planned
 from models.mjcf_options import Writing, driver_joint, has_control
 from models.motion import State
 from models.scene import Point, Scene
@@ -163,7 +164,7 @@ def _pair(vector: Array) -> Point:
 def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
     """The tree; a fault that only the setting ``close`` causes is a fault of the setting."""
     try:
-        return plan(scene, state, chosen.close, delay_s=chosen.delay_s)
+        return planned(scene, state, chosen)
     except EngineError as error:
         if not chosen.close:
             raise
