@@ -12,9 +12,9 @@ from models.joints import block_name, joints, riding_body
 from models.scene import Scene
 from sim.momentum_balance import JointPushes
 
-OnBlocks = Mapping[str, tuple[Array, Array]]
-"""What acts on slider blocks without mass beside their two joints: force [N] (T, 2) and torque
-[N m] (T,), by slider."""
+OnBlocks = Mapping[str, Array]
+"""What acts on slider blocks without mass beside their two joints, by slider: (T, 3), a force [N]
+and a torque [N m]."""
 
 
 def joint_forces(scene: Scene, pushes: JointPushes, on_blocks: OnBlocks, time_s: Array) -> Forces:
@@ -36,11 +36,11 @@ def joint_forces(scene: Scene, pushes: JointPushes, on_blocks: OnBlocks, time_s:
     moments = dict(pushes.moments)
     for slot in joints(scene).slots:
         name, block = slot.slider.name, pins[slot.slider.point]
-        force, torque = on_blocks.get(name, (np.zeros((samples, 2)), np.zeros(samples)))
-        passed = pushes.normals[name][:, None] * pushes.across[name] + force
+        own = on_blocks.get(name, np.zeros((samples, 3)))
+        passed = pushes.normals[name][:, None] * pushes.across[name] + own[:, 0:2]
         block[riding_body(slot)] += passed
         block[block_name(slot.slider)] -= passed
-        moments[name] = -torque
+        moments[name] = -own[:, 2]
     sliders = {name: SliderForces(pushes.normals[name], moments[name]) for name in scene.sliders}
     return Forces(time_s, pins, sliders, pushes.torque)
 

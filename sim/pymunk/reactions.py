@@ -21,6 +21,7 @@ from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.joint_forces import joint_forces
 from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
+from sim.pymunk.load_steps import Push
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (
@@ -46,10 +47,12 @@ class Reactions:
         self._constraints = [one for one in (*joints, model.motor) if one is not None]
         self._driven = model.motor is not None or not _moves_freely(model.crank)
         self._impulses: list[list[float]] = []
+        self._on_blocks: list[Mapping[str, Push]] = []
 
-    def read(self) -> None:
-        """The impulses of the step that was made."""
+    def read(self, on_blocks: Mapping[str, Push]) -> None:
+        """The impulses of the step that was made, and what acted on slider blocks without mass."""
         self._impulses.append([constraint.impulse for constraint in self._constraints])
+        self._on_blocks.append(on_blocks)
 
     def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
         """The forces at logged steps, and what speaks against them.
@@ -67,7 +70,13 @@ class Reactions:
         ends = time_s[1:]
         gains = {name: self._gain(name, before, after[1:], ends) for name in self._model.bodies}
         pushes = joint_pushes(self._scene, [*self._model.hinges], gains, driven=self._driven)
-        forces = joint_forces(self._scene, pushes, {}, ends).each_series(_with_start)
+        told = self._on_blocks[: len(ends)]
+        on_blocks = (
+            {name: np.array([each[name] for each in told]).reshape(-1, 3) for name in told[0]}
+            if told
+            else {}
+        )
+        forces = joint_forces(self._scene, pushes, on_blocks, ends).each_series(_with_start)
         doubts = tuple(self._doubts(pushes, ends)) if len(ends) and not pushes.spare else ()
         return replace(forces.stretch(slice(0, len(time_s))), time_s=time_s), doubts
 
