@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
 from models.errors import SceneError
+from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_tables import LawOfLoad, PolynomialLoad, SineLoad, TableLoad
@@ -16,6 +17,7 @@ from models.schema import (
     LARGEST,
     AcceleratingDriver,
     DriverTable,
+    FrictionTable,
     FromRestDriver,
     LinkTable,
     OscillatingDriver,
@@ -72,6 +74,7 @@ def scene_from_table(
         gravity_m_s2=table.gravity_m_s2,
         tolerance=dict(table.tolerance),
         loads={name: load for name, load in found.items() if load is not None},
+        friction={joint: _friction(joint, table) for joint, table in table.friction.items()},
     )
 
 
@@ -224,3 +227,12 @@ def _characteristic(table: LawOfLoad) -> Characteristic:
         places = tuple(math.radians(place) for place in places)
         return Tabulated(places, values, table.interpolation, period)
     return Constant(float(magnitude))  # type: ignore[arg-type]
+
+
+def _friction(joint: str, table: FrictionTable) -> Friction:
+    """What rubs in a joint."""
+    if table.mu is not None:
+        return CoulombFriction(joint, table.mu, table.radius_m or 0.0)
+    size = table.torque_n_m if table.force_n is None else table.force_n
+    assert size is not None
+    return ConstantFriction(joint, size)

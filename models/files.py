@@ -208,6 +208,7 @@ def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
         "ground": schema.GroundTable,
         "links": schema.LinkTable,
         "sliders": schema.SliderTable,
+        "friction": schema.FrictionTable,
     }
     owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
     return list(owner.model_fields)

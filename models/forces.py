@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -30,6 +30,22 @@ class ForceBound:
     pins: Mapping[str, Mapping[str, Array]]
     sliders: Mapping[str, SliderForces]
     torque: Array
+    friction: Mapping[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FrictionSolution:
+    """How Coulomb's friction, which hangs on the reactions that it changes, was found; (T,) each.
+
+    ``solutions`` is 1 where there is one, 2 where there are two or more, of which the one with the
+    least friction is given, and 0 where there is none: no finite torque keeps the mechanism moving.
+    ``iterations`` were taken, and ``change`` is what the last of them changed, over the largest
+    friction.
+    """
+
+    solutions: Array
+    iterations: Array
+    change: Array
 
 
 @dataclass(frozen=True)
@@ -41,7 +57,9 @@ class Forces:
     where two meet, the force on the second is what the first exerts on it. All forces of a pin add
     up to 0. ``torque`` [N m], (T,), is what the drive exerts on the driver. ``undetermined`` says
     why there are no reactions where the equations of statics leave them open. What a producer does
-    not give is NaN.
+    not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its
+    first body exerts on its second, in a slider the force [N] of the guide on what slides, along
+    the line; ``friction_solution`` is how that was found where it is Coulomb's.
     """
 
     time_s: Array
@@ -50,9 +68,11 @@ class Forces:
     torque: Array
     bound: ForceBound | None = None
     undetermined: str = ""
+    friction: Mapping[str, Array] = field(default_factory=dict)
+    friction_solution: FrictionSolution | None = None
 
     def each_series(self, change: Callable[[Array], Array]) -> Forces:
-        """The forces, without bound, with every series changed; their instants stay."""
+        """The forces alone, without bound, with every series changed; their instants stay."""
         return replace(
             self,
             pins={
@@ -65,6 +85,8 @@ class Forces:
             },
             torque=change(self.torque),
             bound=None,
+            friction={joint: change(series) for joint, series in self.friction.items()},
+            friction_solution=None,
         )
 
     def stretch(self, kept: slice) -> Forces:
@@ -96,4 +118,9 @@ class Forces:
             },
             torque=np.concatenate([part.torque for part in parts]),
             bound=None,
+            friction={
+                joint: np.concatenate([part.friction[joint] for part in parts])
+                for joint in first.friction
+            },
+            friction_solution=None,
         )

@@ -89,6 +89,16 @@ def _carriers(same: Same) -> Mapping[str, tuple[str, ...]]:
     return FixedMapping({point: tuple(names) for point, names in names_by_point.items()})
 
 
+def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Every pin with its bodies: the ground first, then links, then slider blocks, those without
+    mass as well."""
+    names_by_point = {point: list(names) for point, names in scene.pins.items()}
+    for slider in scene.sliders.values():
+        if slider.link is None:
+            names_by_point.setdefault(slider.point, []).append(block_name(slider))
+    return {point: tuple(names) for point, names in names_by_point.items() if len(names) > 1}
+
+
 def joints(scene: Scene) -> Joints:
     """The joints of the scene; a slot has no bodies where none but its guide carries the point."""
     return _joints(Same(scene))

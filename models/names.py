@@ -12,6 +12,7 @@ from itertools import chain, islice
 from typing import Any
 
 from models.errors import cut
+from models.friction_names import faults_of_friction
 from models.scene import GROUND
 
 LISTED = 12
@@ -28,6 +29,7 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
         *_sliders(sliders, points, ground),
         *_driver(_table(raw, "driver"), points, ground),
         *_loads(_table(raw, "loads"), points, sliders),
+        *faults_of_friction(_table(raw, "friction"), ground, points, sliders),
         *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
     ]
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
 from models.errors import CrankcheckError
+from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_text import load_table
 from models.scene import Scene, Slider
@@ -52,6 +53,15 @@ def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
     yield "tolerance", scene.tolerance
     for name, load in scene.loads.items():
         yield f"loads.{name}", load_table(load)
+    for joint, friction in scene.friction.items():
+        yield f"friction.{joint}", _friction(friction, slides=joint in scene.sliders)
+
+
+def _friction(friction: Friction, *, slides: bool) -> Table:
+    if isinstance(friction, ConstantFriction):
+        return {"force_n" if slides else "torque_n_m": friction.size}
+    table = {"mu": friction.mu}
+    return table if slides else {**table, "radius_m": friction.radius_m}
 
 
 def _slider(slider: Slider) -> Table:

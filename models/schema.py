@@ -130,6 +130,28 @@ class AcceleratingDriver(Table):
     start_deg: Degrees = 0.0
 
 
+class FrictionTable(Table):
+    """What rubs in the joint that the table is named after; whether its keys fit a pin or a slider
+    is for `models.friction_names` to say, which knows the joints."""
+
+    mu: NonNegative | None = None
+    radius_m: Positive | None = None
+    torque_n_m: NonNegative | None = None
+    force_n: NonNegative | None = None
+
+    @model_validator(mode="after")
+    def _rubs_in_one_way(self) -> FrictionTable:
+        kinds = [key for key in ("mu", "torque_n_m", "force_n") if getattr(self, key) is not None]
+        if self.radius_m is not None and self.mu is None:
+            raise ValueError("radius_m is that of a pin with mu, which is missing; add mu")
+        if len(kinds) != 1:
+            raise ValueError(
+                f"found {' and '.join(kinds) or 'none of them'}; give one of mu (with radius_m in "
+                "a pin), torque_n_m (a pin) and force_n (a slider)"
+            )
+        return self
+
+
 class SceneTable(Table):
     """A whole scene file; its driver is checked by `DRIVERS` after its law is known, its loads by
     `models.load_tables.LOADS`."""
@@ -145,6 +167,7 @@ class SceneTable(Table):
     gravity_m_s2: Coordinates = (0.0, 0.0)
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
     loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_BODIES)
+    friction: dict[Name, FrictionTable] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
 DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver

@@ -52,13 +52,19 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Limb:
-    """A body of the tree: where it sits in its parent when assembled, and its joints in order."""
+    """A body of the tree: where it sits in its parent when assembled, and its joints in order.
+
+    ``point`` is the pin that ties it to its parent or the point that slides, ``slider`` what it
+    slides by; a limb of a model that is not ours is without.
+    """
 
     body: str
     parent: str
     offset: Point
     angle_rad: float
     freedoms: tuple[Freedom, ...]
+    point: str = ""
+    slider: Slider | None = None
 
 
 @dataclass(frozen=True)
@@ -254,7 +260,7 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
         arm = turned(anchor, angle)
         pivot = local_point(scene, parent, edge.point)
         offset = (pivot[0] - arm[0], pivot[1] - arm[1])
-        return Limb(child, parent, offset, angle, (hinge(anchor),))
+        return Limb(child, parent, offset, angle, (hinge(anchor),), edge.point)
     slider, guide = edge.slider, where[edge.slider.on]
     rider = edge.b
     place = where[rider].at(local_point(scene, rider, edge.point))
@@ -264,6 +270,7 @@ def _limb(scene: Scene, where: dict[str, Frame], edge: _Edge, parent: str, child
     slide = Freedom(f"{child}.{slider.name}.slide", "slide", (0.0, 0.0), axis, ref, speed)
     offset = base.into(body.origin)
     if not edge.turns:
-        return Limb(child, parent, offset, angle, (slide,))
+        return Limb(child, parent, offset, angle, (slide,), edge.point, slider)
     turns = hinge(body.into(place))
-    return Limb(child, parent, offset, angle, (slide, turns) if rides else (turns, slide))
+    both = (slide, turns) if rides else (turns, slide)
+    return Limb(child, parent, offset, angle, both, edge.point, slider)

@@ -23,7 +23,7 @@ ENGINES: Mapping[str, str] = {
 """Name to folder. To add an engine, add its folder, with a `Declaration`, and a line here."""
 FIRST = next(iter(ENGINES))
 """The one that is taken where one is enough, and none was named."""
-Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader"]
+Capability = Literal["snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"]
 """What an engine may lack."""
 
 
@@ -38,8 +38,8 @@ class Declaration:
     ``package`` is what Python imports, ``install`` what pip calls it; an ``extra`` is no part of a
     plain install of crankcheck, and runs where it is named. The adapter is the value ``ENGINE`` of
     the file ``engine``; each of what it ``offers`` has a file of that name too, with a value of
-    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer` or
-    `Reader`.
+    that name in capitals: a `SnippetWriter`, `SearchSpace`, `Remedies`, `Spoiler`, `Viewer`,
+    `Reader` or `ForceRecipe`.
     """
 
     package: str

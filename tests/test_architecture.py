@@ -53,7 +53,7 @@ FLOORS: Mapping[str, str] = {
         {" ".join(ENGINES)}
         spoil
         timing
-        remedies run snippets tuning viewing own_models
+        remedies run snippets tuning viewing own_models force_recipes
         recording
         check energy registry joint_forces
         measure drive tree_poses settings own_engine load_magnitudes momentum_balance

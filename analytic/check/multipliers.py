@@ -8,19 +8,28 @@ motion, accelerations and multipliers are the unknowns of one linear system for 
 
 Q holds weights, loads and what of inertia goes with the squares of rates. Source: E. J. Haug,
 Computer Aided Kinematics and Dynamics of Mechanical Systems, chapter 6.
+
+Friction, which hangs on the multipliers, is put in Q, and both are worked out again and again.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from analytic.check.constraints import Constraints
+from analytic.check.friction import rubbing_samples, turning
 from models.array import Array
 from models.errors import CrankcheckError
 from models.forces import Forces, SliderForces
 from models.motion import Motion
 from models.scene import Scene
+
+MOST = 400
+"""Substitutions of friction: those of a contraction by 0.9."""
+SETTLED = 1e-15
 
 
 def forces(scene: Scene, motion: Motion) -> Forces:
@@ -36,7 +45,8 @@ def forces(scene: Scene, motion: Motion) -> Forces:
     Raises
     ------
     CrankcheckError
-        As many constraints as coordinates there are not, or they are singular at a sample.
+        As many constraints as coordinates there are not, or they are singular at a sample; friction
+        that does not settle.
     """
     system = Constraints(scene)
     bodies = body_samples(scene, motion)
@@ -57,13 +67,43 @@ def forces(scene: Scene, motion: Motion) -> Forces:
         right[:, at : at + 2] += force
         right[:, at + 2] += torque + cross(bodies[name].arm(place), force)
     try:
-        solution = np.asarray(np.linalg.solve(saddle, right[:, :, None])[:, :, 0], np.float64)
+        return _settled(scene, system, motion, saddle, right)
     except np.linalg.LinAlgError:
         raise CrankcheckError(
             f"{scene.name}: the constraints are singular at a sample, where the multipliers are "
             "not determined; leave it out"
         ) from None
-    return _reactions(scene, system, motion.time_s, -solution[:, size:])
+
+
+def _settled(
+    scene: Scene, system: Constraints, motion: Motion, saddle: Array, right: Array
+) -> Forces:
+    """The reactions, with what rubs put on the right side again until it stays."""
+    bodies = body_samples(scene, motion)
+    joints = rubbing_samples(scene, motion, bodies)
+    friction = {joint: np.zeros(len(right)) for joint in joints}
+    for _ in range(MOST):
+        pushed = right.copy()
+        for joint, own in joints.items():
+            for name, force, torque in own.pushes(friction[joint]):
+                at = system.at[name]
+                pushed[:, at : at + 2] += force
+                pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
+        solution = np.asarray(np.linalg.solve(saddle, pushed[:, :, None])[:, :, 0], np.float64)
+        found = _reactions(scene, system, motion.time_s, -solution[:, system.size :])
+        before = friction
+        friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
+        if all(_stays(before[joint], friction[joint]) for joint in joints):
+            return replace(found, friction=friction)
+    raise CrankcheckError(
+        f"{scene.name}: friction does not settle in {MOST} repeated substitutions, which it does "
+        "where it contracts; leave out what is locked, and near it"
+    )
+
+
+def _stays(before: Array, after: Array) -> bool:
+    largest = float(np.max(np.abs(after), initial=0.0))
+    return float(np.max(np.abs(after - before), initial=0.0)) <= SETTLED * largest
 
 
 def _columns(places: Array, angles: Array) -> Array:

@@ -1,6 +1,6 @@
 """The third opinion on forces: power balances at every instant.
 
-What the drive puts in is what energy gains, less what loads put in::
+What the drive puts in is what energy gains, less what loads and friction put in::
 
     torque omega = d/dt (T + V) - sum (F v + M omega),   dT/dt = sum (m a_S v_S + J alpha omega)
 
@@ -9,12 +9,15 @@ Reactions do no work, so none is in it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from analytic.check.body_samples import body_samples, weights_and_loads
+from analytic.check.friction import rubbing_samples
 from models.array import Array
+from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 
@@ -28,8 +31,11 @@ class PowerBalance:
     scale: Array
 
 
-def power_balance(scene: Scene, motion: Motion, torque: Array) -> PowerBalance:
-    """The power of a driving torque [N m] beside what the motion and the loads take up."""
+def power_balance(
+    scene: Scene, motion: Motion, torque: Array, friction: Mapping[str, Array] | None = None
+) -> PowerBalance:
+    """The power of a driving torque [N m] beside what the motion, the loads and the friction, by
+    joint as in `models.forces.Forces`, take up."""
     used, scale = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
     bodies = body_samples(scene, motion)
     parts = []
@@ -40,6 +46,12 @@ def power_balance(scene: Scene, motion: Motion, torque: Array) -> PowerBalance:
     for name, place, force, moment in weights_and_loads(scene, motion):
         body = bodies[name]
         parts.append(-np.sum(force * body.velocity_at(place), axis=1) - moment * body.omega)
+    for joint, rubbing in rubbing_samples(scene, motion, bodies).items():
+        if friction is None:
+            raise CrankcheckError(
+                f"{scene.name}: friction.{joint} is not given; give Forces.friction"
+            )
+        parts.append(-friction[joint] * rubbing.rate)
     for part in parts:
         used += part
         scale += np.abs(part)

@@ -19,13 +19,16 @@ from analytic.forces.balance import Balance
 from analytic.forces.bounded import Bounded
 from analytic.forces.force_arrays import ForceArrays
 from analytic.forces.free_body import free_bodies
+from analytic.forces.friction import Standing, coulomb_friction
 from analytic.forces.given_motion import chunks_of
+from analytic.forces.rubbing import Rubbing, put_constant_friction, rubbing_joints
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
 from analytic.structure.mobility import Structure, analyse
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.forces import Forces
+from models.friction import ConstantFriction, CoulombFriction
 from models.motion import Motion
 from models.samples import samples
 from models.scene import Scene
@@ -50,34 +53,42 @@ def forces(
     bound : bool
         Carry error bounds, which go on from those of the motion.
     skip_dead_points : bool
-        Have no numbers (NaN), and infinite bounds, in dead points instead of raising.
+        Have no numbers (NaN), and infinite bounds, in dead points, and where friction locks the
+        mechanism, instead of raising.
 
     Returns
     -------
     Forces
         With redundant links the torque alone, by virtual power: how such links share the load is
-        not for statics to say.
+        not for statics to say. Friction is in it; of a joint that does not move it is anywhere
+        within its limits, taken as 0, and the bound says so.
 
     Raises
     ------
     StructureError, ReachError
         As `analytic.kinematics.solve`.
     CrankcheckError
-        A driver in a dead point, where torque and reactions are not determined; a scene without
-        mass and load; a table of a load that does not reach as far as the motion; a motion that
+        A driver in a dead point, where torque and reactions are not determined, or where friction
+        locks the mechanism; Coulomb's friction with redundant links; a scene without mass and load;
+        a table of a load that does not reach as far as the motion; a motion that
         lacks something.
     """
     structure = analyse(scene)
     _check_loaded(scene)
+    _check_friction(scene, structure)
     if isinstance(when, Motion):
         time_s, parts = when.time_s, chunks_of(scene, when, bound=bound)
     else:
         time_s = samples(when, "time_s")
         parts = chunks(scene, time_s, bound=bound)
-    result = ForceArrays(time_s, structure, scene.sliders, bound=bound)
+    result = ForceArrays(time_s, structure, scene.sliders, scene.friction, bound=bound)
     for span, chunk in parts:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # singular positions
             _write(result, span, scene, structure, chunk)
+        if result.locked(span).any() and not skip_dead_points:
+            raise CrankcheckError(
+                _locked(scene, chunk, time_s[span], int(np.argmax(result.locked(span))))
+            )
         dead = result.not_finite(span)
         if not structure.redundant:
             for sine in chunk.sines.values():
@@ -96,16 +107,30 @@ def _write(
     free = free_bodies(scene, chunk)
     if scene.loads:
         apply_loads(scene, chunk, result.time_s[span], free)
-    if structure.redundant:
-        unit = unit_chunk(scene, chunk.theta, bound=chunk.certified)
-        result.write(span, torque_by_power(free, unit, chunk), {}, {})
-        return
     displaced = {
         name: Bounded(one.s, None if one.error is None else one.error.displacement)
         for name, one in chunk.sliders.items()
     }
-    balance = Balance(scene, structure, free, displaced)
-    result.write(span, balance.torque(), balance.pins, balance.sliders)
+    joints: list[Rubbing] = []
+    if scene.friction:
+        joints = list(rubbing_joints(scene, structure, chunk, free, displaced))
+    friction = put_constant_friction(joints, free)
+    left = [each for each in joints if each.law.joint not in friction]
+    if structure.redundant:
+        unit = unit_chunk(scene, chunk.theta, bound=chunk.certified)
+        result.write(span, torque_by_power(free, unit, chunk), {}, {}, friction)
+    elif not left:
+        balance = Balance(scene, structure, free, displaced)
+        result.write(span, balance.torque(), balance.pins, balance.sliders, friction)
+    else:
+        standing = Standing(scene, structure, displaced, free)
+        sizes, solution = coulomb_friction(
+            standing, left, chunk.theta.size, certified=chunk.certified
+        )
+        balance, torque = standing.solved(zip(left, sizes, strict=True))
+        friction |= {each.law.joint: size for each, size in zip(left, sizes, strict=True)}
+        result.write(span, torque, balance.pins, balance.sliders, friction)
+        result.write_solution(span, solution)
 
 
 def _undetermined(structure: Structure) -> str:
@@ -122,10 +147,22 @@ def _check_loaded(scene: Scene) -> None:
     """Refuse a scene in which nothing makes a force."""
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
-    if not scene.loads and not any(masses):
+    rubs = any(isinstance(one, ConstantFriction) for one in scene.friction.values())
+    if not scene.loads and not any(masses) and not rubs:
         raise CrankcheckError(
             f"{scene.name}: no link or slider has a mass and nothing loads them, so every force is "
             "0; give mass_kg to a link, or a [loads.NAME] table"
+        )
+
+
+def _check_friction(scene: Scene, structure: Structure) -> None:
+    """Refuse friction that hangs on reactions which statics does not determine."""
+    coulomb = [n for n, one in scene.friction.items() if isinstance(one, CoulombFriction)]
+    if structure.redundant and coulomb:
+        raise CrankcheckError(
+            f"{scene.name}: friction.{coulomb[0]}: Coulomb's friction follows from the reactions, "
+            f"and how redundant links ({structure.spare}) share them is open, so it can not be "
+            "worked out; give torque_n_m or force_n, or leave the redundant links out"
         )
 
 
@@ -142,6 +179,17 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     return (
         f"{scene.name}: {where} stands in a dead point: {dyad}, so the driving torque and the "
         "reactions are not determined; leave that instant out, or drive another link"
+    )
+
+
+def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
+    """Where friction holds against any torque, and what would work."""
+    theta = math.degrees(_at(chunk.theta, index))
+    coulomb = [n for n, one in scene.friction.items() if isinstance(one, CoulombFriction)]
+    return (
+        f"{scene.name}: {scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s) locks "
+        f"itself: friction in {few(coulomb, 6)} grows by more than what overcomes it, so no finite "
+        "torque keeps it moving; leave that instant out, lessen mu, or drive another link"
     )
 
 

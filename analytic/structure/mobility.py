@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from analytic.structure.groups import Bridge, Group, Pairs, decompose
 from models.errors import StructureError, few
-from models.joints import block_name
+from models.joints import block_name, joined_at
 from models.scene import GROUND, Scene, Slider
 
 MOST_LOOKS = 200_000
@@ -93,7 +93,7 @@ def analyse(scene: Scene) -> Structure:
     """
     blocks = [block_name(s) for s in scene.sliders.values() if s.link is None]
     bodies = (*scene.links, *blocks)
-    pins = _pins(scene)
+    pins = joined_at(scene)
     prismatics = {s.name: (sliding_body(s), s.on) for s in scene.sliders.values()}
     order, left = decompose(bodies, scene.driver.link, Pairs(pins, prismatics))
     structure = Structure(bodies, pins, prismatics, order)
@@ -117,15 +117,6 @@ def _fault(structure: Structure, left: list[str]) -> str:
     if mobility > 1:
         cure = "Pin a loose link, or remove one; bodies are pinned where they name the same point."
     return f"{count}; one driver needs mobility 1. {cure}"
-
-
-def _pins(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """The points that join at least two bodies, slider blocks included."""
-    bodies = {point: list(names) for point, names in scene.pins.items()}
-    for slider in scene.sliders.values():
-        if slider.link is None:
-            bodies.setdefault(slider.point, []).append(block_name(slider))
-    return {point: tuple(names) for point, names in bodies.items() if len(names) > 1}
 
 
 def _no_closed_form(structure: Structure, left: list[str]) -> str:

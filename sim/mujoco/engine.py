@@ -15,4 +15,5 @@ ENGINE = Engine(
     open=MujocoSession,
     holds=holds,
     in_seconds=in_seconds,
+    forces_of="states",
 )

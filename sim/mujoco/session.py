@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from models.array import Array
@@ -12,7 +14,9 @@ from models.motion import State
 from models.scene import Point, Scene
 from models.tree import Tree, plan
 from sim import drive as drives
-from sim.engine import Drive, Facts, Poses, Settings, SettingValue
+from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue
+from sim.mujoco.joint_forces import JointForces
+from sim.mujoco.reactions import reactions
 from sim.mujoco.settings import INTEGRATORS, OF_DRIVES, holds, velocity_shift, writing
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled
 from sim.settings import SettingError
@@ -28,7 +32,7 @@ class MujocoSession(SteppedModel):
         super().__init__(state.time_s, dt_s, velocity_shift(settings, drive))
         self._scene, self._settings, self._drive = scene, settings, drive
         chosen = writing(scene, settings, dt_s, drive)
-        tree = _tree(scene, state, chosen)
+        self._tree = tree = _tree(scene, state, chosen)
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
         with self._quiet():
@@ -76,6 +80,12 @@ class MujocoSession(SteppedModel):
             velocity_shift=self._shift,
             acceleration_shift=0.0,
         )
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the forces of `mj_forward` at each kept state."""
+        found = JointForces(self._model, self._limbs)
+        log = self._recorded(steps, every, found.look)
+        return replace(log, forces=reactions(self._scene, self._tree, log.poses, found))
 
     def _inertia(self, body: str) -> float:
         """Inertia about the centre of mass; a free crank has that of its hinge as well."""

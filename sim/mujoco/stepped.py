@@ -31,6 +31,8 @@ DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
+Look = Callable[[Any, Any], None]
+"""What is shown a model and its data, after `mj_forward` at a state."""
 
 
 class SteppedModel(ABC):
@@ -85,6 +87,10 @@ class SteppedModel(ABC):
 
     def record(self, steps: int, every: int) -> Log:
         """Advance in C, log every step, keep every ``every``-th."""
+        return self._recorded(steps, every)
+
+    def _recorded(self, steps: int, every: int, look: Look | None = None) -> Log:
+        """As `record`; ``look`` is shown each kept state with all that follows from it."""
         first = self._full_state()[None]
         began = time.perf_counter()
         with self._quiet():
@@ -96,7 +102,7 @@ class SteppedModel(ABC):
         diverged = any(self._data.warning[kind].number for kind in DIVERGED)
         count = len(kept) if good.all() else int(np.argmin(good))
         with self._quiet():
-            poses = self._poses(kept[:count], at[:count])
+            poses = self._poses(kept[:count], at[:count], look)
         self._done += steps
         return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
 
@@ -130,11 +136,11 @@ class SteppedModel(ABC):
         mujoco.mj_getState(self._model, self._data, state, FULL)
         return state
 
-    def _poses(self, states: Array, at: Array) -> Poses:
+    def _poses(self, states: Array, at: Array, look: Look | None = None) -> Poses:
         """Poses of logged states; accelerations are those of `mj_forward` at each state."""
-        return self._placed(states, at, self._accelerations(states, at))
+        return self._placed(states, at, self._accelerations(states, at, look))
 
-    def _accelerations(self, states: Array, at: Array) -> Array:
+    def _accelerations(self, states: Array, at: Array, look: Look | None) -> Array:
         """Joint accelerations of the states (T, nv), computed on a copy of the data."""
         model, data = self._model, mujoco.MjData(self._model)
         rows = np.empty((len(states), model.nv))
@@ -144,6 +150,8 @@ class SteppedModel(ABC):
             if control is not None:
                 data.ctrl[:] = control[row]
             mujoco.mj_forward(model, data)
+            if look is not None:
+                look(model, data)
             rows[row] = data.qacc
             data.qacc_warmstart[:] = data.qacc
         return rows

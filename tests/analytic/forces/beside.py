@@ -30,6 +30,8 @@ def series(found: Forces) -> Iterator[tuple[str, Array]]:
     for name, one in found.sliders.items():
         yield f"normal {name}", one.normal
         yield f"moment {name}", one.moment
+    for joint, rubbing in found.friction.items():
+        yield f"rubbing {joint}", rubbing
 
 
 def apart(one: Forces, other: Forces) -> float:
@@ -45,5 +47,5 @@ def apart(one: Forces, other: Forces) -> float:
 
 
 def out_of_balance(scene: Scene, time_s: Array, found: Forces) -> float:
-    balance = power.power_balance(scene, solve(scene, time_s), found.torque)
+    balance = power.power_balance(scene, solve(scene, time_s), found.torque, found.friction)
     return float(np.max(np.abs(balance.put_in - balance.used)) / np.max(balance.scale))
