@@ -226,7 +226,7 @@ class PymunkSession:
             if logged:
                 self._log()
                 if reactions is not None:
-                    reactions.read(self._loads.on_blocks)
+                    reactions.read(self._loads.on_blocks, self._loads.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
@@ -289,4 +289,5 @@ ENGINE = Engine(
     in_seconds=in_seconds,
     forces_of="steps",
     applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -17,6 +17,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from models.array import Array
+from models.errors import EngineError
 from models.friction import ConstantFriction
 from models.joints import (
     Prism,
@@ -67,7 +68,15 @@ class LoadSteps:
         self._times: list[float] = []
         self._known: dict[str, list[float]] = {}
         self.on_blocks: dict[str, Push] = {}
-        """What the next step, or the last one, has on slider blocks without mass, by slider."""
+        """What the last step had on slider blocks without mass, by slider."""
+        self.rubbed: dict[str, float] = {}
+        """The friction of each slider's guide on what slides in the last step [N]."""
+        if drive == "free" and self._rubbing:
+            names = ", ".join(f"friction.{slide.slider.name}" for slide, _ in self._rubbing)
+            raise EngineError(
+                f"{scene.name}: {names}: pymunk has no friction that holds a slider at rest, and "
+                "free motion may bring it there; drive the mechanism, or take the friction out"
+            )
 
     def __bool__(self) -> bool:
         return bool(self._scene.loads or self._rubbing)
@@ -98,6 +107,7 @@ class LoadSteps:
         for track in self._tracks.values():
             track.follow(frames)
         self.on_blocks = {slot.slider.name: (0.0, 0.0, 0.0) for slot in self._slots.values()}
+        self.rubbed = {}
         totals = dict.fromkeys(frames, (0.0, 0.0, 0.0))
         for name, load in self._scene.loads.items():
             if load.body in self._slots:
@@ -157,6 +167,7 @@ class LoadSteps:
         guide."""
         slider, rider = slide.slider, riding_body(slide)
         against = -math.copysign(size, speed) if (speed := self._tracks[slider.name].speed) else 0.0
+        self.rubbed[slider.name] = against
         fx, fy = turned((against, 0.0), frames[slider.on].theta + slider.direction_rad)
         if isinstance(slide, Slot):
             self._note(slide, (fx, fy, 0.0))
