@@ -55,7 +55,7 @@ FLOORS: Mapping[str, str] = {
         timing
         remedies run snippets tuning viewing own_models force_recipes
         recording
-        check energy registry joint_forces
+        check energy registry forces_by_body
         measure drive tree_poses settings own_engine load_magnitudes momentum_balance
         engine
     """,

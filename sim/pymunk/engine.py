@@ -15,6 +15,7 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.pymunk.load_steps import LoadSteps
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
 from sim.pymunk.space import SpaceModel, build
@@ -64,6 +65,7 @@ class PymunkSession:
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = _rows(self._model)
+        self._loads = LoadSteps(scene, self._model, state, dt_s, drive)
 
     def facts(self) -> Facts:
         """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
@@ -118,6 +120,7 @@ class PymunkSession:
         self._make_room(2 * len(at))
         self._log()
         self._each(steps, every, reactions)
+        self._done += steps
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
         rows = rows.reshape(2 * len(at) - 1, -1, WIDTH)
@@ -148,7 +151,9 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._coasts:
+        if self._loads:
+            self._each(steps, every)
+        elif self._coasts:
             self._coast(steps, every)
         else:
             self._follow(steps, every)
@@ -196,25 +201,32 @@ class PymunkSession:
         chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
         return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
 
-    def _each(self, steps: int, every: int, reactions: Reactions) -> None:
-        """Step, and log every ``every``-th step before and after, with what its joints bore."""
+    def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
+        """Step with all that acts, and log every ``every``-th step: with ``reactions`` before it
+        too, and what its joints bore."""
         space, dt, crank, motor = self._space, self._dt, self._model.crank, self._model.motor
         turns = None if self._coasts else self._turns(steps)
-        for k in range(1, steps + 1):
+        loads = self._loads if self._loads else None
+        if loads is not None:
+            ends = self._done + 1 + np.arange(steps, dtype=np.float64)
+            loads.look_ahead(self._start_s + dt * ends)
+        for k in range(steps):
             if turns is not None:
-                angle, speed = turns[k - 1]
+                angle, speed = turns[k]
                 if motor is not None:
                     motor.rate = speed
                 else:
                     crank.angle, crank.angular_velocity = angle, speed
-            logged = k % every == 0
-            if logged:
+            if loads is not None:
+                loads.apply(k)
+            logged = every > 0 and (k + 1) % every == 0
+            if logged and reactions is not None:
                 pymunk.batch.get_space_bodies(space, BEFORE, self._buffer)
             space.step(dt)
             if logged:
                 self._log()
-                reactions.read()
-        self._done += steps
+                if reactions is not None:
+                    reactions.read(self._loads.on_blocks, self._loads.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
@@ -276,4 +288,6 @@ ENGINE = Engine(
     reports_accelerations=False,
     in_seconds=in_seconds,
     forces_of="steps",
+    applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -8,7 +8,7 @@ end, where the arms are: over the step they are the forces at the logged sample,
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +19,9 @@ from models.array import Array
 from models.forces import Forces
 from models.poses import centre_of, mass_of
 from models.scene import Scene
-from sim.joint_forces import joint_forces
+from sim.forces_by_body import forces_by_body
 from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
+from sim.pymunk.load_steps import Push
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (
@@ -46,10 +47,17 @@ class Reactions:
         self._constraints = [one for one in (*joints, model.motor) if one is not None]
         self._driven = model.motor is not None or not _moves_freely(model.crank)
         self._impulses: list[list[float]] = []
+        self._braked: list[list[float]] = []
+        self._on_blocks: list[Mapping[str, Push]] = []
+        self._rubbed: list[Mapping[str, float]] = []
 
-    def read(self) -> None:
-        """The impulses of the step that was made."""
+    def read(self, on_blocks: Mapping[str, Push], rubbed: Mapping[str, float]) -> None:
+        """The impulses of the step that was made, what acted on slider blocks without mass, and the
+        friction of sliders."""
         self._impulses.append([constraint.impulse for constraint in self._constraints])
+        self._braked.append([one.motor.impulse if one.motor else 0.0 for one in self._model.rubs])
+        self._on_blocks.append(on_blocks)
+        self._rubbed.append(rubbed)
 
     def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
         """The forces at logged steps, and what speaks against them.
@@ -65,20 +73,41 @@ class Reactions:
             The instants of the samples, (T,).
         """
         ends = time_s[1:]
-        gains = {name: self._gain(name, before, after[1:], ends) for name in self._model.bodies}
+        couples = self._couples(before, after[1:])
+        gains = {
+            name: self._gain(name, before, after[1:], ends, couples) for name in self._model.bodies
+        }
         pushes = joint_pushes(self._scene, [*self._model.hinges], gains, driven=self._driven)
-        forces = joint_forces(self._scene, pushes, {}, ends).each_series(_with_start)
+        on_blocks = _by_name(self._on_blocks[: len(ends)])
+        friction = couples | _by_name(self._rubbed[: len(ends)])
+        forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
+        forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
         doubts = tuple(self._doubts(pushes, ends)) if len(ends) and not pushes.spare else ()
-        return replace(forces.stretch(slice(0, len(time_s))), time_s=time_s), doubts
+        return replace(forces, time_s=time_s), doubts
 
-    def _gain(self, name: str, before: Array, after: Array, time_s: Array) -> MomentumGain:
-        """What joints and drive gave a body."""
+    def _couples(self, before: Array, after: Array) -> dict[str, Array]:
+        """The friction of pins, by joint, (T,)."""
+        couples = {}
+        for k, one in enumerate(self._model.rubs):
+            first, second = (self._rows.get(name) for name in (one.first, one.second))
+            impulse = np.array([row[k] for row in self._braked[: len(after)]])
+            turning = _turning(before[:, :, 2], first, second)
+            left = _turning(after[:, :, 5], first, second)
+            couples[one.joint] = one.couple(impulse, turning, left, self._dt)
+        return couples
+
+    def _gain(
+        self, name: str, before: Array, after: Array, time_s: Array, couples: Mapping[str, Array]
+    ) -> MomentumGain:
+        """What joints and drive gave a body, friction apart."""
         body, centre = self._model.bodies[name], self._model.centre[name]
         start, end = before[:, self._rows[name]], after[:, self._rows[name]]
         if _moves_freely(body):
             given = self._change(body, start, end) - start[:, 3:6]
         else:
             given = self._told(name, end[:, 2], time_s) - start[:, 3:6]
+        for one in self._model.rubs:
+            given[:, 2] -= couples[one.joint] * ((name == one.second) - float(name == one.first))
         return MomentumGain(centre, end[:, 0:2], end[:, 2], given[:, 0:2], given[:, 2])
 
     def _change(self, body: pymunk.Body, start: Array, end: Array) -> Array:
@@ -126,6 +155,17 @@ class Reactions:
 
 def _moves_freely(body: pymunk.Body) -> bool:
     return body.body_type == pymunk.Body.DYNAMIC
+
+
+def _turning(omega: Array, first: int | None, second: int | None) -> Array:
+    """The angular velocity of a body against another, (T,), by their rows; None is the ground."""
+    one, other = (0.0 if row is None else omega[:, row] for row in (first, second))
+    return np.asarray(other - one)
+
+
+def _by_name(rows: Sequence[Mapping[str, Push] | Mapping[str, float]]) -> dict[str, Array]:
+    """Numbers of the steps as one array for each name."""
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
 
 
 def _with_start(series: Array) -> Array:

@@ -33,6 +33,7 @@ from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
 from sim.momentum_balance import Hinge
+from sim.pymunk.pin_friction import PinFriction, pin_friction
 from sim.pymunk.rail import Rail
 
 FAR = 1e3
@@ -47,7 +48,7 @@ class SpaceModel:
     ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
     ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
     made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
-    line, ``gears`` an angle.
+    line, ``gears`` an angle. ``rubs`` is what rubs in pins.
     """
 
     space: pymunk.Space
@@ -58,6 +59,7 @@ class SpaceModel:
     hinges: Mapping[Hinge, pymunk.Constraint | None]
     lines: Mapping[str, pymunk.Constraint]
     gears: Mapping[str, pymunk.Constraint]
+    rubs: tuple[PinFriction, ...]
 
 
 def build(
@@ -116,8 +118,12 @@ def build(
         if isinstance(slide, Prism) and slide.slider.on != GROUND:
             gears[name] = _gear(slide, made)
             space.add(_plain(gears[name]))
+    rubs = pin_friction(scene, made)
+    for rub in rubs:
+        if rub.motor is not None:
+            space.add(_plain(rub.motor))
     del made[GROUND]
-    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears)
+    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs)
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
