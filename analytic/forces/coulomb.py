@@ -72,6 +72,7 @@ class CoulombSolution:
     change: Array
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # dead points, searches that fail
 def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
     """Friction in all joints.
 
@@ -79,7 +80,9 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
     `MOST_STARTS` of them): all are found in one joint, and in six sliders; with pins among several
     joints some may be missed. Of two the one with the least friction is given.
     """
-    contracts = np.all(weights(system.gains()) > 0.0, axis=1)
+    finite = np.isfinite(system.alone).all(axis=(1, 2))
+    finite &= np.isfinite(system.influence).all(axis=(1, 2, 3))
+    contracts = finite & np.all(weights(system.gains()) > 0.0, axis=1)
     count = len(system.alone)
     g, change = np.full((count, len(system.mu)), np.nan), np.full(count, np.nan)
     solutions, iterations = np.zeros(count), np.zeros(count)
@@ -87,8 +90,6 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
         solutions[contracts] = 1
         part = _contracted(system.at(contracts))
         g[contracts], iterations[contracts], change[contracts] = part
-    finite = np.isfinite(system.alone).all(axis=(1, 2))
-    finite &= np.isfinite(system.influence).all(axis=(1, 2, 3))
     other = ~contracts & finite
     if other.any():
         g[other], solutions[other], change[other] = _searched(system.at(other))

@@ -1,0 +1,32 @@
+"""Friction in random joints of random mechanisms."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+from analytic.structure.mobility import analyse
+from models.friction import ConstantFriction, CoulombFriction, Friction
+from models.scene import Scene
+from tests.worlds.loading import loaded_mechanism
+
+
+def rubbed(scene: Scene, chance: random.Random, mu: float = 0.3) -> Scene:
+    """The scene with friction in some of its joints, one at least, up to a coefficient."""
+    names = [p for p, held in analyse(scene).pins.items() if len(held) == 2]
+    joints = [*(name for name in names if name not in scene.sliders), *scene.sliders]
+    chosen = chance.sample(joints, chance.randint(1, min(4, len(joints))))
+    friction: dict[str, Friction] = {}
+    for joint in chosen:
+        if chance.random() < 0.25:
+            friction[joint] = ConstantFriction(joint, chance.uniform(0.1, 3.0))
+        else:
+            radius = 0.0 if joint in scene.sliders else chance.uniform(0.005, 0.1)
+            friction[joint] = CoulombFriction(joint, chance.uniform(0.0, mu), radius)
+    return replace(scene, friction=friction)
+
+
+def rubbed_mechanism(number: int) -> tuple[Scene, bool]:
+    """The loaded mechanism of a number with friction, and whether it is near a dead point."""
+    scene, near = loaded_mechanism(number)
+    return rubbed(scene, random.Random(number)), near
