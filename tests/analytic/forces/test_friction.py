@@ -12,7 +12,7 @@ import pytest
 from analytic.check import multipliers, power
 from analytic.forces import kinetostatics
 from analytic.forces.efficiency import friction_power
-from analytic.kinematics import solve, solve_driven
+from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene, shipped
 from models.forces import Forces
@@ -132,6 +132,28 @@ def test_three_computations_agree_with_friction(name: str) -> None:
     assert any(np.any(np.abs(each) > 0.0) for each in found.friction.values())
 
 
+def test_random_mechanisms_agree_with_the_multipliers() -> None:
+    """Where friction has one solution; blocks on moving guides among them, and their pins."""
+    told = 0
+    for number in range(0, 60, 4):
+        scene, _ = rubbed_mechanism(number)
+        time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
+        found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+        assert found.bound is not None
+        some = time_s[found.bound.torque < 1e-6 * np.abs(found.torque).max()]
+        if len(some):
+            found, motion = kinetostatics.forces(scene, some), solve(scene, some)
+            assert apart(found, multipliers.forces(scene, motion)) <= AGREED, number
+            assert out_of_balance(scene, some, found) <= AGREED, number
+            lost = sum(friction_power(scene, motion, found.friction).values())
+            bare = replace(scene, friction={})
+            without = power.power_balance(bare, motion, found.torque)
+            off = np.abs(without.put_in - without.used + lost)
+            assert np.max(off) <= AGREED * np.max(without.scale), number
+            told += len(some)
+    assert told > 40
+
+
 def test_a_fault_in_friction_makes_them_disagree() -> None:
     scene = press(piston=CoulombFriction("piston", 0.2))
     scene = replace(scene, gravity_m_s2=(0.0, -9.81))
@@ -227,6 +249,36 @@ def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
     assert found.bound.friction["piston"][0] >= 50.0
     assert found.bound.friction["piston"][1] < 1e-9
     assert found.bound.pins["B"]["rod"][0] >= 50.0
+
+
+def test_rounding_is_no_motion() -> None:
+    """In the outer dead centre the piston moves at 1e-17 m/s, because pi is no float."""
+    scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
+    heavy = replace(scene.sliders["piston"], mass_kg=10.0)
+    motion = solve_driven(scene, np.array([math.pi]), np.array(1.0), np.array(0.0))
+    assert 0.0 < abs(motion.sliders["piston"].speed[0]) < 1e-15
+    found = kinetostatics.forces(replace(scene, sliders={"piston": heavy}), motion)
+    assert found.bound is not None
+    assert found.friction["piston"][0] == 0.0
+    assert found.bound.friction["piston"][0] == pytest.approx(0.2 * 98.1)
+
+
+def test_friction_alone_asks_for_a_torque() -> None:
+    scene = press(A=ConstantFriction("A", 2.0))
+    sliders = {"piston": replace(scene.sliders["piston"], mass_kg=0.0)}
+    links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
+    scene = replace(scene, links=links, sliders=sliders, loads={})
+    assert kinetostatics.forces(scene, [0.3]).torque == pytest.approx([2.0])
+
+
+def test_in_a_dead_point_friction_is_no_number() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    scene = replace(scene, friction={"C": ConstantFriction("C", 1.0)})
+    end = solve_driven(scene, np.array([reach(scene)[0][0]]), np.array(1.0), np.array(0.0))
+    found = kinetostatics.forces(scene, end, skip_dead_points=True)
+    assert found.bound is not None
+    assert np.isnan(found.friction["C"]).all()
+    assert np.isinf(found.bound.friction["C"]).all()
 
 
 def test_redundant_links_take_constant_friction_alone() -> None:
