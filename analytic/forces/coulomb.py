@@ -26,8 +26,9 @@ MOST = 60
 """Steps, of which Newton's take some five; plain ones are as many as a contraction needs."""
 SETTLED = 1e-13
 """A change over the largest friction at which nothing more is gained."""
-SOLVED = 1e-9
-"""What a solution may leave open, over itself, where one is looked for from many starts."""
+SEARCHED, SOLVED = 30, 1e-9
+"""Steps from each start where solutions are looked for from many, and what one may leave open,
+over itself."""
 MOST_STARTS = 64
 
 
@@ -93,7 +94,7 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
     other = ~contracts & finite
     if other.any():
         g[other], solutions[other], change[other] = _searched(system.at(other))
-        iterations[other] = MOST
+        iterations[other] = SEARCHED
     solutions[~finite] = 1  # a dead point, which has its own words
     return CoulombSolution(g, solutions, iterations, change)
 
@@ -149,7 +150,7 @@ def _searched(system: CoulombSystem) -> tuple[Array, Array, Array]:
     solutions = np.zeros(count)
     for start in _starts(system):
         g = start
-        for _ in range(MOST):
+        for _ in range(SEARCHED):
             g = system.along(_directions(system.reactions(g)))
         size = np.max(np.abs(g), axis=1)
         off = np.max(np.abs(system.friction(g) - g), axis=1) / np.where(size > 0.0, size, 1.0)

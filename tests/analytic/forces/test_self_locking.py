@@ -54,6 +54,12 @@ stroke = "backward"
 """The loads are against the motion on both strokes, and inertia is next to nothing."""
 
 
+HEAVY = STEEP.replace(", mass_kg = 0.0, inertia_kg_m2 = 0.0", "")
+for old, new in (("mass_kg = 0.001", "mass_kg = 0.5"), ("100.0", "500.0"), ("= 1.0", "= 10.0")):
+    HEAVY = HEAVY.replace(old, new)
+"""With masses as engines ask for."""
+
+
 def steep(mu: float = 0.5) -> Scene:
     return parse_scene(STEEP.replace("mu = 0.5", f"mu = {mu}"), "steep")
 
@@ -73,6 +79,33 @@ def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -
     assert np.ravel(told) == pytest.approx(np.ravel(wanted), abs=1e-13)
     ends = math.degrees(begin), 180.0 - math.degrees(begin)
     assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
+
+
+@pytest.mark.parametrize(("at_b", "at_c"), [(0.0, 0.01), (0.01, 0.0), (0.02, 0.01)])
+def test_pins_that_rub_move_the_limit_by_the_lean_of_the_tangent(at_b: float, at_c: float) -> None:
+    """The rod's force runs along a tangent of both friction circles, which leans from the rod by
+    asin((c_B +- c_C)/l), and that counts in place of the rod's angle. Beyond 90 deg the rod turns
+    back, and rubs the other way in C."""
+    scene = steep()
+    circles = [radius * math.sin(math.atan(0.3)) for radius in (at_b, at_c)]
+    pins = {n: CoulombFriction(n, 0.3, r) for n, r in zip("BC", (at_b, at_c), strict=True) if r}
+    first = self_locking(replace(scene, friction={**scene.friction, **pins}), 180)[0]
+    before, after = (math.asin((circles[0] + sign * circles[1]) / 0.11) for sign in (1, -1))
+    steepest = math.pi / 2 - math.atan(0.5)
+    wanted = [math.asin(1.1 * math.sin(steepest - lean)) for lean in (before, after)]
+    assert first.locks
+    assert first.begin_rad == pytest.approx(wanted[0], abs=1e-8)
+    assert first.end_rad == pytest.approx(math.pi - wanted[1], abs=1e-8)
+
+
+def test_inertia_moves_no_limit() -> None:
+    """Which is the rod's angle as long as the load decides the sign of the normal force."""
+    scene = parse_scene(HEAVY, "heavy")
+    begin = limit(0.5)
+    found = self_locking(scene)
+    assert [each.locks for each in found] == [True, True]
+    assert found[0].begin_rad == pytest.approx(begin, abs=1e-12)
+    assert found[1].end_rad == pytest.approx(math.tau - begin, abs=1e-12)
 
 
 def test_with_less_friction_it_never_locks() -> None:
