@@ -44,18 +44,18 @@ def draw(report: Report, name: str) -> Figure | None:
     per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))
     draw_bodies(axes, scene, path, path, at, 0.5)
     paper = Sheet(low, tuple((high - low) * per_m), float(per_m), 0.1 * scene.longest_m)
-    for each in names(scene, path, at, paper, _size):
-        _write(axes, each)
+    for each in names(scene, path, at, paper, name_size):
+        write_name(axes, each)
     return figure
 
 
-def _write(axes: Axes, each: Name) -> None:
+def write_name(axes: Axes, each: Name) -> None:
     """A letter or a name in its place."""
     size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
     axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
 
 
-def _size(text: str, is_point: bool) -> tuple[float, float]:
+def name_size(text: str, is_point: bool) -> tuple[float, float]:
     """Width and height of a text [inch]."""
     points = SIZE if is_point else SMALL
     return width_in(text, points), 0.75 * points / POINTS

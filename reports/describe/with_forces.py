@@ -1,0 +1,134 @@
+"""The forces of a solved motion, as they are shown: what is not certain, left out or open is told.
+
+Over a turn, instants in dead points have no numbers; a single position in one is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.characteristics import Constant
+from models.errors import CrankcheckError
+from models.forces import Forces, SliderForces
+from models.motion import Motion
+from models.scene import Scene
+from reports.output.numbers import count, listed
+
+UNCERTAIN = 1e-6
+"""A number that its own bound swallows is 0 where the bound is less than so much of the largest of
+its kind, and unknown where it is more."""
+TURN = 721
+"""Samples of a turn whose forces are drawn, or looked through for the largest."""
+NAMED = 4
+"""Angles of dead points that a note names."""
+
+
+def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: bool = True) -> Motion:
+    """The motion with its reactions and driving torque.
+
+    ``by_law`` says that its times are instants of the driver's law, of which the forces are worked
+    out; else the whole motion itself is taken.
+
+    Raises
+    ------
+    CrankcheckError
+        As `analytic.forces.kinetostatics.forces`, for dead points only where all samples are in
+        one; a load over time on a motion whose times are mere labels.
+    """
+    if not by_law:
+        _refuse_loads_over_time(scene)
+    when = motion.time_s if by_law else motion
+    acting = forces(scene, when, bound=bound, skip_dead_points=True)
+    if acting.torque.size and np.all(np.isnan(acting.torque)):
+        acting = forces(scene, when, bound=bound)  # tells why
+    return replace(motion, forces=acting)
+
+
+def turn_with_forces(scene: Scene, samples: int = TURN) -> Motion:
+    """The first turn of the driver, both ends included, with its forces and their bounds."""
+    time_s = np.linspace(0.0, scene.driver.law.period_s, samples)
+    return with_forces(scene, solve(scene, time_s))
+
+
+def _refuse_loads_over_time(scene: Scene) -> None:
+    for load in scene.loads.values():
+        if load.over == "time" and not isinstance(load.characteristic, Constant):
+            raise CrankcheckError(
+                f"forces at an angle: loads.{load.name} follows time, and an angle does not say "
+                "when it is; ask for a motion over time"
+            )
+
+
+def force_notes(scene: Scene, motion: Motion) -> list[str]:
+    """What is not determined, in sentences."""
+    acting = motion.forces
+    if acting is None:
+        return []
+    notes = [f"Reactions: none, as {acting.undetermined}."] if acting.undetermined else []
+    dead = np.flatnonzero(np.isnan(acting.torque))
+    if dead.size:
+        driver = motion.links.get(scene.driver.link)
+        words = count(dead.size, "instant")
+        if driver is not None:
+            angles = dict.fromkeys(
+                f"{each + 0.0:.6g}" for each in np.round(np.degrees(driver.theta[dead]) % 360, 9)
+            )
+            few = [f"{angle} deg" for angle in [*angles][:NAMED]]
+            words = f"{scene.driver.link} at {listed([*few, 'more'][: len(angles)])}"
+        notes.append(
+            f"Dead point, {words}: the driving torque and the reactions are not determined there, "
+            "and left out."
+        )
+    return notes
+
+
+def force_certainty(acting: Forces) -> str:
+    """What forces may be wrong by, in a line; "" without a bound."""
+    bound = acting.bound
+    if bound is None:
+        return ""
+    pins = [limit for bodies in bound.pins.values() for limit in bodies.values()]
+    pins += [slider.normal for slider in bound.sliders.values()]
+    moments = [bound.torque, *(slider.moment for slider in bound.sliders.values())]
+    parts = [(_most(pins), "N")] * bool(pins) + [(_most(moments), "N m")]
+    return f"Forces certain to {', '.join(f'{most:.1e} {unit}' for most, unit in parts)}."
+
+
+def _most(limits: Sequence[Array]) -> float:
+    """The largest bound that is finite."""
+    every = np.concatenate(limits)
+    return float(np.max(every[np.isfinite(every)], initial=0.0))
+
+
+def cleaned_forces(acting: Forces) -> Forces:
+    """The forces to be read by people: numbers that are 0 within their own bound are 0, and those
+    of which the bound leaves nothing are NaN."""
+    bound = acting.bound
+    if bound is None:
+        return acting
+    pins = {
+        point: {body: _cleaned(force, bound.pins[point][body]) for body, force in bodies.items()}
+        for point, bodies in acting.pins.items()
+    }
+    sliders = {
+        name: SliderForces(
+            _cleaned(slider.normal, bound.sliders[name].normal),
+            _cleaned(slider.moment, bound.sliders[name].moment),
+        )
+        for name, slider in acting.sliders.items()
+    }
+    return replace(acting, pins=pins, sliders=sliders, torque=_cleaned(acting.torque, bound.torque))
+
+
+def _cleaned(series: Array, limit: Array) -> Array:
+    """A series (T,) or (T, 2) with a bound (T,)."""
+    rows = series.T
+    largest = float(np.nanmax(np.abs(rows), initial=0.0))
+    swallowed = np.where(limit <= max(UNCERTAIN * largest, 1e-9), 0.0, np.nan)
+    return np.asarray(np.where(np.abs(rows) <= limit, swallowed, rows).T)

@@ -1,0 +1,66 @@
+"""The mechanism where its reactions are largest, with the forces as arrows to one scale."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from models.motion import Motion
+from reports.drawing.force_arrows import ForceArrows, force_arrows
+from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
+from reports.drawing.names import Sheet, names
+from reports.drawing.shape import PATH_SAMPLES, turn_of
+from reports.figures.forces.force_turn import ForceTurn
+from reports.figures.mechanism import name_size, write_name
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, SMALL
+from reports.output.numbers import readable
+
+ALONG = 24
+"""Points of an arrow that names keep off."""
+
+
+def draw(turn: ForceTurn) -> Figure | None:
+    """The drawing; None without reactions."""
+    if not turn.acting.pins and not turn.acting.sliders:
+        return None
+    scene = turn.scene
+    path = turn_of(scene, PATH_SAMPLES, with_forces=True)
+    arrows = force_arrows(scene, path)
+    low, high = box = arrows.box(path)
+    panels = Panels(top=0.05, right=0.1)
+    wide = COLUMN_IN - panels.left - panels.right
+    height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
+    at = _worst(arrows, path)
+    assert path.forces is not None
+    angle = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
+    torque = readable(float(path.forces.torque[at]))
+    title = f"{scene.name}, {scene.driver.link} at {angle:.0f} deg"
+    words = (
+        f"Where the reactions are largest; driving torque {torque} N m. An arrow is the force on "
+        "the body of its colour, a black one that on a block."
+    )
+    figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], [words, *turn.notes])
+    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    axes.set_aspect("equal", adjustable="box", anchor="N")
+    per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))
+    draw_bodies(axes, scene, path, path, at, 0.5)
+    draw_arrows(axes, arrows, path, at)
+    scale_bar(axes, arrows, box, SMALL)
+    paper = Sheet(low, tuple((high - low) * per_m), float(per_m), 0.1 * scene.longest_m)
+    taken = [np.linspace(a.tail, a.tip, ALONG)[3:] for a in arrows.at(path, at)]
+    for each in names(scene, path, at, paper, name_size, taken):
+        write_name(axes, each)
+    return figure
+
+
+def _worst(arrows: ForceArrows, path: Motion) -> int:
+    """The sample whose largest arrow is the largest."""
+    sizes = [
+        max((float(np.hypot(*(a.tip - a.tail))) for a in arrows.at(path, k)), default=0.0)
+        for k in range(path.time_s.size)
+    ]
+    return int(np.argmax(sizes))
