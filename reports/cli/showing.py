@@ -31,7 +31,8 @@ class SolveRequest:
         int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
     ] = None
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx, or a page, .html.")
+        Path | None,
+        typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx, or a page, .html."),
     ] = None
     clockwise: Annotated[
         bool, typer.Option("--clockwise", help="With --at-deg: the driver turning clockwise there.")

@@ -41,9 +41,7 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
     return [table for table in (drive, pins, guides) if table.row_count]
 
 
-def motion_force_tables(
-    scene: Scene, motion: Motion, acting: Forces, width: int
-) -> list[Table]:
+def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
     """Torque, pins and sliders over time, as many to a table as the terminal has room for."""
     bodies: list[tuple[str, Columns]] = [("drive", [("torque\nN m", acting.torque)])]
     for point, body, _, force in acted_on(acting):

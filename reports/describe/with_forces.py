@@ -71,21 +71,26 @@ def force_notes(scene: Scene, motion: Motion) -> list[str]:
     if acting is None:
         return []
     notes = [f"Reactions: none, as {acting.undetermined}."] if acting.undetermined else []
-    dead = np.flatnonzero(np.isnan(acting.torque))
-    if dead.size:
-        driver = motion.links.get(scene.driver.link)
-        words = count(dead.size, "instant")
-        if driver is not None:
-            angles = dict.fromkeys(
-                f"{each + 0.0:.6g}" for each in np.round(np.degrees(driver.theta[dead]) % 360, 9)
-            )
-            few = [f"{angle} deg" for angle in [*angles][:NAMED]]
-            words = f"{scene.driver.link} at {listed([*few, 'more'][: len(angles)])}"
-        notes.append(
-            f"Dead point, {words}: the driving torque and the reactions are not determined there, "
-            "and left out."
-        )
-    return notes
+    return notes + dead_point_note(scene, motion)
+
+
+def dead_point_note(scene: Scene, motion: Motion) -> list[str]:
+    """Where the driver stands in dead points, in a sentence, if it does."""
+    assert motion.forces is not None
+    dead = np.flatnonzero(np.isnan(motion.forces.torque))
+    if dead.size == 0:
+        return []
+    driver = motion.links.get(scene.driver.link)
+    where = count(dead.size, "instant")
+    if driver is not None:
+        degrees = np.round(np.degrees(driver.theta[dead]) % 360.0, 6) % 360.0
+        angles = [f"{each:g} deg" for each in sorted(set(degrees.tolist()))]
+        few = [*angles[:NAMED], "more"] if len(angles) > NAMED else angles
+        where = f"{scene.driver.link} at {listed(few)}"
+    return [
+        f"Dead point, {where}: the driving torque and the reactions are not determined there, and "
+        "left out; beside it they may be of any size."
+    ]
 
 
 def force_certainty(acting: Forces) -> str:
@@ -101,9 +106,10 @@ def force_certainty(acting: Forces) -> str:
 
 
 def _most(limits: Sequence[Array]) -> float:
-    """The largest bound that is finite."""
-    every = np.concatenate(limits)
-    return float(np.max(every[np.isfinite(every)], initial=0.0))
+    """The largest bound that is finite; infinite where none is."""
+    every = np.concatenate([*limits, [-np.inf]])
+    most = float(np.max(np.where(np.isfinite(every), every, -np.inf)))
+    return most if most >= 0.0 else np.inf
 
 
 def cleaned_forces(acting: Forces) -> Forces:

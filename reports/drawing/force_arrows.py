@@ -17,7 +17,7 @@ from models.joints import block_name
 from models.motion import Motion
 from models.scene import Scene
 from reports.drawing.packed import packed
-from reports.drawing.shape import MARGIN, box_of, guide_direction
+from reports.drawing.shape import MARGIN, box_of, guide_direction, size_of_motion
 
 LONGEST = 0.34
 """The length of the largest force, over the size of what moves."""
@@ -27,6 +27,8 @@ CUT = 1.5
 """An arrow of more than so many of `LONGEST` is cut off, and has no head."""
 LEAST = 0.012
 """A shorter arrow, over the size of what moves, is not drawn."""
+ALONG = 24
+"""Places along an arrow, the ends included."""
 HEAD = (0.045, 0.016)
 """Length and half the width of a head, over the size of what moves."""
 
@@ -41,13 +43,18 @@ class Arrow:
     tip: Array
     is_whole: bool = True
 
+    @property
+    def shaft(self) -> Array:
+        """Places along it that names should keep off, (n, 2) [m]; at its tail a pin stands."""
+        return np.linspace(self.tail, self.tip, ALONG)[3:]
+
     def head(self, size: float) -> Array:
         """The corners of the head, the tip first, (3, 2); ``size`` is that of what moves [m]."""
         way = self.tip - self.tail
         long = float(np.hypot(*way))
         along = way / long
         length = min(HEAD[0] * size, 0.6 * long)
-        half = HEAD[1] * size * length / (HEAD[0] * size)
+        half = length * HEAD[1] / HEAD[0]
         across = np.array([-along[1], along[0]])
         foot = self.tip - length * along
         return np.array([self.tip, foot + half * across, foot - half * across])
@@ -126,8 +133,7 @@ def force_arrows(scene: Scene, path: Motion) -> ForceArrows:
     ]
     sizes = [each for each in sizes if math.isfinite(each)]
     largest = float(np.percentile(sizes, LARGE)) if sizes else 0.0
-    low, high = box_of(path)
-    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    size = size_of_motion(path)
     if not largest > 0.0:
         return ForceArrows(scene, 0.0, size, 0.0)
     return ForceArrows(scene, LONGEST * size / largest, size, rounded(0.7 * largest))

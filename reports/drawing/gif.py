@@ -20,12 +20,19 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.shape import MARGIN, PATH_SAMPLES, box_of, colours_of, guide_direction, turn_of
+from reports.drawing.plotted_arrows import INK, draw_arrows, scale_bar
+from reports.drawing.shape import (
+    PATH_SAMPLES,
+    box_of,
+    colours_of,
+    guide_direction,
+    size_of_motion,
+    turn_of,
+)
 from reports.output.numbers import readable
 
 FRAMES = 60
 STRIP = 6
-INK = "#1f2933"
 GUIDE = "#9aa5b1"
 
 
@@ -154,8 +161,7 @@ def draw_bodies(
     They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
     what moves [m].
     """
-    low, high = box_of(path)
-    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    size = size_of_motion(path)
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)
@@ -174,44 +180,6 @@ def draw_bodies(
             axes.fill(*corners.T, color=INK, alpha=0.75, linewidth=0, zorder=2)
         axes.plot(*place, "o", markersize=6, color="white", markeredgecolor=INK, zorder=5)
     return size
-
-
-def draw_arrows(axes: Axes, arrows: ForceArrows, motion: Motion, index: int) -> None:
-    """The forces at a sample, each in the colour of the body that it acts on."""
-    colours = colours_of(arrows.scene)
-    for arrow in arrows.at(motion, index):
-        colour = colours.get(arrow.body, INK)
-        end = arrow.head(arrows.size)[1:].mean(axis=0) if arrow.is_whole else arrow.tip
-        axes.plot(*np.array([arrow.tail, end]).T, color="white", linewidth=3.2, zorder=6)
-        axes.plot(*np.array([arrow.tail, end]).T, color=colour, linewidth=1.6, zorder=6)
-        if arrow.is_whole:
-            look = {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
-            axes.fill(*arrow.head(arrows.size).T, zorder=7, **look)
-
-
-def scale_bar(
-    axes: Axes, arrows: ForceArrows, box: tuple[Array, Array], fontsize: float
-) -> None:
-    """How long a force is drawn, in the lower right corner of the box."""
-    if not arrows.bar_n:
-        return
-    long = arrows.bar_n * arrows.m_per_n
-    right, low = float(box[1][0]) - 0.03 * arrows.size, float(box[0][1]) + 0.03 * arrows.size
-    tick = 0.012 * arrows.size
-    ends = [right - long, right - long, right - long, right, right, right]
-    high = [low - tick, low + tick, low, low, low + tick, low - tick]
-    axes.plot(ends, high, color=INK, linewidth=1.2, zorder=8)
-    axes.annotate(
-        f"{arrows.bar_n:g} N",
-        (right - long / 2, low),
-        (0, 2.5),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        fontsize=fontsize,
-        color=INK,
-        zorder=8,
-    )
 
 
 def _link(axes: Axes, corners: Sequence[Array], colour: str) -> None:

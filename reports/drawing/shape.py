@@ -36,9 +36,7 @@ def turn_of(
     motion = solve(scene, time_s, bound=False)
     if not with_forces:
         return motion
-    return replace(
-        motion, forces=forces(scene, time_s, bound=False, skip_dead_points=True)
-    )
+    return replace(motion, forces=forces(scene, time_s, bound=False, skip_dead_points=True))
 
 
 def clearest(path: Motion) -> int:
@@ -58,6 +56,12 @@ def box_of(path: Motion) -> tuple[Array, Array]:
     # A mechanism on one line still needs some height.
     spare = np.maximum(0.35 * size - (high - low), 0.0) / 2 + MARGIN * size
     return np.asarray(low - spare), np.asarray(high + spare)
+
+
+def size_of_motion(path: Motion) -> float:
+    """How large what moves is [m]: the longer side of its box, without the margin."""
+    low, high = box_of(path)
+    return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:

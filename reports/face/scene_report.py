@@ -13,7 +13,6 @@ def page_of(scene: Scene, *, with_forces: bool) -> str:
     if not with_forces:
         return scene_page(scene)
     figures = {
-        name: saved(figure, "svg", f"{scene.name}: {name}")
-        for name, figure in drawn_figures(scene)
+        name: saved(figure, "svg", f"{scene.name}: {name}") for name, figure in drawn_figures(scene)
     }
     return scene_page(scene, figures)

@@ -74,7 +74,7 @@ class Solution(Shown, Motion):
         show_notes(console, self.scene, self)
 
     def _drawn(self) -> str:
-        return drawn(self.scene)
+        return drawn(self.scene, with_forces=self.forces is not None)
 
 
 @told_at_the_call
@@ -204,11 +204,12 @@ def thinned(motion: Motion, most: int) -> Motion:
     return replace(few, time_s=motion.time_s[kept], bound=bound, forces=acting, conditioning={})
 
 
-def drawn(scene: Scene, logged: Motion | None = None) -> str:
-    """The mechanism as SVG, with the paths of a run; "" where it can not go through a turn."""
+def drawn(scene: Scene, logged: Motion | None = None, *, with_forces: bool = False) -> str:
+    """The mechanism as SVG, with the paths of a run or the reference's forces; "" where it can not
+    go through a turn."""
     from reports.drawing.svg import svg
 
     try:
-        return svg(scene, logged)
+        return svg(scene, logged, with_forces=with_forces)
     except CrankcheckError:
         return ""

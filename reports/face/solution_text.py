@@ -22,6 +22,7 @@ from reports.describe.law import describe_law
 from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
 from reports.describe.with_forces import (
     cleaned_forces,
+    dead_point_note,
     force_certainty,
     force_notes,
     turn_with_forces,
@@ -85,6 +86,8 @@ def show_largest(console: Console, scene: Scene) -> None:
         return
     assert turn.forces is not None
     console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
+    for note in dead_point_note(scene, turn):
+        console.print(note, style="yellow", highlight=False, markup=False)
 
 
 def show_notes(console: Console, scene: Scene, motion: Motion) -> None:

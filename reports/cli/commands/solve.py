@@ -20,6 +20,7 @@ from reports.cli.showing import SolveRequest
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
+from reports.face.scene_report import page_of
 from reports.face.solution_text import (
     show_heading,
     show_largest,
@@ -27,9 +28,8 @@ from reports.face.solution_text import (
     show_notes,
     show_position,
 )
-from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
-from reports.face.scene_report import page_of
 from reports.figures.forces.writing import figure_files, written_figures
+from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
 from reports.output.write import check_file, check_folder, write
 
 PAGE = ".html"

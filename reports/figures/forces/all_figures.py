@@ -12,10 +12,10 @@ from reports.figures.forces.force_turn import ForceTurn
 
 FORCE_FIGURES: Mapping[str, Callable[[ForceTurn], Figure | None]] = {
     "torque": torque.draw,
-    "reactions-polar": hodographs.draw,
     "reactions": reaction_sizes.draw,
     "reduced": reduced.draw,
     "forces": loaded.draw,
+    "reactions-polar": hodographs.draw,
 }
 """Each gives None where a scene has nothing to draw: with redundant links there are no
 reactions."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,7 +52,7 @@ class ForceTurn:
         """Limits and ticks of the horizontal axis; short numbers on the other."""
         axes.set_xlim(*self.ends)
         axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
-        axes.yaxis.get_offset_text().set_size(SMALL)
+        axes.yaxis.get_offset_text().set_fontsize(SMALL)
         if self.label.endswith("[deg]"):
             axes.xaxis.set_major_locator(MultipleLocator(60.0))
 
@@ -76,11 +77,12 @@ def force_turn(scene: Scene) -> ForceTurn:
     acting = cleaned_forces(motion.forces)
     law, every = scene.driver.law, np.arange(motion.time_s.size)
     label = f"angle of {scene.driver.link} [deg]"
-    x = np.degrees(motion.links[scene.driver.link].theta)
+    theta = motion.links[scene.driver.link].theta
+    x = np.degrees(theta)
     ends = (float(x.min()), float(x.max()))
     if isinstance(law, Oscillating):  # every angle is passed twice
         x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
-    elif isinstance(law, ConstantSpeed) and not _changes_over_time(scene):
+    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, theta):
         # A turn is like every other: it is drawn from 0 on, wherever it began.
         around = np.mod(np.round(x[:-1], 9), 360.0)
         every = np.argsort(around)
@@ -90,8 +92,19 @@ def force_turn(scene: Scene) -> ForceTurn:
     return ForceTurn(scene, motion, acting, reduced, x, label, ends, every)
 
 
-def _changes_over_time(scene: Scene) -> bool:
-    return any(
-        load.over == "time" and not isinstance(load.characteristic, Constant)
-        for load in scene.loads.values()
-    )
+def _is_cyclic(scene: Scene, theta: Array) -> bool:
+    """Whether every turn of a driver of one speed is like the others: no load follows time, and
+    none follows the angle otherwise than turn by turn (a four-stroke's does)."""
+    for load in scene.loads.values():
+        own = load.characteristic
+        if isinstance(own, Constant) or load.over == "displacement":
+            continue
+        if load.over == "time":
+            return False
+        try:
+            again, size = own.at(theta - math.tau), np.max(np.abs(own.at(theta)))
+        except ValueError:  # a table of this turn alone
+            return False
+        if np.max(np.abs(again - own.at(theta))) > 1e-9 * size:
+            return False
+    return True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -94,8 +95,9 @@ def _numbers(
     cross = np.append(-low * per_n, 0.05)
     centres = place(labels, np.vstack([heavy, cross]), curve[:0], (side, side))
     for label, (x, y) in zip(labels, centres, strict=True):
-        at = low + np.array([x, y]) / per_n
-        axes.text(*at, label.text, size=TINY, color=QUIET, ha="center", va="center", zorder=5)
+        right, up = (float(each) for each in low + np.array([x, y]) / per_n)
+        look: dict[str, Any] = {"size": TINY, "color": QUIET, "ha": "center", "va": "center"}
+        axes.text(right, up, label.text, zorder=5, **look)
 
 
 def _dots(turn: ForceTurn) -> dict[int, int]:

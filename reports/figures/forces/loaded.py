@@ -10,17 +10,15 @@ from matplotlib.figure import Figure
 
 from models.motion import Motion
 from reports.drawing.force_arrows import ForceArrows, force_arrows
-from reports.drawing.gif import draw_arrows, draw_bodies, scale_bar
+from reports.drawing.gif import draw_bodies
 from reports.drawing.names import Sheet, names
+from reports.drawing.plotted_arrows import draw_arrows, scale_bar
 from reports.drawing.shape import PATH_SAMPLES, turn_of
 from reports.figures.forces.force_turn import ForceTurn
-from reports.figures.mechanism import name_size, write_name
+from reports.figures.mechanism import frame, name_size, write_name
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL
 from reports.output.numbers import readable
-
-ALONG = 24
-"""Points of an arrow that names keep off."""
 
 
 def draw(turn: ForceTurn) -> Figure | None:
@@ -43,15 +41,16 @@ def draw(turn: ForceTurn) -> Figure | None:
         f"Where the reactions are largest; driving torque {torque} N m. An arrow is the force on "
         "the body of its colour, a black one that on a block."
     )
-    figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], [words, *turn.notes])
-    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    axes.set_aspect("equal", adjustable="box", anchor="N")
+    figure, (axes,) = sheet(
+        COLUMN_IN, replace(panels, height=height), title, [], [words, *turn.notes]
+    )
     per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))
+    frame(axes, low, high, float(per_m))
     draw_bodies(axes, scene, path, path, at, 0.5)
     draw_arrows(axes, arrows, path, at)
     scale_bar(axes, arrows, box, SMALL)
     paper = Sheet(low, tuple((high - low) * per_m), float(per_m), 0.1 * scene.longest_m)
-    taken = [np.linspace(a.tail, a.tip, ALONG)[3:] for a in arrows.at(path, at)]
+    taken = [each.shaft for each in arrows.at(path, at)]
     for each in names(scene, path, at, paper, name_size, taken):
         write_name(axes, each)
     return figure

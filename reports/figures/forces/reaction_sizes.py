@@ -55,7 +55,10 @@ def _forces(turn: ForceTurn) -> list[Curve]:
         (f"{point} on {body}", np.hypot(*force.T), colours.get(body, INK))
         for point, body, _, force in acted_on(turn.acting)
     ]
-    rows += [(f"slider {name}, normal (signed)", one.normal, INK) for name, one in turn.acting.sliders.items()]
+    rows += [
+        (f"slider {name}, normal (signed)", one.normal, INK)
+        for name, one in turn.acting.sliders.items()
+    ]
     return [_curve(row, k) for k, row in enumerate(rows)]
 
 

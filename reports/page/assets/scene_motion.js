@@ -11,7 +11,7 @@
     drawn: (mechanism, position) => {
       if (!torque) return;
       const here = mechanism.between(torque, position);
-      told.textContent = Number.isFinite(here) ? `Driving torque here: ${crankcheck.short(here, 3)} N m.`
+      told.textContent = Number.isFinite(here) ? `Driving torque here: ${Number(here.toPrecision(3))} N m.`
         : "The driving torque is not determined here.";
     },
   });

@@ -38,7 +38,7 @@ def build(scene: Scene, figures: Mapping[str, bytes]) -> Section:
             "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
             "notes": [*force_notes(scene, turn), force_certainty(turn.forces)],
             "figures": [
-                (CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
+                (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
                 for name, svg in figures.items()
             ],
         },
