@@ -5,7 +5,6 @@ Over a turn, instants in dead points have no numbers; a single position in one i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -94,22 +93,32 @@ def dead_point_note(scene: Scene, motion: Motion) -> list[str]:
 
 
 def force_certainty(acting: Forces) -> str:
-    """What forces may be wrong by, in a line; "" without a bound."""
+    """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
+    the size of the forces themselves are counted apart."""
     bound = acting.bound
     if bound is None:
         return ""
-    pins = [limit for bodies in bound.pins.values() for limit in bodies.values()]
-    pins += [slider.normal for slider in bound.sliders.values()]
-    moments = [bound.torque, *(slider.moment for slider in bound.sliders.values())]
-    parts = [(_most(pins), "N")] * bool(pins) + [(_most(moments), "N m")]
-    return f"Forces certain to {', '.join(f'{most:.1e} {unit}' for most, unit in parts)}."
-
-
-def _most(limits: Sequence[Array]) -> float:
-    """The largest bound that is finite; infinite where none is."""
-    every = np.concatenate([*limits, [-np.inf]])
-    most = float(np.max(np.where(np.isfinite(every), every, -np.inf)))
-    return most if most >= 0.0 else np.inf
+    kinds: dict[str, list[tuple[Array, Array]]] = {"N": [], "N m": [(acting.torque, bound.torque)]}
+    for point, bodies in acting.pins.items():
+        kinds["N"] += [(f, bound.pins[point][body]) for body, f in bodies.items()]
+    for name, slider in acting.sliders.items():
+        kinds["N"].append((slider.normal, bound.sliders[name].normal))
+        kinds["N m"].append((slider.moment, bound.sliders[name].moment))
+    told, doubtful = [], np.isnan(acting.torque)
+    for unit, pairs in kinds.items():
+        largest = max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
+        limits = np.array([limit for _, limit in pairs])
+        fit = np.where(limits <= UNCERTAIN * largest, limits, 0.0)
+        doubtful = doubtful | np.any(limits > UNCERTAIN * largest, axis=0)
+        if np.any(limits <= UNCERTAIN * largest):
+            told.append(f"{float(fit.max()):.1e} {unit}")
+    if not told:
+        return "Forces are not certain here: a dead point is near, or a load sets in."
+    words = f"Forces certain to {', '.join(told)}"
+    if doubtful.any():
+        words += f", but at {count(int(doubtful.sum()), 'instant')}, in or near a dead point or "
+        words += "where a load sets in or ends"
+    return f"{words}."
 
 
 def cleaned_forces(acting: Forces) -> Forces:

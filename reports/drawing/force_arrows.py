@@ -88,6 +88,14 @@ class ForceArrows:
             if (arrow := self._arrow(one, motion.points[one.point].position[index])) is not None
         ]
 
+    def largest_at(self, path: Motion) -> int:
+        """The sample at which a force is the largest."""
+        sizes = [
+            max((float(np.hypot(*(a.tip - a.tail))) for a in self.at(path, k)), default=0.0)
+            for k in range(path.time_s.size)
+        ]
+        return int(np.argmax(sizes))
+
     def embedded(self, motion: Motion) -> dict[str, object]:
         """The forces of a motion for a page: each by the point where it acts and its kind, and its
         x and y as rows [N]."""

@@ -53,7 +53,8 @@ def svg(
     with_forces: bool = False,
 ) -> str:
     """The mechanism where its points stand farthest apart, and their paths over a turn, or over the
-    first ``most_s`` of it; where they are wanted, with its forces there as arrows.
+    first ``most_s`` of it; where they are wanted, with its forces as arrows, where these are
+    largest.
 
     Paths of ``logged``, the motion of a run, are drawn over those of the reference. Raises
     CrankcheckError where the mechanism can not go through all of that, or there are no forces.
@@ -61,7 +62,7 @@ def svg(
     path = turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
     arrows = force_arrows(scene, path) if with_forces else None
     low, high = box_of(path) if arrows is None else arrows.box(path)
-    at = clearest(path)
+    at = clearest(path) if arrows is None else arrows.largest_at(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from models.motion import Motion
-from reports.drawing.force_arrows import ForceArrows, force_arrows
+from reports.drawing.force_arrows import force_arrows
 from reports.drawing.gif import draw_bodies
 from reports.drawing.names import Sheet, names
 from reports.drawing.plotted_arrows import draw_arrows, scale_bar
@@ -32,7 +31,7 @@ def draw(turn: ForceTurn) -> Figure | None:
     panels = Panels(top=0.05, right=0.1)
     wide = COLUMN_IN - panels.left - panels.right
     height = float(np.clip(wide * (high[1] - low[1]) / (high[0] - low[0]), 1.0, 4.0))
-    at = _worst(arrows, path)
+    at = arrows.largest_at(path)
     assert path.forces is not None
     angle = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
     torque = readable(float(path.forces.torque[at]))
@@ -54,12 +53,3 @@ def draw(turn: ForceTurn) -> Figure | None:
     for each in names(scene, path, at, paper, name_size, taken):
         write_name(axes, each)
     return figure
-
-
-def _worst(arrows: ForceArrows, path: Motion) -> int:
-    """The sample whose largest arrow is the largest."""
-    sizes = [
-        max((float(np.hypot(*(a.tip - a.tail))) for a in arrows.at(path, k)), default=0.0)
-        for k in range(path.time_s.size)
-    ]
-    return int(np.argmax(sizes))
