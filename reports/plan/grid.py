@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from models.errors import CrankcheckError, few
-from models.files import scene_texts, shipped
+from models.files import names_of_scenes, scene_texts, shipped
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines, chosen_scenes
@@ -99,7 +99,7 @@ def grid(study: Study) -> Grid:
 def refuse_endless(study: Study) -> None:
     """Refuse more cells than anybody waits for, before they are laid out. Raises CrankcheckError
     that tells what there are many of."""
-    scenes, steps = len(set(study.scenes)) or len(shipped()), len(study.steps_per_turn)
+    scenes, steps = len(names_of_scenes(study.scenes) or shipped()), len(study.steps_per_turn)
     lists = [
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
         for variant in study.variants

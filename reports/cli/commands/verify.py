@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scene
+from models.files import find_scenes
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands.stored_files import stored_files
 from reports.diff.junit import suite as diff_suite
@@ -58,7 +58,7 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     to be run. Raises CrankcheckError for what can be told of the request before running."""
     cells = plan(request)
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    read = [find_scene(name) for name in request.scenes]
+    read = find_scenes(request.scenes)
     check_outputs(files, request.folder, IN_FOLDER, inputs=read)
     check_outputs(files, inputs=stored_files(request.baseline))  # which -o may go on from
     kept = request.baseline or request.folder or request.json

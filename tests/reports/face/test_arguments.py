@@ -159,7 +159,7 @@ def test_messages_say_what_was_found_and_what_would_work(
 
 def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
-    home = Path(crankcheck.__file__).parents[1] / "models" / "scenes" / f"{SCENE}.toml"
+    home = shipped()[SCENE]
     path.write_bytes(home.read_bytes())
     options = {"turns": np.float32(0.5), "steps_per_turn": np.int64(90), "every": np.uint8(2)}
     settings: Mapping[str, object] = {"iterations": np.int32(50), "tolerance": np.float64(1e-10)}
