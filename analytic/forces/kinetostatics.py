@@ -19,7 +19,7 @@ from analytic.forces.balance import Balance
 from analytic.forces.bounded import Bounded
 from analytic.forces.force_arrays import ForceArrays
 from analytic.forces.free_body import free_bodies
-from analytic.forces.friction import Standing, coulomb_friction
+from analytic.forces.friction import LoadedBodies, coulomb_friction
 from analytic.forces.given_motion import chunks_of
 from analytic.forces.rubbing import Rubbing, put_constant_friction, rubbing_joints
 from analytic.forces.virtual_power import torque_by_power
@@ -125,11 +125,11 @@ def _write(
         balance = Balance(scene, structure, free, displaced)
         result.write(span, balance.torque(), balance.pins, balance.sliders, friction)
     else:
-        standing = Standing(scene, structure, displaced, free)
+        bodies = LoadedBodies(scene, structure, displaced, free)
         sizes, solution = coulomb_friction(
-            standing, left, chunk.theta.size, certified=chunk.certified
+            bodies, left, chunk.theta.size, certified=chunk.certified
         )
-        balance, torque = standing.solved(zip(left, sizes, strict=True))
+        balance, torque = bodies.equilibrium(zip(left, sizes, strict=True))
         friction |= {each.law.joint: size for each, size in zip(left, sizes, strict=True)}
         result.write(span, torque, balance.pins, balance.sliders, friction)
         result.write_solution(span, solution)
