@@ -55,8 +55,8 @@ FLOORS: Mapping[str, str] = {
         timing
         remedies run snippets tuning viewing own_models force_recipes
         recording
-        check energy registry
-        measure drive tree_poses settings own_engine load_magnitudes
+        check energy registry forces_by_body
+        measure drive tree_poses settings own_engine load_magnitudes momentum_balance
         engine
     """,
 }

@@ -2,4 +2,6 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("pymunk", "pymunk", ("snippet", "knobs", "remedies", "spoiler"))
+DECLARATION = Declaration(
+    "pymunk", "pymunk", ("snippet", "knobs", "remedies", "spoiler", "force_recipe")
+)

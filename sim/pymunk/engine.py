@@ -15,6 +15,8 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.pymunk.load_steps import LoadSteps
+from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
 from sim.pymunk.space import SpaceModel, build
 
@@ -63,6 +65,7 @@ class PymunkSession:
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = _rows(self._model)
+        self._loads = LoadSteps(scene, self._model, state, dt_s, drive)
 
     def facts(self) -> Facts:
         """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
@@ -105,10 +108,27 @@ class PymunkSession:
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
         rows = rows.reshape(len(at), -1, WIDTH)
-        good = np.isfinite(rows).all(axis=(1, 2))
-        count = len(at) if good.all() else int(np.argmin(good))
+        count = _finite(rows)
         poses = self._poses(rows[:count], at[:count])
         return Log(poses, (count - 1) * every, count < len(at), (), wall)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the forces of each logged step; the first sample has none."""
+        at = self._done + every * np.arange(steps // every + 1, dtype=np.float64)
+        reactions = Reactions(self._scene, self._model, self._rows, self._dt)
+        began = time.perf_counter()
+        self._make_room(2 * len(at))
+        self._log()
+        self._each(steps, every, reactions)
+        self._done += steps
+        rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
+        wall = time.perf_counter() - began
+        rows = rows.reshape(2 * len(at) - 1, -1, WIDTH)
+        before, after = rows[1::2], rows[0::2]
+        count = _finite(after)
+        poses = self._poses(after[:count], at[:count])
+        forces, doubts = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
+        return Log(poses, (count - 1) * every, count < len(at), doubts, wall, forces=forces)
 
     def read(self) -> Poses:
         """The current state."""
@@ -131,7 +151,9 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._coasts:
+        if self._loads:
+            self._each(steps, every)
+        elif self._coasts:
             self._coast(steps, every)
         else:
             self._follow(steps, every)
@@ -162,18 +184,49 @@ class PymunkSession:
         """
         step, dt = self._space.step, self._dt
         crank, motor = self._model.crank, self._model.motor
-        law, first = self._scene.driver.law, self._done + 1
-        theta = drives.angles(law, self._start_s, dt, first, first + steps - 1)
-        chord = drives.chords(law, self._start_s, dt, first, first + steps - 1)
-        for k, (angle, speed) in enumerate(zip(theta.tolist(), chord.tolist(), strict=True), 1):
+        for k, (angle, speed) in enumerate(self._turns(steps), 1):
             if motor is not None:
                 motor.rate = speed
             else:
-                crank.angle = angle - speed * dt
+                crank.angle = angle
                 crank.angular_velocity = speed
             step(dt)
             if every and k % every == 0:
                 self._log()
+
+    def _turns(self, steps: int) -> list[tuple[float, float]]:
+        """The angle and the speed that the crank is set to before each of the next steps."""
+        law, first = self._scene.driver.law, self._done + 1
+        theta = drives.angles(law, self._start_s, self._dt, first, first + steps - 1)
+        chord = drives.chords(law, self._start_s, self._dt, first, first + steps - 1)
+        return list(zip((theta - chord * self._dt).tolist(), chord.tolist(), strict=True))
+
+    def _each(self, steps: int, every: int, reactions: Reactions | None = None) -> None:
+        """Step with all that acts, and log every ``every``-th step: with ``reactions`` before it
+        too, and what its joints bore."""
+        space, dt, crank, motor = self._space, self._dt, self._model.crank, self._model.motor
+        turns = None if self._coasts else self._turns(steps)
+        loads = self._loads if self._loads else None
+        if loads is not None:
+            ends = self._done + 1 + np.arange(steps, dtype=np.float64)
+            loads.look_ahead(self._start_s + dt * ends)
+        for k in range(steps):
+            if turns is not None:
+                angle, speed = turns[k]
+                if motor is not None:
+                    motor.rate = speed
+                else:
+                    crank.angle, crank.angular_velocity = angle, speed
+            if loads is not None:
+                loads.apply(k)
+            logged = every > 0 and (k + 1) % every == 0
+            if logged and reactions is not None:
+                pymunk.batch.get_space_bodies(space, BEFORE, self._buffer)
+            space.step(dt)
+            if logged:
+                self._log()
+                if reactions is not None:
+                    reactions.read(self._loads.on_blocks, self._loads.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
@@ -188,6 +241,12 @@ class PymunkSession:
 def _sum(a: Point, b: Point) -> Point:
     """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
+
+
+def _finite(rows: Array) -> int:
+    """How many samples (T, bodies, numbers) are finite, up to the first that is not."""
+    good = np.isfinite(rows).all(axis=(1, 2))
+    return len(rows) if good.all() else int(np.argmin(good))
 
 
 def _rows(model: SpaceModel) -> dict[str, int]:
@@ -228,4 +287,7 @@ ENGINE = Engine(
     open=PymunkSession,
     reports_accelerations=False,
     in_seconds=in_seconds,
+    forces_of="steps",
+    applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -32,6 +32,8 @@ from models.joints import (
 from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
+from sim.momentum_balance import Hinge
+from sim.pymunk.pin_friction import PinFriction, pin_friction
 from sim.pymunk.rail import Rail
 
 FAR = 1e3
@@ -44,7 +46,9 @@ class SpaceModel:
     """A space, its moving bodies by name in the order they were added, and the crank.
 
     ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
-    ``motor`` is the servo, where there is one.
+    ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
+    made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
+    line, ``gears`` an angle. ``rubs`` is what rubs in pins.
     """
 
     space: pymunk.Space
@@ -52,6 +56,10 @@ class SpaceModel:
     centre: Mapping[str, Point]
     crank: pymunk.Body
     motor: pymunk.SimpleMotor | None
+    hinges: Mapping[Hinge, pymunk.Constraint | None]
+    lines: Mapping[str, pymunk.Constraint]
+    gears: Mapping[str, pymunk.Constraint]
+    rubs: tuple[PinFriction, ...]
 
 
 def build(
@@ -97,13 +105,25 @@ def build(
     if servo:
         motor = pymunk.SimpleMotor(crank, space.static_body, where[scene.driver.link].omega)
         space.add(_plain(motor))
-    constraints = _pins(scene, ties, made, centre, pinned=servo or free)
+    hinges = _pins(scene, ties, made, centre, pinned=servo or free)
+    for constraint in hinges.values():
+        if constraint is not None:
+            space.add(_plain(constraint))
+    lines: dict[str, pymunk.Constraint] = {}
+    gears: dict[str, pymunk.Constraint] = {}
     for slide in ties.slides:
-        constraints += _slide(scene, state, slide, made, centre, exact_lines)
-    for constraint in constraints:
-        space.add(_plain(constraint))
+        name = slide.slider.name
+        lines[name] = _line(scene, state, slide, made, centre, exact_lines)
+        space.add(_plain(lines[name]))
+        if isinstance(slide, Prism) and slide.slider.on != GROUND:
+            gears[name] = _gear(slide, made)
+            space.add(_plain(gears[name]))
+    rubs = pin_friction(scene, made)
+    for rub in rubs:
+        if rub.motor is not None:
+            space.add(_plain(rub.motor))
     del made[GROUND]
-    return SpaceModel(space, made, centre, crank, motor)
+    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs)
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
@@ -132,29 +152,32 @@ def _pins(
     centre: Mapping[str, Point],
     *,
     pinned: bool,
-) -> list[pymunk.Constraint]:
+) -> dict[Hinge, pymunk.Constraint | None]:
     """All pins; a kinematic crank needs none to the ground and is not ``pinned``."""
-    constraints: list[pymunk.Constraint] = []
+    hinges: dict[Hinge, pymunk.Constraint | None] = {}
     for joint in ties.pins:
         first, *others = _pinned_bodies(scene, joint.bodies)
         for other in others:
+            hinge = Hinge(joint.point, first, other)
             driven = {first, other} == {GROUND, scene.driver.link} and not pinned
-            if not (driven and joint.point == scene.driver_pivot):
-                a = _anchor(scene, centre, first, joint.point)
-                b = _anchor(scene, centre, other, joint.point)
-                constraints.append(pymunk.PivotJoint(made[first], made[other], a, b))
-    return constraints
+            if driven and joint.point == scene.driver_pivot:
+                hinges[hinge] = None
+                continue
+            a = _anchor(scene, centre, first, joint.point)
+            b = _anchor(scene, centre, other, joint.point)
+            hinges[hinge] = pymunk.PivotJoint(made[first], made[other], a, b)
+    return hinges
 
 
-def _slide(
+def _line(
     scene: Scene,
     state: State,
     slide: Prism | Slot,
     made: Mapping[str, pymunk.Body],
     centre: Mapping[str, Point],
     exact_lines: bool,
-) -> list[pymunk.Constraint]:
-    """A point on a line and, on a moving guide, the gear that keeps a sliding body's angle."""
+) -> pymunk.Constraint:
+    """A point on a line."""
     slider, rider = slide.slider, riding_body(slide)
     guide, body = made[slider.on], made[rider]
     anchor = _anchor(scene, centre, rider, slider.point)
@@ -163,19 +186,19 @@ def _slide(
     off = abs(along_line[0] * start[1] - along_line[1] * start[0])
     small = 1e-12 * scene.longest_m
     sound = (_firm(body) or math.hypot(*anchor) < small) and (_firm(guide) or off < small)
-    constraints: list[pymunk.Constraint] = []
     if sound or not exact_lines:
         ends = [less(end, centre[slider.on]) for end in _groove(scene, state, slider, rider)]
-        constraints.append(pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor))
-    else:
-        rail = Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m)
-        constraints.append(rail.joint())
-    if isinstance(slide, Prism) and slider.on != GROUND:
-        # A gear counts whole turns, and each of the two bodies comes with some of its own.
-        kept = sliding_angle(slider)
-        kept += math.tau * round((body.angle - guide.angle - kept) / math.tau)
-        constraints.append(pymunk.GearJoint(guide, body, kept, 1.0))
-    return constraints
+        return pymunk.GrooveJoint(guide, body, ends[0], ends[1], anchor)
+    return Rail(body, guide, anchor, start, along_line, 2.0 * scene.longest_m).joint()
+
+
+def _gear(prism: Prism, made: Mapping[str, pymunk.Body]) -> pymunk.Constraint:
+    """What keeps a sliding body's angle on a moving guide."""
+    guide, body = made[prism.slider.on], made[prism.body]
+    # A gear counts whole turns, and each of the two bodies comes with some of its own.
+    kept = sliding_angle(prism.slider)
+    kept += math.tau * round((body.angle - guide.angle - kept) / math.tau)
+    return pymunk.GearJoint(guide, body, kept, 1.0)
 
 
 def _firm(body: pymunk.Body) -> bool:

@@ -1,0 +1,175 @@
+"""Reactions and driving torque from what a step did to the momentum of each body.
+
+An engine that steps with impulses tells little of them, if anything. What it did to the bodies
+tells all: over a step, the momentum of each body changes by the impulses of its joints beside those
+of what is known to act on it. All bodies together are one linear system for each sample::
+
+    sum of the forces of its joints on a body      = what they gave of force
+    sum of their moments, and the drive's torque   = what they gave of moment
+
+It is square where the joints leave the mechanism one freedom, which the drive takes. A pin of k
+bodies counts as the k - 1 hinges that the engine has made of it, and a point on a line as a force
+across it: a slider's block without mass is no body here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.array import Array
+from models.joints import Prism, Slot, joints, local_point, riding_body
+from models.scene import GROUND, Point, Scene
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """Two bodies that share a point, as an engine holds them together."""
+
+    point: str
+    first: str
+    other: str
+
+
+@dataclass(frozen=True)
+class MomentumGain:
+    """What joints and drive gave a body: ``force`` [N] (T, 2), and ``moment`` [N m] (T,) about the
+    place ``centre`` of its frame [m], which is at ``place`` (T, 2) while its angle is ``theta``."""
+
+    centre: Point
+    place: Array
+    theta: Array
+    force: Array
+    moment: Array
+
+    def arm(self, local: Point) -> Array:
+        """From ``place`` to a point of the body's frame [m], (T, 2)."""
+        c, s = np.cos(self.theta), np.sin(self.theta)
+        x, y = local[0] - self.centre[0], local[1] - self.centre[1]
+        return np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+
+@dataclass(frozen=True)
+class JointPushes:
+    """What holds the mechanism: the force of each hinge on its other body (T, 2) [N], of each line
+    on what slides, along ``across`` (T, 2), to its left (T,), the moment of each guide on a body
+    that it keeps from turning (T,) [N m] about the slider's point, and the torque of the drive.
+    ``spare`` is how many of them momentum leaves open: where there are any, the torque alone is
+    determined."""
+
+    hinges: Mapping[Hinge, Array]
+    across: Mapping[str, Array]
+    normals: Mapping[str, Array]
+    moments: Mapping[str, Array]
+    torque: Array
+    spare: int
+
+
+def joint_pushes(
+    scene: Scene, hinges: Sequence[Hinge], gains: Mapping[str, MomentumGain], *, driven: bool
+) -> JointPushes:
+    """The forces of the joints, and the torque of the drive, 0 where there is none.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its sliders, and its driver.
+    hinges : Sequence
+        What its pins are made of: of each, one less than it has bodies.
+    gains : Mapping
+        What joints and drive gave each body that moves.
+
+    Returns
+    -------
+    JointPushes
+        NaN at samples at which the joints are singular.
+    """
+    slides = joints(scene).slides
+    prisms = [slide.slider.name for slide in slides if isinstance(slide, Prism)]
+    system = _System(gains)
+    for hinge in hinges:
+        system.hold(scene, hinge)
+    across = {slide.slider.name: system.carry(scene, slide) for slide in slides}
+    for slide in slides:
+        if isinstance(slide, Prism):
+            system.couple(slide.body, slide.slider.on)
+    if driven:
+        system.couple(scene.driver.link, GROUND)
+    found = system.solution()
+    ends = np.cumsum([2 * len(hinges), len(slides), len(prisms)])
+    pairs, normals, moments, torque = np.split(found, ends, axis=1)
+    return JointPushes(
+        {hinge: pairs[:, 2 * k : 2 * k + 2] for k, hinge in enumerate(hinges)},
+        across,
+        {slide.slider.name: normals[:, k] for k, slide in enumerate(slides)},
+        {name: moments[:, k] for k, name in enumerate(prisms)},
+        torque[:, 0] if driven else np.zeros(len(found)),
+        spare=max(found.shape[1] - 3 * len(gains), 0),
+    )
+
+
+class _System:
+    """The equations of the bodies: three rows each, and a column for each unknown."""
+
+    def __init__(self, gains: Mapping[str, MomentumGain]) -> None:
+        self._gains = gains
+        self._row = {body: 3 * k for k, body in enumerate(gains)}
+        self._samples = len(next(iter(gains.values())).theta)
+        self._columns: list[Array] = []
+
+    def hold(self, scene: Scene, hinge: Hinge) -> None:
+        """A hinge: a force of any direction, on each body at its own copy of the point."""
+        for axis in np.eye(2):
+            column = self._column()
+            for body, sense in ((hinge.other, 1.0), (hinge.first, -1.0)):
+                if body != GROUND:
+                    arm = self._gains[body].arm(local_point(scene, body, hinge.point))
+                    self._push(column, body, arm, np.tile(sense * axis, (self._samples, 1)))
+
+    def carry(self, scene: Scene, slide: Prism | Slot) -> Array:
+        """A line: a force across it, in one line of action on both bodies; its direction."""
+        slider, rider = slide.slider, riding_body(slide)
+        own = self._gains[rider]
+        arm = own.arm(local_point(scene, rider, slider.point))
+        guide = self._gains.get(slider.on)
+        angle = slider.direction_rad + (np.zeros(self._samples) if guide is None else guide.theta)
+        across = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+        column = self._column()
+        self._push(column, rider, arm, across)
+        if guide is not None:
+            self._push(column, slider.on, own.place + arm - guide.place, -across)
+        return across
+
+    def couple(self, body: str, against: str) -> None:
+        """A torque on a body, and the opposite on another."""
+        column = self._column()
+        for name, sense in ((body, 1.0), (against, -1.0)):
+            if name != GROUND:
+                column[:, self._row[name] + 2] += sense
+
+    def solution(self) -> Array:
+        """The unknowns (T, unknowns): NaN where the joints are singular; those of least size where
+        there are more of them than equations."""
+        rows = [np.column_stack([gain.force, gain.moment]) for gain in self._gains.values()]
+        right = np.concatenate(rows, axis=1)[:, :, None]
+        matrix = np.stack(self._columns, axis=2)
+        if matrix.shape[1] != matrix.shape[2]:
+            return np.asarray((np.linalg.pinv(matrix) @ right)[:, :, 0])
+        singular = np.linalg.slogdet(matrix)[0] == 0.0
+        matrix[singular] = np.eye(matrix.shape[1])
+        found = np.asarray(np.linalg.solve(matrix, right)[:, :, 0])
+        found[singular] = np.nan
+        return found
+
+    def _column(self) -> Array:
+        """A further unknown, that acts on nothing yet."""
+        self._columns.append(np.zeros((self._samples, 3 * len(self._row))))
+        return self._columns[-1]
+
+    def _push(self, column: Array, body: str, arm: Array, direction: Array) -> None:
+        """Have an unknown act on a body as a force."""
+        row = self._row[body]
+        column[:, row : row + 2] += direction
+        column[:, row + 2] += arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]

@@ -1,0 +1,173 @@
+"""What pymunk's joints bear: vectors from the momentum of the bodies, held to pymunk's impulses.
+
+Chipmunk tells of a constraint the magnitude of its impulse in the last step, and no direction. A
+step moves the positions first and solves for the velocities there, so its impulses belong to its
+end, where the arms are: over the step they are the forces at the logged sample, to second order.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pymunk
+import pymunk.batch
+
+from models.array import Array
+from models.forces import Forces
+from models.poses import centre_of, mass_of
+from models.scene import Scene
+from sim.forces_by_body import forces_by_body
+from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
+from sim.pymunk.load_steps import Push
+from sim.pymunk.space import SpaceModel
+
+BEFORE = (
+    pymunk.batch.BodyFields.VELOCITY
+    | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+    | pymunk.batch.BodyFields.FORCE
+    | pymunk.batch.BodyFields.TORQUE
+)
+"""What a step starts with: vx, vy, omega, and the force and torque that it is given."""
+SAME = 1e-6
+"""Difference between the impulse of a joint over a step and what momentum says, over the largest
+force (for moments, times the longest link), that counts as none. On the shipped scenes it is 2e-12
+at most, with either profile and every drive; rounding of velocities grows with the steps in a turn,
+and near dead points."""
+
+
+class Reactions:
+    """The forces in the joints of a space, from what is read of it at each logged step."""
+
+    def __init__(self, scene: Scene, model: SpaceModel, rows: Mapping[str, int], dt_s: float):
+        self._scene, self._model, self._rows, self._dt = scene, model, rows, dt_s
+        joints = (*model.hinges.values(), *model.lines.values(), *model.gears.values())
+        self._constraints = [one for one in (*joints, model.motor) if one is not None]
+        self._driven = model.motor is not None or not _moves_freely(model.crank)
+        self._impulses: list[list[float]] = []
+        self._braked: list[list[float]] = []
+        self._on_blocks: list[Mapping[str, Push]] = []
+        self._rubbed: list[Mapping[str, float]] = []
+
+    def read(self, on_blocks: Mapping[str, Push], rubbed: Mapping[str, float]) -> None:
+        """The impulses of the step that was made, what acted on slider blocks without mass, and the
+        friction of sliders."""
+        self._impulses.append([constraint.impulse for constraint in self._constraints])
+        self._braked.append([one.motor.impulse if one.motor else 0.0 for one in self._model.rubs])
+        self._on_blocks.append(on_blocks)
+        self._rubbed.append(rubbed)
+
+    def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
+        """The forces at logged steps, and what speaks against them.
+
+        Parameters
+        ----------
+        before : Array
+            What each logged step started with, (T - 1, bodies, 6), as `BEFORE`.
+        after : Array
+            Positions, angles and velocities at all samples, (T, bodies, 6), first those of the
+            start: no step led there, so that its forces are NaN.
+        time_s : Array
+            The instants of the samples, (T,).
+        """
+        ends = time_s[1:]
+        couples = self._couples(before, after[1:])
+        gains = {
+            name: self._gain(name, before, after[1:], ends, couples) for name in self._model.bodies
+        }
+        pushes = joint_pushes(self._scene, [*self._model.hinges], gains, driven=self._driven)
+        on_blocks = _by_name(self._on_blocks[: len(ends)])
+        friction = couples | _by_name(self._rubbed[: len(ends)])
+        forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
+        forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
+        doubts = tuple(self._doubts(pushes, ends)) if len(ends) and not pushes.spare else ()
+        return replace(forces, time_s=time_s), doubts
+
+    def _couples(self, before: Array, after: Array) -> dict[str, Array]:
+        """The friction of pins, by joint, (T,)."""
+        couples = {}
+        for k, one in enumerate(self._model.rubs):
+            first, second = (self._rows.get(name) for name in (one.first, one.second))
+            impulse = np.array([row[k] for row in self._braked[: len(after)]])
+            turning = _turning(before[:, :, 2], first, second)
+            left = _turning(after[:, :, 5], first, second)
+            couples[one.joint] = one.couple(impulse, turning, left, self._dt)
+        return couples
+
+    def _gain(
+        self, name: str, before: Array, after: Array, time_s: Array, couples: Mapping[str, Array]
+    ) -> MomentumGain:
+        """What joints and drive gave a body, friction apart."""
+        body, centre = self._model.bodies[name], self._model.centre[name]
+        start, end = before[:, self._rows[name]], after[:, self._rows[name]]
+        if _moves_freely(body):
+            given = self._change(body, start, end) - start[:, 3:6]
+        else:
+            given = self._told(name, end[:, 2], time_s) - start[:, 3:6]
+        for one in self._model.rubs:
+            given[:, 2] -= couples[one.joint] * ((name == one.second) - float(name == one.first))
+        return MomentumGain(centre, end[:, 0:2], end[:, 2], given[:, 0:2], given[:, 2])
+
+    def _change(self, body: pymunk.Body, start: Array, end: Array) -> Array:
+        """Momentum that a free body gained in a second, less what weight and damping gave it:
+        force and moment, (T, 3)."""
+        kept = self._model.space.damping**self._dt
+        gain = (end[:, 3:6] - kept * start[:, 0:3]) / self._dt
+        gain[:, 0:2] -= np.array(self._model.space.gravity)
+        inertia = 0.0 if math.isinf(body.moment) else body.moment
+        return np.asarray(gain * np.array([body.mass, body.mass, inertia]))
+
+    def _told(self, name: str, theta: Array, time_s: Array) -> Array:
+        """The same of the kinematic crank, which has no mass in pymunk: that of the scene, about
+        its pivot, as its law has it move."""
+        mass, inertia = mass_of(self._scene, name)
+        (x, y), pivot = centre_of(self._scene, name), self._model.centre[name]
+        arm = MomentumGain(pivot, np.empty(0), theta, np.empty(0), np.empty(0)).arm((x, y))
+        _, omega, alpha = (each[:, None] for each in self._scene.driver.law.at(time_s))
+        across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        force = mass * (alpha * across - omega**2 * arm - np.array(self._scene.gravity_m_s2))
+        moment = inertia * alpha[:, 0] + np.sum(across * force, axis=1)
+        return np.column_stack([force, moment])
+
+    def _doubts(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
+        """Joints whose impulse is not what momentum says of them."""
+        held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
+        found = {f"pin {hinge.point}": np.hypot(*pushes.hinges[hinge].T) for hinge in held}
+        found |= {f"line of {name}": np.abs(pushes.normals[name]) for name in self._model.lines}
+        moments = {f"gear of {name}": np.abs(pushes.moments[name]) for name in self._model.gears}
+        if self._model.motor is not None:
+            moments["motor"] = np.abs(pushes.torque)
+        told = (np.array(self._impulses[: len(time_s)]) / self._dt).T
+        size = max(float(np.nanmax(one, initial=0.0)) for one in found.values())
+        for own, (name, one) in zip(told, (found | moments).items(), strict=True):
+            largest = size * self._scene.longest_m if name in moments else size
+            off = np.nan_to_num(np.abs(own - one))
+            worst = int(np.argmax(off))
+            if off[worst] > SAME * largest:
+                yield (
+                    f"at {time_s[worst]:.6g} s pymunk's impulse on the {name} is "
+                    f"{own[worst]:.6g} over the step, and {one[worst]:.6g} by the momentum of "
+                    "the bodies: the forces may be wrong"
+                )
+
+
+def _moves_freely(body: pymunk.Body) -> bool:
+    return body.body_type == pymunk.Body.DYNAMIC
+
+
+def _turning(omega: Array, first: int | None, second: int | None) -> Array:
+    """The angular velocity of a body against another, (T,), by their rows; None is the ground."""
+    one, other = (0.0 if row is None else omega[:, row] for row in (first, second))
+    return np.asarray(other - one)
+
+
+def _by_name(rows: Sequence[Mapping[str, Push] | Mapping[str, float]]) -> dict[str, Array]:
+    """Numbers of the steps as one array for each name."""
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else {}
+
+
+def _with_start(series: Array) -> Array:
+    """The series with a sample before it of which nothing is known."""
+    return np.concatenate([np.full((1, *series.shape[1:]), np.nan), series])

@@ -1,0 +1,270 @@
+"""The forces of pymunk's joints: the reference's, to the order of its step, and pymunk's own."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.characteristics import Constant, Sine
+from models.files import load_scene
+from models.forces import Forces
+from models.friction import ConstantFriction
+from models.hard import double_parallelogram
+from models.loads import Load
+from models.scene import Scene
+from sim.engine import Drive, Run
+from sim.pymunk.engine import ENGINE, PymunkSession
+from sim.pymunk.spoiler import SPOILER
+from sim.run import run
+from sim.settings import resolved
+
+START = 4
+"""The samples that the start takes: of the first there are no forces, in the next two the joints
+make up for half a step, and in one more for what that has left of places."""
+
+
+def of_a_turn(scene: Scene, steps: int, **given: object) -> Run:
+    period = scene.driver.law.period_s
+    state = solve(scene, np.zeros(1)).state()
+    return run(scene, state, ENGINE, dt_s=period / steps, steps=steps, with_forces=True, **given)  # type: ignore[arg-type]
+
+
+def acting(result: Run) -> Forces:
+    assert result.motion is not None
+    assert result.motion.forces is not None
+    return result.motion.forces
+
+
+def errors(scene: Scene, steps: int) -> dict[str, float]:
+    """The worst of a turn."""
+    found = acting(of_a_turn(scene, steps))
+    exact = forces(scene, found.time_s, bound=False)
+    assert {p: [*b] for p, b in found.pins.items()} == {p: [*b] for p, b in exact.pins.items()}
+    return {key: float(off.max()) for key, off in misses(found, exact, scene.longest_m).items()}
+
+
+def of_second_order(scene: Scene, most: float) -> None:
+    """All errors at 720 steps a turn are below ``most``, and a quarter of those at 360."""
+    coarse, fine = errors(scene, 360), errors(scene, 720)
+    for key, least in fine.items():
+        assert least < most, key
+        assert least < 1e-12 or 3.0 < coarse[key] / least < 5.0, key  # or there is none
+
+
+def misses(found: Forces, exact: Forces, longest_m: float) -> dict[str, Array]:
+    """Errors after the start: of reactions over the largest, of moments over that times the longest
+    link, of the torque over its own largest, (T,)."""
+
+    def off(pairs: list[tuple[Array, Array]]) -> Array:
+        parts = [np.abs(one - right).reshape(len(one), -1) for one, right in pairs]
+        return np.asarray(np.concatenate([np.zeros((len(found.time_s), 1)), *parts], axis=1).max(1))
+
+    forces = [(found.pins[p][b], exact.pins[p][b]) for p in exact.pins for b in exact.pins[p]]
+    forces += [(found.sliders[s].normal, exact.sliders[s].normal) for s in exact.sliders]
+    moments = [(found.sliders[s].moment, exact.sliders[s].moment) for s in exact.sliders]
+    largest = max(np.abs(right).max() for _, right in forces)
+    return {
+        "force": off(forces)[START:] / largest,
+        "moment": off(moments)[START:] / (largest * longest_m),
+        "torque": off([(found.torque, exact.torque)])[START:] / np.abs(exact.torque).max(),
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "fourbar-lecture-1",
+        "sixbar-stephenson",  # a pin of three bodies
+        "slider-crank-excel-350",  # a block without mass, on a rail
+        "slider-crank-offset",  # one with mass, in a groove
+        "scotch-yoke",  # a gear on a moving guide
+        "slotted-lever",  # a block without mass on a moving guide
+    ],
+)
+def test_forces_are_the_reference_s_to_the_second_order(name: str) -> None:
+    of_second_order(load_scene(name), 5e-4)
+
+
+def test_the_motion_is_that_of_a_run_without_forces_to_the_bit() -> None:
+    scene = load_scene("slider-crank-offset")
+    state = solve(scene, np.zeros(1)).state()
+    for drive in ("prescribed", "servo", "free"):
+        settings = resolved(ENGINE.profiles["tuned"], None)
+        one, other = (ENGINE.open(scene, state, settings, 1e-3, drive) for _ in range(2))
+        assert isinstance(other, PymunkSession)
+        for every in (3, 1):
+            told, alone = other.record_forces(10, every), one.record(10, every)
+            assert told.forces is not None
+            assert alone.forces is None
+            np.testing.assert_array_equal(told.forces.time_s, told.poses.time_s)
+            for name, pose in alone.poses.bodies.items():
+                for key, series in vars(pose).items():
+                    np.testing.assert_array_equal(vars(told.poses.bodies[name])[key], series)
+
+
+def test_no_step_leads_to_the_first_sample_and_it_has_no_forces() -> None:
+    found = acting(of_a_turn(load_scene("fourbar-lecture-1"), 90))
+    assert np.isnan(found.torque[0])
+    assert np.isfinite(found.torque[1:]).all()
+    assert np.isnan(found.pins["C"]["rocker"][0]).all()
+    scene = load_scene("fourbar-lecture-1")
+    state = solve(scene, np.zeros(1)).state()
+    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
+    assert isinstance(session, PymunkSession)
+    log = session.record_forces(5, 10)  # no step is logged
+    assert log.forces is not None
+    np.testing.assert_array_equal(log.forces.torque, [np.nan])
+    SPOILER.lose(session)
+    assert session.record_forces(5, 1).diverged
+
+
+@pytest.mark.parametrize("drive", ["prescribed", "servo", "free"])
+@pytest.mark.parametrize("name", ["sixbar-watt", "shaper", "scotch-yoke"])
+def test_momentum_says_of_every_joint_what_its_impulse_does(name: str, drive: Drive) -> None:
+    """Converged or not: iterations change what the joints bear, not what they did."""
+    result = of_a_turn(load_scene(name), 180, drive=drive, settings={"iterations": 5})
+    assert result.warnings == ()
+    if drive == "free":
+        assert not acting(result).torque[1:].any()
+
+
+def test_an_impulse_that_momentum_does_not_confirm_is_said() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    state = solve(scene, np.zeros(1)).state()
+    session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], None), 1e-3, "servo")
+    assert isinstance(session, PymunkSession)
+    assert session.record_forces(20, 1).warnings == ()
+    SPOILER.slip(session, 0.01)
+    said = "; ".join(session.record_forces(20, 1).warnings)
+    assert "pymunk's impulse on the pin C is" in said
+    assert "by the momentum of the bodies" in said
+
+
+def test_of_redundant_links_the_torque_alone_is_given() -> None:
+    scene = double_parallelogram("double-parallelogram", source="test")
+    scene = replace(scene, gravity_m_s2=(0.0, -9.81))
+    state = solve(scene, np.zeros(1)).state()
+    found = acting(run(scene, state, ENGINE, dt_s=1e-3, steps=200, with_forces=True))
+    exact = forces(scene, found.time_s, bound=False)
+    assert not found.pins
+    assert "redundant links" in found.undetermined
+    off = np.abs(found.torque - exact.torque)[START:]
+    assert off.max() < 1e-3 * np.abs(exact.torque).max()
+
+
+def loaded(name: str, *loads: Load) -> Scene:
+    return replace(load_scene(name), loads={load.name: load for load in loads})
+
+
+TURN = Sine(2.0, math.tau, 0.3)
+LOADED = {
+    "in the frame of a link": loaded(
+        "fourbar-lecture-1", Load("a", "rocker", "C", Sine(3.0, 0.3), frame="body")
+    ),
+    "over the crank's angle, and on the crank": loaded(
+        "fourbar-lecture-1",
+        Load("a", "coupler", None, Sine(0.5, math.tau), over="angle"),
+        Load("b", "crank", "B", TURN, direction_rad=1.0),
+    ),
+    "over a displacement, on a block without mass": loaded(
+        "slider-crank-excel-350",
+        Load("a", "block C", "C", Sine(9.0, 4.0), over="displacement", slider="C"),
+    ),
+    "on a block without mass on a moving guide": loaded(
+        "slotted-lever",
+        Load("a", "block B", "B", TURN, direction_rad=0.5, frame="body"),
+        Load("b", "block B", None, Constant(0.7)),
+    ),
+    "on a block with mass": loaded(
+        "slider-crank-offset",
+        Load("a", "block C", "C", TURN, direction_rad=0.5),
+        Load("b", "block C", None, Constant(0.7)),
+    ),
+}
+
+
+@pytest.mark.parametrize("where", LOADED)
+def test_loads_act_at_the_instant_of_the_joints(where: str) -> None:
+    """Those of the start of a step are a step late: errors of first order, ten times as large."""
+    of_second_order(LOADED[where], 1e-3)
+
+
+def test_a_load_of_a_stroke_acts_on_that_stroke() -> None:
+    scene = loaded(
+        "slider-crank-offset",
+        Load("a", "block C", "C", Constant(5.0), slider="C", stroke="forward"),
+    )
+    found = acting(of_a_turn(scene, 360))
+    exact = forces(scene, found.time_s, bound=False)
+    off = np.abs(found.torque - exact.torque)[START:] > 1e-3 * np.abs(exact.torque).max()
+    assert off.sum() <= 2  # at the ends of the stroke
+
+
+def test_loads_move_a_free_mechanism_and_not_a_driven_one() -> None:
+    pushed = LOADED["over the crank's angle, and on the crank"]
+    state = solve(pushed, np.zeros(1)).state()
+    for drive in ("prescribed", "free"):
+        moved, alone = (
+            run(scene, state, ENGINE, dt_s=1e-3, steps=50, drive=drive).motion  # type: ignore[arg-type]
+            for scene in (pushed, replace(pushed, loads={}))
+        )
+        assert moved is not None
+        assert alone is not None
+        apart = np.abs(moved.links["crank"].theta - alone.links["crank"].theta).max()
+        assert apart > 1e-3 if drive == "free" else apart == 0.0
+
+
+def renamed(name: str, slider: str) -> Scene:
+    """With another name for its slider, which leaves that of the point to the pin."""
+    scene = load_scene(name)
+    ((old, only),) = scene.sliders.items()
+    branch = {slider if key == old else key: sign for key, sign in scene.branch.items()}
+    return replace(scene, sliders={slider: replace(only, name=slider)}, branch=branch)
+
+
+def rubbing(scene: Scene, **sizes: float) -> Scene:
+    friction = {joint: ConstantFriction(joint, size) for joint, size in sizes.items()}
+    return replace(scene, friction=friction)
+
+
+RUBBING = {
+    "pins": rubbing(load_scene("fourbar-lecture-1"), A=0.03, B=0.04, C=0.05, D=0.06),
+    "a block without mass": rubbing(renamed("slider-crank-excel-350", "piston"), C=2.0, piston=3.0),
+    "one with mass": rubbing(renamed("slider-crank-offset", "piston"), C=0.2, piston=3.0),
+    "one on a moving guide": rubbing(renamed("slotted-lever", "die"), B=0.2, die=0.3),
+}
+
+
+@pytest.mark.parametrize("where", RUBBING)
+def test_constant_friction_is_against_the_motion(where: str) -> None:
+    """But for the samples at which a joint turns back, where it may be anything within its size."""
+    scene = RUBBING[where]
+    found = acting(of_a_turn(scene, 720))
+    exact = forces(scene, found.time_s, bound=False)
+    same = np.ones(len(found.time_s), dtype=bool)
+    for joint, law in scene.friction.items():
+        assert isinstance(law, ConstantFriction)
+        agree = np.isclose(found.friction[joint], exact.friction[joint], atol=1e-9 * law.size)
+        assert (~agree).sum() <= 1 + 2, joint  # the first sample, and the ends of two strokes
+        same &= agree
+    for key, off in misses(found, exact, scene.longest_m).items():
+        assert off[same[START:]].max() < 1e-3, key
+
+
+def test_friction_of_a_pin_brings_a_free_mechanism_to_rest_and_that_of_a_slider_is_refused() -> (
+    None
+):
+    scene = rubbing(load_scene("slider-crank-offset"), B=5.0)
+    state = solve(scene, np.zeros(1)).state()
+    result = run(scene, state, ENGINE, dt_s=1e-3, steps=1000, drive="free")
+    assert result.motion is not None
+    assert np.abs(result.motion.links["crank"].omega[-100:]).max() < 1e-6
+    refused = run(rubbing(scene, C=1.0), state, ENGINE, dt_s=1e-3, steps=10, drive="free")
+    assert refused.status == "unsupported"
+    assert "friction.C: pymunk has no friction that holds a slider at rest" in refused.reason
