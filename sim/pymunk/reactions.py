@@ -134,7 +134,10 @@ class Reactions:
     def _doubts(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
         """Joints whose impulse is not what momentum says of them."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
-        found = {f"pin {hinge.point}": np.hypot(*pushes.hinges[hinge].T) for hinge in held}
+        found = {
+            f"pin {each.point} of {each.first} and {each.other}": np.hypot(*pushes.hinges[each].T)
+            for each in held
+        }
         found |= {f"line of {name}": np.abs(pushes.normals[name]) for name in self._model.lines}
         moments = {f"gear of {name}": np.abs(pushes.moments[name]) for name in self._model.gears}
         if self._model.motor is not None:
