@@ -190,6 +190,7 @@ class StabilityRequest:
     folder: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
     ] = None
+    forces: Forces = False
     limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
     memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
     jobs: Jobs = 0

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Jobs, StepS, StepsPerTurn, Turns, app, command, guarded
+from reports.cli.application import Forces, Jobs, StepS, StepsPerTurn, Turns, app, command, guarded
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
@@ -76,6 +76,7 @@ class RunRequest:
     drive: Annotated[str, typer.Option(help="prescribed, servo, or free (nothing drives it).")] = (
         "prescribed"
     )
+    forces: Forces = False
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
     ] = None

@@ -144,7 +144,7 @@ def force_rows(beside: Beside) -> ForceErrors:
     return ForceErrors(
         tuple(rows),
         tuple(missing),
-        force_notes(run, reference.forces, int(np.sum(~alive))),
+        force_notes(run, reference.forces, int(np.sum(~alive)), int(np.sum(at.passed))),
         unbalanced(run, largest_reaction(beside.scene, reference)),
         start if run.forces_of == "steps" else 0.0,
         off_stamps(run),

@@ -58,14 +58,20 @@ def unbalanced(run: Run, largest_n: float) -> Unbalanced | None:
     return Unbalanced(point, sums[point]) if point else None
 
 
-def force_notes(run: Run, reference: Forces, dead: int) -> tuple[str, ...]:
-    """What of the forces is not compared, and why."""
+def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[str, ...]:
+    """What of the forces is not compared, or not judged, of samples in dead points (``dead``) and
+    near change points (``passed``), and why."""
     logged = acting(run)
     notes = [reference.undetermined and f"no reactions: {reference.undetermined}"]
     if dead:
         notes.append(
             f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "
             "where statics does not determine them"
+        )
+    if passed:
+        notes.append(
+            f"forces: {count(passed, 'sample')} of {reference.time_s.size} near change points "
+            "compared and not judged, as joints may push against each other there"
         )
     if logged is not None and logged.undetermined != reference.undetermined:
         notes.append(logged.undetermined and f"forces: {logged.undetermined}")

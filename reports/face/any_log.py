@@ -39,8 +39,9 @@ def _told(map_: MapLike) -> Map:
     return read_map(path_of(map_, "--map"))
 
 
-def log_of(scene: Scene, log: object, map_: MapLike = None) -> OwnLog:
-    """A log of a scene, of whatever kind. Raises CrankcheckError."""
+def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = False) -> OwnLog:
+    """A log of a scene, of whatever kind, its ``forces`` as well where that is asked. Raises
+    CrankcheckError."""
     told = _told(map_)
     if isinstance(log, Motion):
         _refuse_map(map_, "a motion")
@@ -52,11 +53,11 @@ def log_of(scene: Scene, log: object, map_: MapLike = None) -> OwnLog:
     from reports.logs.meanings import understood, wanted
 
     if isinstance(log, str | PathLike):
-        return understood(
-            read_columns(path_of(log, "log"), told.layout, wanted(scene, told)), scene, told
-        )
+        worth = wanted(scene, told, forces=forces)
+        columns = read_columns(path_of(log, "log"), told.layout, worth)
+        return understood(columns, scene, told, forces=forces)
     frame, source = _frame_of(log)
-    return understood(columns_of(frame, source), scene, told)
+    return understood(columns_of(frame, source), scene, told, forces=forces)
 
 
 def refuse_other_scene(scene: Scene, run: Run) -> None:

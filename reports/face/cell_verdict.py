@@ -23,6 +23,7 @@ from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
+from reports.plan.forces import refuse_forceless
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.verify.advised import advised
@@ -80,6 +81,7 @@ def check(
     settings: Mapping[str, SettingValue] | None = None,
     tolerance: Mapping[str, float] | None = None,
     converge: bool = True,
+    forces: bool = False,
 ) -> CellVerdict:
     """Run a scene in an engine and hold it to the closed form, as `crankcheck verify` does.
 
@@ -92,6 +94,8 @@ def check(
         of the scene or of the budget that follows from the step.
     converge : bool
         Run it at half and quarter step too, and say what the error does.
+    forces : bool
+        Hold the reactions and the driving torque to kinetostatics as well.
 
     Raises
     ------
@@ -106,6 +110,8 @@ def check(
     dt_s, steps = counted(scene, dt_s, steps_per_turn, turns)
     refuse_unfollowed(scene)
     refuse_singular(scene, dt_s * steps)
+    if is_true(forces, "forces"):
+        refuse_forceless(scene, dt_s * steps)
     cell = Cell(
         scene=scene,
         engine=name,
@@ -116,6 +122,7 @@ def check(
         tolerance=limits,
         converge=is_true(converge, "converge"),
         settings=settings_of(settings),
+        with_forces=forces,
     )
     return _with_facts(advised(cell))
 
@@ -133,6 +140,7 @@ def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> Ce
         tolerance=tolerance,
         converge=False,
         settings=dict(run.asked),
+        with_forces=run.with_forces,
     )
     return _with_facts(check_run(cell, run), "target")
 

@@ -11,7 +11,7 @@ from reports.compare import compare as comparing
 from reports.compare.beside import Beside, truth_of
 from reports.compare.errors import Error, Errors
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
-from reports.face.arguments import SceneLike, one_of, scene_of
+from reports.face.arguments import SceneLike, is_true, one_of, scene_of
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
@@ -71,6 +71,7 @@ def compare(
     step_s: float | None = None,
     drive: str = "scene",
     map: MapLike = None,
+    forces: bool = False,
 ) -> Comparison:
     """How far a run, a motion or a log is from the closed form.
 
@@ -86,6 +87,9 @@ def compare(
         Of a log: what moves the closed form, as of `judge`.
     map : path, Mapping or None
         Of a log: what its columns mean, as of `judge`.
+    forces : bool
+        Of a log: its columns of forces and torque as well. Those of a run are compared where it was
+        asked for them.
 
     Raises
     ------
@@ -97,6 +101,7 @@ def compare(
     if isinstance(what, Run):
         refuse_options(what, step_s=step_s, drive=drive, map=map)
         refuse_other_scene(scene, what)
+        refuse_without_forces(what, forces=is_true(forces, "forces"))
         errors = comparing.compare(Beside.of(truth_of(Same(scene)), what))
         if errors is None:
             raise CrankcheckError(
@@ -105,14 +110,24 @@ def compare(
             )
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.beside_truth import beside_truth
-    from reports.own_log.drives import chosen_drive, truth_of_log
+    from reports.own_log.drives import chosen_drive, refuse_geometry_alone, truth_of_log
 
-    log = log_of(scene, what, map)
+    chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
+    refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
+    log = log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
-    truth, _ = truth_of_log(log, chosen_drive(one_of(drive, "--drive", LOG_DRIVES)))
+    truth, _ = truth_of_log(log, chosen)
     errors = comparing.compare(beside_truth(log, truth, step_s=step))
     assert errors is not None
     return Comparison(scene, log.source, errors)
+
+
+def refuse_without_forces(run: Run, *, forces: bool) -> None:
+    """Refuse forces of a run that was not asked for them. Raises CrankcheckError."""
+    if forces and not run.with_forces:
+        raise CrankcheckError(
+            f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
+        )
 
 
 def refuse_options(

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, overload
 
 from models.one_or_more import names_in
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
-from reports.face.arguments import SceneLike, one_of, scene_of, tolerances_of
+from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.face.cell_verdict import CellVerdict, verdict_of_run
-from reports.face.comparison import LOG_DRIVES, refuse_options
+from reports.face.comparison import LOG_DRIVES, refuse_options, refuse_without_forces
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import in_python, parts_in_python, told_at_the_call
 from reports.judge.tolerance import DEFAULTS, check_names
 from reports.output.provenance import provenance
-from reports.own_log.drives import chosen_drive
+from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.log_limits import EVERY
 from reports.plan.steps import positive
@@ -69,6 +69,7 @@ def judge(
     drive: str = "scene",
     map: None = None,
     require: str | Iterable[str] = (),
+    forces: bool = False,
 ) -> CellVerdict: ...
 
 
@@ -82,6 +83,7 @@ def judge(
     drive: str = "scene",
     map: MapLike = None,
     require: str | Iterable[str] = (),
+    forces: bool = False,
 ) -> LogVerdict: ...
 
 
@@ -95,6 +97,7 @@ def judge(
     drive: str = "scene",
     map: MapLike = None,
     require: str | Iterable[str] = (),
+    forces: bool = False,
 ) -> CellVerdict | LogVerdict:
     """Hold a log of your own to the closed form, as `crankcheck judge` does.
 
@@ -117,6 +120,8 @@ def judge(
         What columns mean, where their names do not say it: a TOML file, or what would stand in it.
     require : str or Iterable[str]
         Quantities or bodies that have to be in the log.
+    forces : bool
+        Judge its columns of forces and torque as well; of a run, those that it was asked for.
 
     Raises
     ------
@@ -124,6 +129,7 @@ def judge(
         A log that can not be read, or of which nothing is of the scene; no target and no step.
     """
     options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
+    options["forces"] = is_true(forces, "forces")
     return judged(scene, log, target_of(target), **options)
 
 
@@ -136,6 +142,7 @@ def judged(
     drive: str,
     map: MapLike,
     require: str | Iterable[str],
+    forces: bool = False,
 ) -> CellVerdict | LogVerdict:
     """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
     scene = scene_of(scene)
@@ -144,6 +151,7 @@ def judged(
     if isinstance(log, Run):
         refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
         refuse_other_scene(scene, log)
+        refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
         named = limits if every is None else {name: limits.get(name, every) for name in DEFAULTS}
         return verdict_of_run(scene, log, named)
@@ -153,7 +161,8 @@ def judged(
         drive=chosen_drive(one_of(drive, "--drive", LOG_DRIVES)),
         require=required,
     )
-    found = judge_log(log_of(scene, log, map), request)
+    refuse_geometry_alone(request.drive, forces=forces)
+    found = judge_log(log_of(scene, log, map, forces=forces), request)
     notes = tuple(in_python(note) for note in found.notes)
     return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
 

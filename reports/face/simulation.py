@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, cast
 
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
-from reports.face.arguments import SceneLike, engine_of, one_of, scene_of, settings_of, whole_of
+from reports.face.arguments import (
+    SceneLike,
+    engine_of,
+    is_true,
+    one_of,
+    scene_of,
+    settings_of,
+    whole_of,
+)
 from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
@@ -94,6 +102,7 @@ def run(
     every: int = 1,
     drive: str = "prescribed",
     settings: Mapping[str, SettingValue] | None = None,
+    forces: bool = False,
 ) -> Simulation:
     """Run a scene in an engine and log it.
 
@@ -114,6 +123,8 @@ def run(
         drives it; ``free``: nothing does, after its start.
     settings : Mapping or None
         Settings of the engine in place of the profile's.
+    forces : bool
+        Log the reactions and the driving torque as well, in ``motion.forces``.
 
     Returns
     -------
@@ -137,6 +148,7 @@ def run(
         every=every,
         drive=drive,
         settings=settings,
+        forces=forces,
     )
 
 
@@ -151,6 +163,7 @@ def simulated(
     every: int,
     drive: str,
     settings: Mapping[str, SettingValue] | None = None,
+    forces: bool = False,
 ) -> Simulation:
     """As `run`, in the words of the command."""
     scene = scene_of(scene)
@@ -169,5 +182,6 @@ def simulated(
         every=every,
         drive=driven,
         settings=settings_of(settings),
+        with_forces=is_true(forces, "forces"),
     )
     return Simulation(**vars(done), mechanism=scene)

@@ -71,6 +71,7 @@ def sweep(
     keep_trajectories: bool = False,
     again: bool = False,
     progress: bool = False,
+    forces: bool = False,
 ) -> Sweep:
     """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
 
@@ -104,6 +105,8 @@ def sweep(
         Run cells again that timed out or crashed.
     progress : bool
         Tell on standard error how far it is.
+    forces : bool
+        Compare reactions and torque as well, of engines that report them.
 
     Raises
     ------
@@ -149,6 +152,7 @@ def sweep(
             numbers_of(steps_per_turn, "--steps-per-turn"),
             None if turns is None else positive("--turns", turns, "turns of the driver"),
             overrides_of(settings, study_engines(told, named)),
+            is_true(forces, "forces"),
         )
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)

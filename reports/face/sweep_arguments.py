@@ -92,6 +92,7 @@ def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
         *(word for name in choice.profiles for word in ("--profile", name)),
         *(("--steps-per-turn", several) if several else ()),
         *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
+        *(("--forces",) if choice.forces else ()),
         *(
             word
             for owner, chosen in choice.overrides.items()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from numbers import Real
+from typing import Any
 
 from models.errors import CrankcheckError, shown, suggestion
 from reports.face.any_log import LogLike, MapLike
-from reports.face.arguments import SceneLike
+from reports.face.arguments import SceneLike, is_true
 from reports.face.cell_verdict import CellVerdict
 from reports.face.log_verdict import LogVerdict, Target, judged, target_of
 from reports.face.told import told_at_the_call
@@ -29,13 +30,14 @@ def assert_within(
     drive: str = "scene",
     map: MapLike = None,
     require: str | Iterable[str] = (),
+    forces: bool = False,
     **tolerances: float,
 ) -> CellVerdict | LogVerdict:
     """Assert that a run, a motion or a log of a scene is within tolerance.
 
     Parameters
     ----------
-    scene, log, step_s, drive, map, require
+    scene, log, step_s, drive, map, require, forces
         As of `judge`.
     target : float, Mapping or None
         As of `judge`, for the quantities that are not named.
@@ -59,7 +61,8 @@ def assert_within(
     _refuse_number(drive)
     named = {_quantity(name): _limit(name, number) for name, number in tolerances.items()}
     limits = target_of(target) | named
-    found = judged(scene, log, limits, step_s=step_s, drive=drive, map=map, require=require)
+    options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
+    found = judged(scene, log, limits, **options, forces=is_true(forces, "forces"))
     if found.verdict != "within":
         raise AssertionError(f"\n{found}")
     return found

@@ -47,6 +47,8 @@ OPEN = 1e-4
 CHANGE = 1.4
 """What a start with joints closed in their places may leave of the change of the accelerations in a
 step: twice what was seen."""
+ARM = 2.0
+"""What arms and masses make of the accelerations of a start, in forces: 1.6 was seen."""
 CAP = 0.1
 """The most that the velocities may jump by, over the driver's speed."""
 
@@ -58,8 +60,9 @@ def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -
     if numbers.parts:
         parting = errors.curvature * errors.mass_ratio / max(errors.conditioning, 1e-12)
         changing = CHANGE * errors.step_rad * errors.curvature**1.5 if placing == "solved" else 0.0
-        made_up = ROOM * 0.5 * errors.start_load if numbers.makes_up else 0.0
-        return min(OPEN * parting + changing, CAP) + made_up
+        if not numbers.makes_up:
+            return min(OPEN * parting + changing, CAP)
+        return min(ARM * (OPEN * parting + changing), CAP) + ROOM * 0.5 * errors.start_load
     if numbers.jump:
         jump = min(ROOM * errors.jolt * errors.step_rad, CAP)
         return numbers.jump * jump / errors.step_rad ** (numbers.rate - 1)

@@ -40,7 +40,7 @@ from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
 from reports.judge.three_steps import AT_ROUNDING
-from reports.quantities import QUANTITIES
+from reports.quantities import QUANTITIES, named
 from reports.quantities.places import WITHIN_A_STEP
 from reports.quantities.quantity import Tolerance, tolerance_name
 
@@ -49,6 +49,8 @@ DEFAULTS: dict[str, Tolerance] = {
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
 }
+
+FORCES = frozenset(named("force"))
 
 
 def default(tolerance: Tolerance, errors: Errors) -> float:
@@ -95,9 +97,13 @@ def limits(
 
 
 def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
-    """The limit for a rate near a change point; one that was given stands there too."""
+    """The limit for a rate near a change point; one that was given stands there too. Forces have
+    none: where a dyad is singular its joints may push against each other as they like, and the
+    motion is the same."""
     if limit.origin != "default":
         return limit
+    if name in FORCES:
+        return Limit(math.inf, "not judged near a change point")
     return Limit(passing(DEFAULTS[name], errors), "default near a change point")
 
 

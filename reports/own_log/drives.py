@@ -51,6 +51,15 @@ class DriveFit:
     explains: bool = True
 
 
+def refuse_geometry_alone(drive: LogDrive, *, forces: bool) -> None:
+    """Refuse forces where the geometry alone is judged. Raises CrankcheckError."""
+    if forces and drive == "logged":
+        raise CrankcheckError(
+            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
+            "use --drive scene or fitted"
+        )
+
+
 def chosen_drive(text: str) -> LogDrive:
     """The drive of that name. Raises CrankcheckError for another."""
     for name in get_args(LogDrive):

@@ -14,12 +14,14 @@ from models.array import Array
 from models.motion import Motion
 from reports.stability.case import Case, Judge, Trial
 from reports.stability.error_series import ErrorSeries, error_series
+from reports.stability.force_error import force_error
 from reports.stability.free import falling, freely
 from reports.stability.grades import outcome
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
 from sim.engine import Run
+from sim.registry import engine as engine_of
 from sim.run import run
 from sim.settings import SettingError
 
@@ -44,13 +46,18 @@ JUDGES: Mapping[Judge, Yardstick] = {
 }
 
 
-def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -> GradedPicture:
+def graded(
+    case: Case, engine: str, profile: str, value: float, *, draw: bool, forces: bool = False
+) -> GradedPicture:
     """Run a case at one value in one engine, and grade it.
 
     Parameters
     ----------
     draw : bool
         Give a picture where the outcome is not one of the case's good ones.
+    forces : bool
+        Say how far the forces are off as well, of cases that follow their driver, in engines that
+        report them.
 
     Raises
     ------
@@ -61,14 +68,15 @@ def graded(case: Case, engine: str, profile: str, value: float, *, draw: bool) -
     began = time.perf_counter()
     trial = case.trial(value)
     blank = Graded(case.name, engine, profile, value, label(value), "ok", "")
-    result, done = _graded(case, trial, blank)
+    asked = forces and case.judge == "follow" and engine_of(engine).forces_of != "nothing"
+    result, done = _graded(case, trial, blank, forces=asked)
     result = replace(result, wall_s=time.perf_counter() - began)
     if not draw or done is None or result.outcome in case.good:
         return result, None
     return result, picture(case, trial, result, done, JUDGES[case.judge].motion)
 
 
-def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None]:
+def _graded(case: Case, trial: Trial, blank: Graded, *, forces: bool) -> tuple[Graded, Run | None]:
     """The grade, and the run where there is one."""
     blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
     state = trial.start or solve(trial.scene, np.zeros(1)).state()
@@ -84,6 +92,7 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
             drive=trial.drive,
             settings=trial.settings,
             open_m=trial.open_m,
+            with_forces=forces,
         )
     except SettingError as error:
         return replace(blank, outcome="unsupported", reason=str(error)), None
@@ -104,5 +113,6 @@ def _graded(case: Case, trial: Trial, blank: Graded) -> tuple[Graded, Run | None
         sine=errors.sine,
         at_s=math.nan if at is None else float(errors.time_s[at]),
         at_driver_rad=math.nan if at is None else float(errors.driver_rad[at]),
+        force=math.nan if apart else force_error(trial.scene, done, trial.settled_turns),
     )
     return result, done

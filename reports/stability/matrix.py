@@ -85,7 +85,8 @@ class Graded:
     crank: pure numbers (rad, or lengths over the longest link), NaN where there is none. ``sine``
     is how far the scene stays from its nearest singular position (1 best, 0 singular). Where the
     outcome has a place, ``at_s`` [s] and ``at_driver_rad`` [rad] say it. ``grid`` is False for
-    the values that a bisection looked at.
+    the values that a bisection looked at. ``force`` is the worst error of forces, a share of the
+    largest of their kind, NaN where none were asked for; it is shown, and does not grade.
     """
 
     case: str
@@ -105,6 +106,7 @@ class Graded:
     dt_s: float = math.nan
     wall_s: float = math.nan
     grid: bool = True
+    force: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -161,9 +163,24 @@ class Matrix:
         return next(case for case in self.cases if case.name == name)
 
 
+def with_forces(matrix: Matrix) -> bool:
+    """Whether forces of any run are known."""
+    return any(not math.isnan(run.force) for run in matrix.runs)
+
+
+def run_rows(matrix: Matrix) -> list[dict[str, Any]]:
+    """The runs as flat rows; what is known of forces where they were asked for."""
+    rows = [asdict(run) for run in matrix.runs]
+    return rows if with_forces(matrix) else [_without(row, "force") for row in rows]
+
+
+def _without(row: Mapping[str, Any], name: str) -> dict[str, Any]:
+    return {key: value for key, value in row.items() if key != name}
+
+
 def to_json(matrix: Matrix) -> str:
     """The matrix as text; what is not finite as null."""
-    content = {"format": FORMAT, **asdict(matrix)}
+    content = {"format": FORMAT, **asdict(matrix), "runs": run_rows(matrix)}
     return json.dumps(finite(content), indent=1, ensure_ascii=False) + "\n"
 
 

@@ -21,11 +21,12 @@ MEMORY_GB = 4.0
 
 @dataclass(frozen=True)
 class CaseLine:
-    """A case in one engine with one profile."""
+    """A case in one engine with one profile, with its ``forces`` or without."""
 
     case: str
     engine: str
     profile: str
+    forces: bool = False
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def _graded(
     What has no reference, or cannot be asked of the engine, is no fault of the engine: it raises
     CrankcheckError.
     """
-    answer = child.call(graded_by_name, given.case, given.engine, given.profile, value, grid)
+    answer = child.call(graded_by_name, given, value, grid)
     if not isinstance(answer, Lost):
         found, drawn = answer
         return replace(found, grid=grid), drawn
@@ -97,9 +98,10 @@ def _graded(
     return _lost(given, value, answer, grid), None
 
 
-def graded_by_name(case: str, engine: str, profile: str, value: float, draw: bool) -> GradedPicture:
+def graded_by_name(given: CaseLine, value: float, draw: bool) -> GradedPicture:
     """As `grading.graded`, for a case by its name: what travels to the child process is small."""
-    return graded(CATALOGUE[case], engine, profile, value, draw=draw)
+    case = CATALOGUE[given.case]
+    return graded(case, given.engine, given.profile, value, draw=draw, forces=given.forces)
 
 
 def _lost(given: CaseLine, value: float, lost: Lost, grid: bool) -> Graded:

@@ -12,7 +12,7 @@ from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.stability.case import WITHIN
 from reports.stability.grades import MEANINGS
-from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome
+from reports.stability.matrix import CaseFacts, Graded, Matrix, Outcome, with_forces
 
 LETTERS: Mapping[Outcome, str] = {
     "ok": "",
@@ -77,6 +77,9 @@ def _case(console: Console, matrix: Matrix, case: CaseFacts) -> None:
         name = f"  {critical.engine} {critical.profile}"
         style = _style(case, critical.outcome)
         table.add_row(name, *cells, Text(f" {critical.words}", style))
+        if with_forces(matrix):
+            borne = [_force(runs.get(value)) for value in case.values]
+            table.add_row("    forces", *borne, "")
     console.print(table, "")
 
 
@@ -89,6 +92,13 @@ def _cell(case: CaseFacts, run: Graded | None) -> Text:
     return Text(
         letter + ("" if bare else short(run.error, 1).removesuffix("e0")), _style(case, run.outcome)
     )
+
+
+def _force(run: Graded | None) -> Text:
+    """The error of the forces of a run, short."""
+    if run is None or math.isnan(run.force):
+        return Text("")
+    return Text(short(run.force, 1).removesuffix("e0"), "dim")
 
 
 def _style(case: CaseFacts, outcome: Outcome) -> str:
@@ -107,10 +117,15 @@ def _legend(matrix: Matrix) -> str:
     within = {case.within: case.group for case in matrix.cases}
     usual = f"{WITHIN:g}"
     classes = ", ".join([usual, *(f"{w:g} ({g})" for w, g in within.items() if w != WITHIN)])
+    forces = (
+        "Forces: the worst error of a reaction or the torque, over the largest; not graded.\n"
+        if with_forces(matrix)
+        else ""
+    )
     return (
         "Numbers: the worst error of place (rad, or over the longest link; of a limit that of the "
         "crank, of a free chain that of its first pin and of its energy); easy to hard from left "
-        f"to right; held is what stays within {classes}. {letters}.\n"
+        f"to right; held is what stays within {classes}. {letters}.\n{forces}"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )
 
@@ -128,6 +143,7 @@ def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
         ("error of place, rad or over the longest link", run.error),
         ("widest open joint, over the longest link", run.gap),
         ("error of the crank, rad", run.drive),
+        ("error of forces, over the largest", run.force),
         ("distance of the scene from a singular position, 0 to 1", run.sine),
     ):
         if not math.isnan(number):

@@ -21,7 +21,7 @@ from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_file, check_outputs, write
-from reports.own_log.drives import chosen_drive
+from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.junit import suite
 from reports.own_log.log_limits import EVERY
@@ -73,17 +73,14 @@ def _checked(request: JudgeRequest) -> LogRequest:
             check_file(path, option, endings[option])
     files |= {"--json": request.json, "--junit": request.junit}
     check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
-    if request.forces and request.drive == "logged":
-        raise CrankcheckError(
-            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
-            "use --drive scene or fitted"
-        )
+    drive = chosen_drive(request.drive)
+    refuse_geometry_alone(drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     return LogRequest(
         target=parse(request.target, "--target", EVERY),
         step_s=request.step_s or 0.0,
-        drive=chosen_drive(request.drive),
+        drive=drive,
         require=request.require,
     )
 

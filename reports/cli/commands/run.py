@@ -33,6 +33,7 @@ def run_run(request: RunRequest, console: Console) -> int:
         turns=request.turns,
         every=request.every,
         drive=request.drive,
+        forces=request.forces,
     )
     if done.motion is None:
         raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")
@@ -57,6 +58,7 @@ def _written(request: RunRequest, done: Simulation) -> str:
     """What was written, what came of the run, and how the log is judged."""
     assert done.motion is not None
     judge = ["crankcheck", "judge", request.scene, str(request.output), "--step", repr(done.dt_s)]
+    judge += ["--forces"] * request.forces
     lines = [
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}",

@@ -16,10 +16,11 @@ from reports.output.numbers import count
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, write
 from reports.plan.chosen import PROFILES, chosen_engines, chosen_profiles
+from reports.plan.forces import silent_note
 from reports.stability.case import Case
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.critical import command
-from reports.stability.matrix import FILE, Matrix, read_matrix, to_json
+from reports.stability.matrix import FILE, Matrix, read_matrix, run_rows, to_json
 from reports.stability.running import CaseLine, run_lines, run_one
 from reports.stability.table import show, show_run
 from reports.workers.isolated import Limits, checked_limits
@@ -42,13 +43,15 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
     engines = chosen_engines(request.engines)
     profiles = [name for name, _ in chosen_profiles(request.profiles or PROFILES, engines)]
     limits = checked_limits(request.limit_s, request.memory_gb)
+    if request.forces and (note := silent_note(engines)):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     if request.at is not None:
         return _single(cases, request, engines, profiles, limits, console)
     if request.folder is not None:
         check_folder(request.folder, "-o", (FILE, TABLE, PAGE))
         _keep_others(request.folder, {case.name for case in cases})
     lines = [
-        CaseLine(case.name, engine_, profile)
+        CaseLine(case.name, engine_, profile, request.forces)
         for case, engine_, profile in itertools.product(cases, engines, profiles)
     ]
     with progress_bar(progress, "lines", len(lines)) as advance:
@@ -110,7 +113,7 @@ def _single(
     case, code = cases[0], 0
     case.refuse(value)
     for name, profile in itertools.product(engines, profiles):
-        run = run_one(CaseLine(case.name, name, profile), value, limits)
+        run = run_one(CaseLine(case.name, name, profile, request.forces), value, limits)
         show_run(console, case.facts(), run)
         code = max(code, int(run.outcome not in case.good))
     return code
@@ -121,6 +124,7 @@ def _write(folder: Path, matrix: Matrix) -> None:
     from reports.page.build import stability_page
 
     write(folder / FILE, to_json(matrix))
-    rows = [vars(run) | {"command": command(run)} for run in matrix.runs]
+    told = zip(run_rows(matrix), matrix.runs, strict=True)
+    rows = [row | {"command": command(run)} for row, run in told]
     write(folder / TABLE, csv(pd.DataFrame(rows)))
     write(folder / PAGE, stability_page(matrix))

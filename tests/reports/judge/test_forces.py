@@ -1,0 +1,90 @@
+"""Forces are held to a budget at every step, their columns are there where they were asked for, and
+nowhere else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from models.files import load_scene
+from reports.judge.cell import Cell, Checked, check
+from reports.judge.rows import FORCE_COLUMNS, cell_row
+from reports.judge.rules import FORCES
+from reports.judge.tolerance import in_passage
+
+ENGINES = ["mujoco", "pymunk", "exudyn"]
+
+
+def _checked(name: str, engine: str, steps: int, **options: object) -> Checked:
+    scene = load_scene(name)
+    cell = Cell(scene, engine, "tuned", scene.driver.law.period_s / steps, steps)
+    return check(replace(cell, **{"with_forces": True, "converge": False, **options}))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("steps", [90, 1440])
+@pytest.mark.parametrize("name", ["fourbar-lecture-1", "shaper", "slider-crank-excel-210"])
+def test_forces_of_tuned_engines_take_under_six_tenths_of_their_limits(
+    name: str, steps: int, engine: str
+) -> None:
+    found = [f for f in _checked(name, engine, steps).findings if f.rule in FORCES]
+    assert found
+    for finding in found:
+        assert finding.level == "pass", finding
+        assert finding.number is not None
+        assert finding.limit
+        assert finding.number / finding.limit < 0.6
+
+
+@pytest.mark.parametrize(("engine", "most"), [("mujoco", 1e-4), ("exudyn", 2e-4), ("pymunk", 1e-3)])
+def test_what_is_reached_at_720_steps_a_turn(engine: str, most: float) -> None:
+    checked = _checked("fourbar-lecture-1", engine, 720)
+    assert checked.errors is not None
+    for quantity in ("reaction", "torque"):
+        worst = checked.errors.worst(quantity)
+        assert worst is not None
+        assert worst.pure < most
+
+
+def test_the_order_of_forces_and_their_floor_are_told_beside_those_of_places() -> None:
+    soft = _checked("fourbar-lecture-1", "mujoco", 720, converge=True)
+    hard = _checked("fourbar-lecture-1", "pymunk", 360, converge=True)
+    assert soft.force_convergence is not None
+    assert hard.force_convergence is not None
+    assert 1e-6 < soft.force_convergence.floor < 1e-4
+    assert hard.force_convergence.order == pytest.approx(2.0, abs=0.2)
+    assert hard.convergence is not None
+    row = cell_row(hard)
+    assert (row["force_trend"], row["force_floor"]) == (
+        "shrinks",
+        pytest.approx(math.nan, nan_ok=True),
+    )
+    by_rule = {finding.rule: finding.level for finding in soft.findings}
+    assert by_rule["CC125"] == "pass"  # a floor of the soft constraint's size is no news
+
+
+def test_columns_of_forces_are_there_where_they_were_asked_for() -> None:
+    asked = cell_row(_checked("slider-crank-offset", "mujoco", 90))
+    plain = cell_row(_checked("slider-crank-offset", "mujoco", 90, with_forces=False))
+    more = {*FORCE_COLUMNS, "force_pure", "force_trend", "force_order", "force_floor"}
+    more |= {
+        f"{n}{end}"
+        for n in ("reaction", "normal", "moment", "torque")
+        for end in ("_pure", "_limit_pure")
+    }
+    assert asked.keys() - plain.keys() == more
+    assert list(plain) == [name for name in asked if name not in more]
+    assert all(isinstance(asked[name], float) for name in FORCE_COLUMNS)
+
+
+def test_near_a_change_point_forces_are_not_judged_and_a_limit_that_was_given_stands() -> None:
+    checked = _checked("fourbar-lecture-1", "mujoco", 90)
+    assert checked.errors is not None
+    limit = checked.limits["reaction"]
+    assert in_passage("reaction", limit, checked.errors).number == math.inf
+    given = replace(limit, origin="--tol")
+    assert in_passage("reaction", given, checked.errors) == given
+    rate = checked.limits["velocity"]
+    assert in_passage("velocity", rate, checked.errors).number < math.inf

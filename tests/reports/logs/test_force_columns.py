@@ -1,0 +1,116 @@
+"""Columns of forces in a user's own log: their names, units and signs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import crankcheck
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.describe.frame import run_frame
+from reports.logs.columns import columns_of
+from reports.logs.force_columns import names_force
+from reports.logs.meanings import understood
+
+SCENE = load_scene("slider-crank-offset")
+STEP_S = SCENE.driver.law.period_s / 360
+
+
+@pytest.fixture(scope="module")
+def frame() -> pd.DataFrame:
+    done = crankcheck.run(SCENE, "mujoco", steps_per_turn=360, turns=1, forces=True)
+    return run_frame(done)
+
+
+def _judged(log: pd.DataFrame, **options: object) -> crankcheck.LogVerdict:
+    return crankcheck.judge(SCENE, log, step_s=STEP_S, forces=True, **options)  # type: ignore[call-overload, no-any-return]
+
+
+def test_a_log_that_we_write_is_within_and_holds_every_force(frame: pd.DataFrame) -> None:
+    verdict = _judged(frame)
+    assert verdict.verdict == "within"
+    held = {(row.quantity, row.body) for row in verdict.errors.rows if row.quantity != "gap"}
+    wanted = {("torque", "crank"), ("normal", "C"), ("moment", "C")}
+    assert wanted | {("reaction", p) for p in "ABC"} <= held
+    assert not [text for text in verdict.not_judged if "reaction" in text]
+
+
+def test_so_is_a_log_of_forces_of_steps() -> None:
+    done = crankcheck.run(SCENE, "pymunk", steps_per_turn=360, turns=1, forces=True)
+    assert np.isnan(run_frame(done)["torque_n_m"][0])
+    assert _judged(run_frame(done)).verdict == "within"
+
+
+OTHERWISE = {
+    "torque_n_m": ("crank torque [N mm]", 1e3),
+    "C_slider_normal_n": ("C.normal (kN)", 1e-3),
+    "C_slider_moment_n_m": ("C_moment_lbf_in", 1 / (4.4482216152605 * 0.0254)),
+    "B_rod_fx_n": ("B_fx_n", 1.0),
+    "B_rod_fy_n": ("B_on_rod_fy [N]", 1.0),
+    "A_crank_fy_n": ("A crank fy", 1.0),
+}
+
+
+def test_other_names_and_units_mean_the_same(frame: pd.DataFrame) -> None:
+    other = frame.rename(columns={name: called for name, (called, _) in OTHERWISE.items()})
+    for called, factor in OTHERWISE.values():
+        other[called] *= factor
+    found = _judged(other)
+    assert found.verdict == "within"
+    assert len(found.errors.rows) == len(_judged(frame).errors.rows)
+    other["C.normal (kN)"] *= 1.1
+    assert {finding.rule for finding in _judged(other).failures} == {"CC121", "CC116"}
+
+
+def test_the_force_on_the_first_body_is_the_opposite(frame: pd.DataFrame) -> None:
+    other = frame.drop(columns=["B_rod_fx_n", "B_rod_fy_n"])
+    other["B_crank_fx_n"], other["B_crank_fy_n"] = -frame["B_rod_fx_n"], -frame["B_rod_fy_n"]
+    assert _judged(other).verdict == "within"
+    other["B_crank_fx_n"] *= -1.0
+    found = _judged(other)
+    assert {finding.rule for finding in found.failures} == {"CC120", "CC116"}
+
+
+def test_what_is_not_in_the_log_is_not_judged_and_can_be_required(frame: pd.DataFrame) -> None:
+    less = frame.drop(columns=["torque_n_m"])
+    assert "torque of crank" in _judged(less).not_judged
+    assert [f.rule for f in _judged(less, require="torque").failures] == ["CC119"]
+    assert _judged(frame, require="torque").verdict == "within"
+
+
+def test_instants_of_forces_of_their_own_are_taken(frame: pd.DataFrame) -> None:
+    late = frame.copy()
+    late["force_time_s"] = frame["time_s"] + 0.5 * STEP_S
+    assert "CC120" in [finding.rule for finding in _judged(late).failures]
+
+
+def test_without_being_asked_forces_are_named_and_not_judged(frame: pd.DataFrame) -> None:
+    log = understood(columns_of(frame, "log"), SCENE)
+    assert log.forces is None
+    assert dict(log.unused)["torque_n_m"] == "a force, which is judged with --forces"
+
+
+@pytest.mark.parametrize(
+    ("log", "words"),
+    [
+        ({"crank_deg": 30.0}, "no column is a force of slider-crank-offset"),
+        ({"torque_n_m": 1.0, "crank_torque [N m]": 1.0}, "two columns for one force"),
+        ({"torque_n_m": np.inf}, "found inf"),
+    ],
+)
+def test_bad_columns_are_refused(log: dict[str, float], words: str) -> None:
+    rows = {"time_s": [0.0, 0.1, 0.2], **{name: [1.0, value, 1.0] for name, value in log.items()}}
+    with pytest.raises(CrankcheckError, match=words):
+        understood(columns_of(pd.DataFrame(rows), "log"), SCENE, forces=True)
+
+
+def test_at_the_logged_angle_there_are_no_forces(frame: pd.DataFrame) -> None:
+    with pytest.raises(CrankcheckError, match="the geometry alone is judged"):
+        _judged(frame, drive="logged")
+
+
+@pytest.mark.parametrize("name", ["B_fz_n", "torque_deg", "normal_n", "C_fx_n_m", "time_s"])
+def test_other_columns_are_none(name: str) -> None:
+    assert not names_force(name, SCENE)
