@@ -14,7 +14,7 @@ from models.files import load_scene
 from models.scene import Scene
 from reports.drawing import gif
 from reports.drawing.force_arrows import CUT, LONGEST, force_arrows, rounded
-from reports.drawing.shape import turn_of
+from reports.drawing.shape import COLOURS, turn_of
 from reports.drawing.svg import svg
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 
@@ -83,12 +83,16 @@ def test_where_there_are_no_reactions_there_are_no_arrows_and_no_bar() -> None:
     assert " N<" not in svg(scene, with_forces=True)
 
 
-def test_a_strip_draws_arrows_in_the_colour_of_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They are dark beside what is dark anyway."""
+def test_a_strip_draws_arrows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A link's colour is on more of the picture with them than without."""
     monkeypatch.setattr(gif, "STRIP", 2)
     scene = load_scene("shaper")
-    dark = []
-    for with_forces in (False, True):
-        with Image.open(io.BytesIO(gif.strip(scene, with_forces=with_forces))) as image:
-            dark.append(int(np.sum(np.asarray(image.convert("L")) < 60)))
-    assert dark[1] > dark[0]
+    red = [int(COLOURS[0][k : k + 2], 16) for k in (1, 3, 5)]
+
+    def coloured() -> int:
+        with Image.open(io.BytesIO(gif.strip(scene, with_forces=True))) as image:
+            return int(np.sum(np.all(np.asarray(image.convert("RGB")) == red, axis=-1)))
+
+    with_arrows = coloured()
+    monkeypatch.setattr(gif, "draw_arrows", lambda *_: None)
+    assert with_arrows > coloured()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,8 @@ from reports.figures.forces.torque import mean_torque
 from reports.figures.style import styled
 from tests.reports.figures.test_layout import boxes
 
-WORK = Load("work", "crank", None, Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0)), "angle")
+FOUR_STROKES = Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0), period=4.0 * math.pi)
+WORK = Load("work", "crank", None, FOUR_STROKES, "angle")
 
 
 @pytest.mark.parametrize("name", ["shaper", "tangent"])
@@ -63,7 +65,7 @@ def test_a_load_of_two_turns_is_drawn_over_the_angles_that_it_is_of(fourbar: Sce
 def test_the_mean_is_the_work_of_the_loads(fourbar: Scene) -> None:
     """Over a whole turn inertia takes none: what the reduced torque does, the drive does
     against it."""
-    steady = replace(WORK, characteristic=replace(WORK.characteristic, values=(2.0, 2.0, 2.0, 2.0)))
+    steady = replace(WORK, characteristic=replace(FOUR_STROKES, values=(2.0, 2.0, 2.0, 2.0)))
     turn = force_turn(replace(fourbar, loads={"work": steady}))
     assert mean_torque(turn) == pytest.approx(-2.0, rel=1e-9)
     assert mean_torque(force_turn(fourbar)) == 0.0
