@@ -23,6 +23,7 @@ from reports.judge.cell import Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.verify.advised import advised
@@ -106,6 +107,7 @@ def check(
     dt_s, steps = counted(scene, dt_s, steps_per_turn, turns)
     refuse_unfollowed(scene)
     refuse_singular(scene, dt_s * steps)
+    refuse_short_tables(scene, dt_s * steps)
     cell = Cell(
         scene=scene,
         engine=name,

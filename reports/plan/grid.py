@@ -12,6 +12,7 @@ from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines, chosen_scenes
 from reports.plan.key import cell_key, digest, line_key
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.plan.study import Study, Variant
@@ -70,7 +71,9 @@ def grid(study: Study) -> Grid:
     for scene in scenes:
         name = digest(texts[scene.name])
         steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
-        refuse_singular(scene, max(dt_s * count for dt_s, count in steps))
+        longest_s = max(dt_s * count for dt_s, count in steps)
+        refuse_singular(scene, longest_s)
+        refuse_short_tables(scene, longest_s)
         for variant, settings in complete:
             for dt_s, count in steps:
                 cell = Cell(

@@ -16,6 +16,7 @@ import pytest
 
 import crankcheck
 from crankcheck.testing import assert_within
+from models.files import shipped
 
 SCENE = "fourbar-lecture-1"
 LOG = {"time_s": [0.0, 0.1, 0.2], "rocker_rad": [1.9, 2.0, 2.1]}
