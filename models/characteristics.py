@@ -150,6 +150,14 @@ class Tabulated(Characteristic):
                 f"found {self.places[k + 1]:g} after {self.places[k]:g}; the places of a table "
                 "have to increase from row to row"
             )
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+            steep = ~np.isfinite(np.diff(self.values) / steps)
+        if steep.any():
+            k = int(np.argmax(steep))
+            raise ValueError(
+                f"found {self.values[k]:g} and {self.values[k + 1]:g} in rows {steps[k]:.3g} "
+                "apart, a rise beyond all numbers; set the rows further apart"
+            )
         if self.period is not None:
             self._check_period(self.period)
 

@@ -172,6 +172,11 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     """Where the torque is not determined, by which dyad, and what would work."""
     theta = math.degrees(_at(chunk.theta, index))
     where = f"{scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s)"
+    if all(abs(_at(sine, index)) > 0.0 for sine in chunk.sines.values()):
+        return (
+            f"{scene.name}: {where}: forces are larger than numbers go; take smaller loads, masses "
+            "or lengths"
+        )
     worst = min(
         chunk.sines,
         key=lambda key: np.nan_to_num(abs(_at(chunk.sines[key], index)), nan=0.0),
