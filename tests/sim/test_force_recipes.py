@@ -80,7 +80,7 @@ def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
 
 
 def test_that_of_mujoco_reads_past_loads_friction_and_sliders(tmp_path: Path) -> None:
-    weight = Load("weight", "rocker", "C", Constant(5.0), direction_rad=-0.5 * np.pi)
+    weight = Load("weight", "coupler", "C", Constant(5.0), direction_rad=-0.5 * np.pi)
     rubbing = {"A": ConstantFriction("A", 0.05)}
     loaded = replace(FOURBAR, loads={"weight": weight}, friction=rubbing)
     assert off(loaded, printed(recipe("mujoco", loaded), tmp_path)) < 1e-4
