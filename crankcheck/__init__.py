@@ -56,6 +56,7 @@ if TYPE_CHECKING:
         StructureError,
     )
     from models.files import load_scene
+    from models.forces import Forces
     from models.motion import Motion, State
     from models.scene import Scene
     from reports.causes.cause import Cause
@@ -84,6 +85,7 @@ __all__ = [
     "Error",
     "Errors",
     "Finding",
+    "Forces",
     "LogVerdict",
     "ModelVerdict",
     "Motion",
@@ -119,6 +121,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from models import errors as home
             case "load_scene":
                 from models import files as home
+            case "Forces":
+                from models import forces as home
             case "Motion" | "State":
                 from models import motion as home
             case "Scene":

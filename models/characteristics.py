@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from models.array import Array
-from models.interpolation import slopes, spline
+from models.interpolation import largest_near, slopes, spline
 
 Interpolation = Literal["linear", "pchip"]
 EPS = float(np.finfo(np.float64).eps)
@@ -36,6 +36,11 @@ class Characteristic(ABC):
     def rounding(self, x: Array) -> Array | float:
         """A bound on what rounding does to `at`."""
 
+    @abstractmethod
+    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Characteristic:
+        """``size`` times itself, over an argument that is stretched, then shifted:
+        size c((x - shift) / stretch)."""
+
 
 @dataclass(frozen=True)
 class Constant(Characteristic):
@@ -51,6 +56,9 @@ class Constant(Characteristic):
 
     def rounding(self, x: Array) -> Array | float:
         return 0.0
+
+    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Constant:
+        return Constant(size * self.value)
 
 
 @dataclass(frozen=True)
@@ -75,6 +83,12 @@ class Sine(Characteristic):
         turned = np.abs(x) * (math.tau / self.period) + abs(self.phase_rad)
         return np.asarray(3 * EPS * abs(self.amplitude) * (1.0 + turned))
 
+    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Sine:
+        period = abs(stretch) * self.period
+        if stretch < 0.0:  # sin(-x + phase) = -sin(x - phase)
+            return Sine(-size * self.amplitude, period, -self.phase_rad - math.tau * shift / period)
+        return Sine(size * self.amplitude, period, self.phase_rad - math.tau * shift / period)
+
 
 @dataclass(frozen=True)
 class Polynomial(Characteristic):
@@ -97,6 +111,15 @@ class Polynomial(Characteristic):
         sizes = [abs(c) for c in self.coefficients]
         size = np.asarray(np.polynomial.polynomial.polyval(np.abs(x), sizes))
         return np.asarray(len(sizes) * EPS * size)
+
+    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Polynomial:
+        c = [size * value / stretch**k for k, value in enumerate(self.coefficients)]
+        # About the new origin, by binomials: c_j = sum over k of c_k (k over j) (-shift)^(k - j).
+        moved = (
+            sum(c[k] * math.comb(k, j) * (-shift) ** (k - j) for k in range(j, len(c)))
+            for j in range(len(c))
+        )
+        return Polynomial(tuple(moved))
 
 
 @dataclass(frozen=True)
@@ -152,14 +175,18 @@ class Tabulated(Characteristic):
 
     def at(self, x: Array) -> Array:
         knots, values = self._knots()
-        if self.period is not None:
-            x = knots[0] + np.mod(x - knots[0], self.period)
-        else:
+        if self.period is None:
             self._check_within(x)
-        x = np.clip(x, knots[0], knots[-1])
+        x = np.clip(self._folded(x), knots[0], knots[-1])
         if self.interpolation == "linear":
             return np.interp(x, knots, values)
         return spline(x, knots, values, slopes(knots, values, closed=self.period is not None))
+
+    def _folded(self, x: Array) -> Array:
+        """``x`` without whole periods."""
+        if self.period is None:
+            return x
+        return np.asarray(self.places[0] + np.mod(x - self.places[0], self.period))
 
     def _check_within(self, x: Array) -> None:
         first, last = self.places[0], self.places[-1]
@@ -175,13 +202,30 @@ class Tabulated(Characteristic):
         knots, values = self._knots()
         # A cubic without overshoot is nowhere steeper than three times its chord.
         factor = 1.0 if self.interpolation == "linear" else 3.0
-        return factor * float(np.max(np.abs(np.diff(values) / np.diff(knots))))
+        steep = factor * np.abs(np.diff(values) / np.diff(knots))
+        near = largest_near(knots, steep, self._folded(x), by)
+        if self.period is None:
+            return near
+        # Over the end of a period the next one begins.
+        folded = self._folded(x)
+        over = (folded - by <= knots[0]) | (folded + by >= knots[-1])
+        return np.where(over, np.max(steep), near)
 
     def rounding(self, x: Array) -> Array | float:
-        size = float(np.max(np.abs(self.values)))
-        own = size * (16 * EPS if self.interpolation == "linear" else 128 * EPS)
-        if self.period is None:
-            return own
+        knots, values = self._knots()
+        sizes = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
         # Whole periods are taken off the argument, and one is added to the first place.
-        reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + self.period
-        return np.asarray(own + 4 * EPS * reach * self.steepest(x, 0.0))
+        reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)
+        moved = 4 * EPS * reach if self.period is not None else 0.0
+        size = largest_near(knots, sizes, self._folded(x), moved)
+        own = size * (16 * EPS if self.interpolation == "linear" else 128 * EPS)
+        return np.asarray(own + moved * self.steepest(x, moved))
+
+    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Tabulated:
+        rows = [
+            (stretch * place + shift, size * value)
+            for place, value in zip(self.places, self.values, strict=True)
+        ]
+        places, values = zip(*(rows if stretch > 0.0 else rows[::-1]), strict=True)
+        period = None if self.period is None else abs(stretch) * self.period
+        return Tabulated(places, values, self.interpolation, period)

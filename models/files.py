@@ -10,7 +10,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
-from models.errors import CrankcheckError, SceneError, cut, nearest, shown, suggestion
+from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
 from models.load_tables import LOADS, LawOfLoad
 from models.names import faults_of_names
 from models.one_or_more import names_in
@@ -20,12 +20,36 @@ from models.schema import DRIVERS, DriverTable, SceneTable
 from models.toml_text import tables
 
 SCENE_FOLDER = Path(__file__).parent / "scenes"
+"""Of folders of scene files, one for each kind."""
+KINEMATICS = "kinematics"
+"""The kind that is meant where none is named, and all its scenes where no scene is."""
 M = TypeVar("M", bound=BaseModel)
 
 
-def shipped() -> dict[str, Path]:
-    """The scenes that come with crankcheck: name to file, in alphabetical order."""
-    return {path.stem: path for path in sorted(SCENE_FOLDER.glob("*.toml"))}
+def shipped(kind: str = KINEMATICS) -> dict[str, Path]:
+    """The scenes of a kind that come with crankcheck: name to file, in alphabetical order."""
+    return {path.stem: path for path in sorted((SCENE_FOLDER / kind).glob("*.toml"))}
+
+
+def kinds() -> list[str]:
+    """The kinds of shipped scenes, that of kinematics first."""
+    names = sorted(path.name for path in SCENE_FOLDER.iterdir() if any(path.glob("*.toml")))
+    return sorted(names, key=lambda name: name != KINEMATICS)
+
+
+def every_shipped() -> dict[str, Path]:
+    """The shipped scenes of all kinds: name to file."""
+    return {name: path for kind in kinds() for name, path in shipped(kind).items()}
+
+
+def names_of_scenes(names: str | Iterable[str]) -> list[str]:
+    """Names and paths of scenes, each once; the name of a kind stands for all its scenes.
+
+    Raises CrankcheckError for what is neither a name nor several.
+    """
+    known = kinds()
+    written_out = (shipped(name) if name in known else [name] for name in names_in(names, "scenes"))
+    return list(dict.fromkeys(name for each in written_out for name in each))
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:
@@ -48,7 +72,7 @@ def load_scene(name_or_path: str | PathLike[str]) -> Scene:
 
 def find_scene(name_or_path: str | PathLike[str]) -> Path:
     """The file of a shipped scene's name, or of a path. Raises CrankcheckError as `load_scene`."""
-    known = shipped()
+    known = every_shipped()
     try:
         name_or_path = fspath(name_or_path)
         if not isinstance(name_or_path, str):
@@ -68,11 +92,19 @@ def find_scene(name_or_path: str | PathLike[str]) -> Path:
         there = False
     if there:
         return path
+    if name_or_path in kinds():
+        several = few(shipped(name_or_path), 12)
+        raise CrankcheckError(f"scene {name_or_path!r}: a kind of scenes; name one: {several}")
     near = nearest(path.stem, known, cutoff=0.5)
     hint = f"Did you mean {' or '.join(near)}?" if near else "`crankcheck scenes` lists the names."
     raise CrankcheckError(
         f"scene {cut(name_or_path, 80)!r}: neither a shipped scene nor a file. {hint}"
     )
+
+
+def find_scenes(names: str | Iterable[str]) -> list[Path]:
+    """The files of the named scenes and kinds. Raises CrankcheckError as `load_scene`."""
+    return [find_scene(name) for name in names_of_scenes(names)]
 
 
 def read_scene(path: Path) -> Scene:
@@ -81,12 +113,12 @@ def read_scene(path: Path) -> Scene:
 
 
 def scene_texts(names: str | Iterable[str]) -> dict[str, str]:
-    """The text of each scene's file, by the scene's own name; of all shipped ones for none.
+    """The text of each scene's file, by the scene's own name; of all of kinematics for none.
 
     Raises CrankcheckError as `load_scene`.
     """
     texts: dict[str, str] = {}
-    for given in dict.fromkeys(names_in(names, "scenes")) or shipped():
+    for given in names_of_scenes(names) or shipped():
         path = find_scene(given)
         text = read_text(path)
         texts[parse_scene(text, str(path)).name] = text

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.array import Array
 
@@ -89,8 +90,8 @@ class Forces:
             friction_solution=None,
         )
 
-    def stretch(self, kept: slice) -> Forces:
-        """Some of the samples, one after the other, without bound."""
+    def stretch(self, kept: slice | NDArray[np.intp]) -> Forces:
+        """Some of the samples, one after the other or by their numbers, without bound."""
         return replace(self.each_series(lambda series: series[kept]), time_s=self.time_s[kept])
 
     @staticmethod

@@ -57,3 +57,16 @@ def spline(x: Array, knots: Array, values: Array, slope: Array) -> Array:
     return np.asarray(
         values[k] + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
     )
+
+
+def largest_near(knots: Array, of_intervals: Array, x: Array, by: Array | float) -> Array:
+    """The largest of the numbers of the intervals between rows (n - 1,) within ``by`` of ``x``.
+
+    Before the first row and after the last that of the interval there counts.
+    """
+    count = len(of_intervals)
+    first = np.clip(np.searchsorted(knots, x - by, side="right") - 1, 0, count - 1)
+    last = np.clip(np.searchsorted(knots, x + by, side="left") - 1, 0, count - 1)
+    last = np.maximum(first, last)
+    most = np.maximum(of_intervals[first], of_intervals[last])
+    return np.where(last - first > 1, np.max(of_intervals), most)

@@ -22,27 +22,38 @@ def load_table(load: Load) -> Mapping[str, object]:
         if load.point is not None:
             table["point"] = load.point
     if load.point is not None:
-        table |= {"direction_deg": math.degrees(load.direction_rad), "frame": load.frame}
+        table |= {"direction_deg": in_degrees(load.direction_rad), "frame": load.frame}
     if load.stroke != "both" or load.over == "displacement":
         table |= {"slider": load.slider, "stroke": load.stroke}
     key = "torque_n_m" if load.point is None else "force_n"
     return table | _characteristic(load, key)
 
 
+def in_degrees(angle_rad: float) -> float:
+    """An angle in degrees that reads as itself, where one of twelve decimals does: 10, and not
+    10.000000000000002."""
+    plain = round(math.degrees(angle_rad), 12)
+    return plain if math.radians(plain) == angle_rad else math.degrees(angle_rad)
+
+
 def _characteristic(load: Load, key: str) -> dict[str, object]:
     """The law with its numbers; ``key`` is that of the magnitude."""
-    unit, factor = UNIT[load.over], 180.0 / math.pi if load.over == "angle" else 1.0
+    unit, turns = UNIT[load.over], load.over == "angle"
     match load.characteristic:
         case Constant(value):
             return {"law": "constant", key: value}
         case Sine(amplitude, period, phase_rad):
-            own = {f"period_{unit}": period * factor, "phase_deg": math.degrees(phase_rad)}
+            own = {
+                f"period_{unit}": in_degrees(period) if turns else period,
+                "phase_deg": in_degrees(phase_rad),
+            }
             return {"law": "sine", "over": load.over, key: amplitude, **own}
         case Polynomial(coefficients):
             return {"law": "polynomial", "over": load.over, key: coefficients}
         case Tabulated(places, values, interpolation, period):
-            rows = {f"at_{unit}": tuple(place * factor for place in places), key: values}
-            own = {} if period is None else {"period_deg": math.degrees(period)}
+            at = tuple(map(in_degrees, places)) if turns else places
+            rows = {f"at_{unit}": at, key: values}
+            own = {} if period is None else {"period_deg": in_degrees(period)}
             law = {"law": "table", "over": load.over, "interpolation": interpolation}
             return {**law, **rows, **own}
     kind = type(load.characteristic).__name__

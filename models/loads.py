@@ -8,6 +8,7 @@ point add up.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -66,6 +67,15 @@ class Load:
         if self.stroke == "both" or speed is None:
             return magnitude
         return np.where(speed > 0.0 if self.stroke == "forward" else speed < 0.0, magnitude, 0.0)
+
+    def size(
+        self, time_s: float, driver_rad: float, sliders: Mapping[str, tuple[float, float]]
+    ) -> float:
+        """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
+        with speeds [m/s]. Raises CrankcheckError as `magnitude`."""
+        displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
+        x = {"time": time_s, "angle": driver_rad, "displacement": displacement}[self.over]
+        return float(self.magnitude(np.array([x]), np.array([speed]))[0])
 
     def uncertain(
         self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float

@@ -18,23 +18,17 @@ from xml.sax.saxutils import quoteattr
 
 from models.errors import EngineError
 from models.joints import bodies, local_point
-from models.mjcf_options import (
-    Attributes,
-    AttributeValue,
-    Writing,
-    armature,
-    driver_joint,
-    exact,
-    has_control,
-)
+from models.mjcf_friction import friction_of, planned
+from models.mjcf_loads import load_actuators, load_sites, load_sizes
+from models.mjcf_options import Attributes, Writing, armature, driver_joint, exact, has_control
+from models.mjcf_text import AttributeRow, attributes, commentable
 from models.motion import State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from models.tree import Limb, Tree, plan
+from models.tree import Limb, Tree
 
 LEAST_MASS = 1e-15
 """MuJoCo refuses moving bodies with a mass [kg] or inertia [kg m^2] below this (mjMINVAL)."""
-AttributeRow = dict[str, AttributeValue]
 
 
 def build(
@@ -52,13 +46,11 @@ def build(
         A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop.
     """
     _check_masses(scene)
-    if scene.loads:
-        raise EngineError(f"{scene.name}: MJCF is written without loads yet; take them out")
     writing = exact(scene) if writing is None else writing
-    tree = tree or plan(scene, state, writing.close, delay_s=writing.delay_s)
+    tree = tree or planned(scene, state, writing)
     lines = [
         f"<mujoco model={quoteattr(scene.name)}>",
-        f"  <!-- {_comment(scene.source)} -->",
+        f"  <!-- {commentable(scene.source)} -->",
         "  <!-- Planar: in the x-y plane, hinges turn about z. SI units, angles in rad. -->",
         '  <compiler angle="radian" inertiafromgeom="false"/>',
         *_options(scene, writing),
@@ -86,10 +78,10 @@ def _check_masses(scene: Scene) -> None:
 def _options(scene: Scene, writing: Writing) -> list[str]:
     """Solver options; gravity is always written, as MuJoCo's default is that of the earth."""
     gravity = (*scene.gravity_m_s2, 0.0)
-    own = _attributes({"gravity": gravity} | dict(writing.option))
+    own = attributes({"gravity": gravity} | dict(writing.option))
     if not writing.flag:
         return [f"  <option{own}/>"]
-    return [f"  <option{own}>", f"    <flag{_attributes(writing.flag)}/>", "  </option>"]
+    return [f"  <option{own}>", f"    <flag{attributes(writing.flag)}/>", "  </option>"]
 
 
 def _defaults(scene: Scene, writing: Writing) -> list[str]:
@@ -98,12 +90,12 @@ def _defaults(scene: Scene, writing: Writing) -> list[str]:
     seen: Attributes = {"type": "capsule", "size": thin, "contype": 0, "conaffinity": 0, "mass": 0}
     lines = [
         "  <default>",
-        f'    <geom{_attributes(seen)} rgba="0.35 0.5 0.65 1"/>',
-        f'    <site{_attributes({"size": 1.5 * thin})} rgba="0.8 0.3 0.2 1"/>',
+        f'    <geom{attributes(seen)} rgba="0.35 0.5 0.65 1"/>',
+        f'    <site{attributes({"size": 1.5 * thin})} rgba="0.8 0.3 0.2 1"/>',
         '    <joint axis="0 0 1"/>',
     ]
     if writing.connect:
-        lines.append(f"    <equality{_attributes(writing.connect)}/>")
+        lines.append(f"    <equality{attributes(writing.connect)}/>")
     return [*lines, "  </default>"]
 
 
@@ -127,7 +119,7 @@ def _children(scene: Scene, tree: Tree, writing: Writing, parent: str, pad: str)
         place: AttributeRow = {"name": limb.body, "pos": (*limb.offset, 0.0)}
         if limb.angle_rad:
             place["euler"] = (0.0, 0.0, limb.angle_rad)
-        lines.append(f"{pad}<body{_attributes(place)}>")
+        lines.append(f"{pad}<body{attributes(place)}>")
         lines += _freedoms(scene, limb, writing, pad + "  ")
         lines += _matter(scene, limb.body, pad + "  ")
         lines += _sites(scene, tree, limb.body, pad + "  ")
@@ -148,7 +140,8 @@ def _freedoms(scene: Scene, limb: Limb, writing: Writing, pad: str) -> list[str]
         row["ref"] = freedom.ref
         if freedom.name == driver_joint(scene) and writing.flywheel:
             row["armature"] = armature(scene, writing)
-        lines.append(f"{pad}<joint{_attributes(row)}/>")
+        row |= friction_of(scene, limb, freedom, writing)
+        lines.append(f"{pad}<joint{attributes(row)}/>")
     return lines
 
 
@@ -161,23 +154,24 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
     mass, inertia = mass_of(scene, body)
     row: AttributeRow = {"pos": (*centre_of(scene, body), 0.0), "mass": mass}
     row["diaginertia"] = (inertia, inertia, inertia)
-    lines = [f"{pad}<inertial{_attributes(row)}/>"]
+    lines = [f"{pad}<inertial{attributes(row)}/>"]
     if body not in scene.links:
         side = 0.04 * scene.longest_m
-        return [*lines, f"{pad}<geom{_attributes({'type': 'box', 'size': (side, side, side)})}/>"]
+        return [*lines, f"{pad}<geom{attributes({'type': 'box', 'size': (side, side, side)})}/>"]
     points = list(scene.links[body].points.values())
     bars: list[AttributeRow] = [{"fromto": (*points[0], 0.0, *end, 0.0)} for end in points[1:]]
-    return lines + [f"{pad}<geom{_attributes(bar)}/>" for bar in bars]
+    return lines + [f"{pad}<geom{attributes(bar)}/>" for bar in bars]
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
-    """The sites of a body where loops close, each at the body's own coordinates of the point."""
+    """The sites of a body where loops close, each at the body's own coordinates of the point, and
+    where loads act."""
     points = dict.fromkeys(c.point for c in tree.closures if body in c.bodies)
     rows: list[AttributeRow] = [
         {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
         for point in points
     ]
-    return [f"{pad}<site{_attributes(row)}/>" for row in rows]
+    return [f"{pad}<site{attributes(row)}/>" for row in [*rows, *load_sites(scene, body)]]
 
 
 def _equality(tree: Tree) -> list[str]:
@@ -187,7 +181,7 @@ def _equality(tree: Tree) -> list[str]:
         | {f"site{i}": f"{body}.{c.point}" for i, body in enumerate(c.bodies, start=1)}
         for c in tree.closures
     ]
-    lines = [f"    <connect{_attributes(row)}/>" for row in rows]
+    lines = [f"    <connect{attributes(row)}/>" for row in rows]
     why = (
         "    <!-- Each loop is closed at one pin, by the copies of the point on its two bodies. -->"
     )
@@ -195,23 +189,27 @@ def _equality(tree: Tree) -> list[str]:
 
 
 def _actuator(scene: Scene, writing: Writing) -> list[str]:
-    """The servo, or the motor that follows a law other than constant speed."""
+    """The servo, or the motor that follows a law other than constant speed; then the loads."""
+    lines = [*_drive(scene, writing), *load_actuators(scene)]
+    return ["  <actuator>", *lines, "  </actuator>"] if lines else []
+
+
+def _drive(scene: Scene, writing: Writing) -> list[str]:
+    """The actuator of the crank, where it has one."""
     if not has_control(scene, writing):
         return []
     joint = {"name": "drive", "joint": driver_joint(scene)}
     if writing.servo_gain is not None:
-        lines = [
+        return [
             "    <!-- control: angular velocity of the crank [rad/s] -->",
-            f"    <velocity{_attributes(joint | {'kv': writing.servo_gain})}/>",
+            f"    <velocity{attributes(joint | {'kv': writing.servo_gain})}/>",
         ]
-    else:
-        lines = [
-            "    <!-- The driver's law is not in this file: it comes as the control of each -->",
-            "    <!-- step, the angular acceleration of the crank [rad/s^2]. Without it the -->",
-            "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
-            f"    <motor{_attributes(joint | {'gear': armature(scene, writing)})}/>",
-        ]
-    return ["  <actuator>", *lines, "  </actuator>"]
+    return [
+        "    <!-- The driver's law is not in this file: it comes as the control of each -->",
+        "    <!-- step, the angular acceleration of the crank [rad/s^2]. Without it the -->",
+        "    <!-- crank keeps the acceleration of the start and may leave its range. -->",
+        f"    <motor{attributes(joint | {'gear': armature(scene, writing)})}/>",
+    ]
 
 
 def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[str]:
@@ -222,27 +220,11 @@ def _keyframe(scene: Scene, state: State, tree: Tree, writing: Writing) -> list[
         "qpos": tuple(f.ref for f in freedoms),
         "qvel": tuple(f.rate for f in freedoms),
     }
+    controls = load_sizes(scene, state)
     if has_control(scene, writing):
         link = scene.driver.link
         servo = writing.servo_gain is not None
-        row["ctrl"] = state.omega[link] if servo else state.alpha[link]
-    return ["  <keyframe>", f"    <key{_attributes(row)}/>", "  </keyframe>"]
-
-
-def _attributes(row: Attributes) -> str:
-    """Attributes of an element; numbers in the shortest form that reads back as the same double."""
-    return "".join(f" {name}={quoteattr(_text(value))}" for name, value in row.items())
-
-
-def _text(value: AttributeValue) -> str:
-    """A value as MJCF text."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, int | float):
-        return repr(value if isinstance(value, int) else float(value) + 0.0)
-    return " ".join(_text(number) for number in value)
-
-
-def _comment(text: str) -> str:
-    """Text that may stand in an XML comment, where two hyphens would end it."""
-    return text.replace("--", "- -").replace("--", "- -")
+        controls = (state.omega[link] if servo else state.alpha[link], *controls)
+    if controls:
+        row["ctrl"] = controls
+    return ["  <keyframe>", f"    <key{attributes(row)}/>", "  </keyframe>"]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
 from models.errors import CrankcheckError
 from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from models.load_text import load_table
+from models.load_text import in_degrees, load_table
 from models.scene import Scene, Slider
 
 Table = Mapping[str, object]
@@ -69,10 +68,10 @@ def _slider(slider: Slider) -> Table:
         "point": slider.point,
         "on": slider.on,
         "through_m": slider.through_m,
-        "direction_deg": math.degrees(slider.direction_rad),
+        "direction_deg": in_degrees(slider.direction_rad),
     }
     if slider.link is not None:
-        return {**table, "link": slider.link, "angle_deg": math.degrees(slider.angle_rad)}
+        return {**table, "link": slider.link, "angle_deg": in_degrees(slider.angle_rad)}
     return {**table, "mass_kg": slider.mass_kg, "inertia_kg_m2": slider.inertia_kg_m2}
 
 
@@ -80,15 +79,15 @@ def _law(law: Law) -> Table:
     if isinstance(law, Oscillating):
         return {
             "law": "oscillating",
-            "centre_deg": math.degrees(law.centre_rad),
-            "amplitude_deg": math.degrees(law.amplitude_rad),
+            "centre_deg": in_degrees(law.centre_rad),
+            "amplitude_deg": in_degrees(law.amplitude_rad),
             "frequency_rad_s": law.frequency_rad_s,
-            "phase_deg": math.degrees(law.phase_rad),
+            "phase_deg": in_degrees(law.phase_rad),
         }
     if not isinstance(law, ConstantSpeed | FromRest | Accelerating):
         name = type(law).__name__
         raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")
-    start = {"start_deg": math.degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
+    start = {"start_deg": in_degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
     if isinstance(law, FromRest):
         return {"law": "from-rest", **start, "rise_s": law.rise_s}
     if isinstance(law, Accelerating):

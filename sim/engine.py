@@ -223,6 +223,7 @@ class Setup:
     reports_accelerations: bool
     asked: Settings
     with_forces: bool = False
+    forces_of: ForcesOf = "nothing"
 
 
 @dataclass(frozen=True)
@@ -236,7 +237,7 @@ class Run:
     logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
     that the run was given, and takes to be run again; ``settings`` what the engine then held.
     ``energy`` is kept of free motion, where nothing adds to it. ``with_forces`` says that forces
-    were asked for; they are in ``motion``.
+    were asked for; they are in ``motion``, and of what ``forces_of`` the engine says.
     """
 
     scene: str
@@ -262,3 +263,4 @@ class Run:
     reports_accelerations: bool = True
     energy: Energy | None = None
     with_forces: bool = False
+    forces_of: ForcesOf = "nothing"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from models.array import Array
 from models.loads import Load
 from models.scene import Scene
@@ -32,6 +30,4 @@ def of_state(
 ) -> float:
     """The magnitude of a load in a state: of the crank at an angle [rad], and of sliders at
     displacements [m] and speeds [m/s]."""
-    displacement, speed = (0.0, 0.0) if load.slider is None else sliders[load.slider]
-    x = {"time": time_s, "angle": driver_rad, "displacement": displacement}[load.over]
-    return float(load.magnitude(np.array([x]), np.array([speed]))[0])
+    return load.size(time_s, driver_rad, sliders)

@@ -123,6 +123,7 @@ def setup(
         reports_accelerations=chosen.reports_accelerations,
         asked=resolved(profile_of(chosen, profile), settings),
         with_forces=with_forces,
+        forces_of=chosen.forces_of if with_forces else "nothing",
     )
 
 

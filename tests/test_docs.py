@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -19,14 +20,22 @@ PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
 OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
 OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
 OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
+FORCES = (DOCS / "forces.md").read_text(encoding="utf-8")
 END = "--- end of example {} ---"
 
 
 def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
     """One after the other in one process, as a reader would in a notebook."""
     examples = scripts(PAGE)
+    assert len(examples) >= 10
+    faults = printed_otherwise(examples, tmp_path)
+    assert not faults, "\n\n".join(faults)
+
+
+def printed_otherwise(examples: Sequence[tuple[str, list[str] | None]], folder: Path) -> list[str]:
+    """The examples that print something else than what stands below them."""
     parts = [f"{code}\nprint({END.format(at)!r})" for at, (code, _) in enumerate(examples)]
-    done = ran([PYTHON, "-P", "-c", "\n".join(parts)], tmp_path)
+    done = ran([PYTHON, "-P", "-c", "\n".join(parts)], folder)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     assert done.stderr == ""
     faults, rest = [], done.stdout
@@ -36,12 +45,23 @@ def test_every_example_prints_what_stands_below_it(tmp_path: Path) -> None:
             assert not printed, code
         elif fault := follows(shown, [line.rstrip() for line in printed.splitlines()]):
             faults.append(f"{code}\n{fault}")
-    assert len(examples) >= 10
-    assert not faults, "\n\n".join(faults)
+    return faults
 
 
 def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
     assert not told_otherwise(OWN_LOG, tmp_path)
+
+
+def test_what_is_said_of_forces_is_true(tmp_path: Path) -> None:
+    """Of scenes that stand on the page: a command's start each, some 15 s in all."""
+    for text in blocks(FORCES, "toml"):
+        name = re.search('name = "(.+)"', text)
+        assert name is not None
+        (tmp_path / f"{name[1]}.toml").write_text(text)
+    assert not told_otherwise(FORCES, tmp_path)
+    assert not printed_otherwise(scripts(FORCES), tmp_path)
+    drawn = {path.stem for path in (tmp_path / "figs").iterdir()}
+    assert drawn == {name for name in drawn if f"`{name}`" in FORCES}
 
 
 def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def test_it_installs_one_name(wheel: Path) -> None:
         if path.is_file() and path.suffix != ".pyc"
     }
     assert {name for name in names if not name.startswith(other)} == files
-    assert {"crankcheck/py.typed", "crankcheck/models/scenes/shaper.toml"} <= files
+    assert {"crankcheck/py.typed", "crankcheck/models/scenes/kinematics/shaper.toml"} <= files
 
 
 def test_but_for_our_names_the_code_is_letter_for_letter_that_of_the_checkout(wheel: Path) -> None:

@@ -1,4 +1,4 @@
-"""The same mechanism somewhere else: turned, moved, mirrored or scaled.
+"""The same mechanism somewhere else: turned, moved, mirrored or scaled, with what acts on it.
 
 A mechanism does not know where it stands, so errors as pure numbers must not change either.
 """
@@ -8,16 +8,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from analytic.structure.mobility import analyse
+from models.friction import CoulombFriction, Friction
 from models.joints import turned
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.loads import Load
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
-    """The scene turned about the origin, its gravity and its loads with it.
-
-    Not for loads over the driver's angle, which is another one then.
-    """
+    """The scene turned about the origin, its gravity and its loads with it."""
 
     def turn(place: Point) -> Point:
         return turned(place, angle_rad)
@@ -29,11 +28,15 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             direction_rad=slider.direction_rad + angle_rad,
         )
 
-    loads = {
-        name: replace(load, direction_rad=load.direction_rad + angle_rad)
-        for name, load in scene.loads.items()
-        if load.frame == "ground"
-    }
+    def load(old: Load) -> Load:
+        lean = angle_rad if old.point is not None and old.frame == "ground" else 0.0
+        ahead = angle_rad if old.over == "angle" else 0.0
+        return replace(
+            old,
+            direction_rad=old.direction_rad + lean,
+            characteristic=old.characteristic.carried(1.0, shift=ahead),
+        )
+
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -41,7 +44,7 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         sliders={n: on_ground(s) if s.on == GROUND else s for n, s in scene.sliders.items()},
         driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
         gravity_m_s2=turn(scene.gravity_m_s2),
-        loads={**scene.loads, **loads},
+        loads={name: load(old) for name, old in scene.loads.items()},
     )
 
 
@@ -79,6 +82,15 @@ def mirrored(scene: Scene) -> Scene:
             angle_rad=-old.angle_rad,
         )
 
+    def load(old: Load) -> Load:
+        return replace(
+            old,
+            direction_rad=-old.direction_rad,
+            characteristic=old.characteristic.carried(
+                -1.0 if old.point is None else 1.0, stretch=-1.0 if old.over == "angle" else 1.0
+            ),
+        )
+
     sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
     flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
     return replace(
@@ -89,6 +101,7 @@ def mirrored(scene: Scene) -> Scene:
         driver=Driver(scene.driver.link, mirrored_law(scene.driver.law)),
         branch={**scene.branch, **flipped},
         gravity_m_s2=flip(scene.gravity_m_s2),
+        loads={name: load(old) for name, old in scene.loads.items()},
     )
 
 
@@ -110,7 +123,9 @@ def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with every length times ``factor``, made of rods of the same mass per length.
 
     Masses grow with the factor, inertias with its cube; gravity with the factor, so that the
-    motion stays similar at the same speed. Loads stay as they are.
+    motion stays similar at the same speed. Masses times accelerations are forces: those of loads
+    and friction grow with its square, torques with its cube; a load over a displacement is
+    stretched, and the radii of pins that rub grow.
     """
 
     def grow(p: Point) -> Point:
@@ -133,10 +148,22 @@ def scaled(scene: Scene, factor: float) -> Scene:
             inertia_kg_m2=old.inertia_kg_m2 * factor**3,
         )
 
+    def load(old: Load) -> Load:
+        size = factor**3 if old.point is None else factor**2
+        stretch = factor if old.over == "displacement" else 1.0
+        return replace(old, characteristic=old.characteristic.carried(size, stretch=stretch))
+
+    def rubbing(old: Friction) -> Friction:
+        if isinstance(old, CoulombFriction):
+            return replace(old, radius_m=old.radius_m * factor)
+        return replace(old, size=old.size * factor ** (2 if old.joint in scene.sliders else 3))
+
     return replace(
         scene,
         ground={name: grow(place) for name, place in scene.ground.items()},
         links={name: link(old) for name, old in scene.links.items()},
         sliders={name: slider(old) for name, old in scene.sliders.items()},
         gravity_m_s2=grow(scene.gravity_m_s2),
+        loads={name: load(old) for name, old in scene.loads.items()},
+        friction={name: rubbing(old) for name, old in scene.friction.items()},
     )

@@ -6,15 +6,17 @@ motion, accelerations and multipliers are the unknowns of one linear system for 
     | M      Phi_q^T |  | q''    |     | Q     |
     | Phi_q  0       |  | lambda |  =  | gamma |
 
-Q holds weights, loads and what of inertia goes with the squares of rates. Source: E. J. Haug,
-Computer Aided Kinematics and Dynamics of Mechanical Systems, chapter 6.
+Q holds weights, loads and what of inertia goes with the squares of rates. As the driver's equation
+is among the constraints Phi_q is square, and the lower half gives q'' without the upper one: solved
+as a whole the system would have the square of its condition. Source: E. J. Haug, Computer Aided
+Kinematics and Dynamics of Mechanical Systems, chapter 6.
 
 Friction, which hangs on the multipliers, is put in Q, and both are worked out again and again.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,9 +29,11 @@ from models.forces import Forces, SliderForces
 from models.motion import Motion
 from models.scene import Scene
 
+REFINEMENTS = 2
 MOST = 400
 """Substitutions of friction: those of a contraction by 0.9."""
-SETTLED = 1e-15
+SETTLED = 1e-14
+"""What the last of them changes, over the largest friction of all joints."""
 
 
 def forces(scene: Scene, motion: Motion) -> Forces:
@@ -48,26 +52,9 @@ def forces(scene: Scene, motion: Motion) -> Forces:
         As many constraints as coordinates there are not, or they are singular at a sample; friction
         that does not settle.
     """
-    system = Constraints(scene)
-    bodies = body_samples(scene, motion)
-    own = [bodies[name] for name in system.bodies]
-    q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
-    rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
-    alpha, size = motion.links[scene.driver.link].alpha, system.size
-    saddle = np.zeros((len(q), 2 * size, 2 * size))
-    right = np.zeros((len(q), 2 * size))
-    for k in range(len(q)):
-        saddle[k, size:, :size] = jacobian = system.jacobian(q[k])
-        saddle[k, :size, size:] = jacobian.T
-        right[k, size:] = system.gamma(q[k], rates[k], float(alpha[k]))
-    for name, body in bodies.items():
-        _inertia(body, system.at[name], saddle, right)
-    for name, place, force, torque in weights_and_loads(scene, motion):
-        at = system.at[name]
-        right[:, at : at + 2] += force
-        right[:, at + 2] += torque + cross(bodies[name].arm(place), force)
+    system = equations(scene, motion)
     try:
-        return _settled(scene, system, motion, saddle, right)
+        return _settled(scene, system, motion)
     except np.linalg.LinAlgError:
         raise CrankcheckError(
             f"{scene.name}: the constraints are singular at a sample, where the multipliers are "
@@ -75,25 +62,25 @@ def forces(scene: Scene, motion: Motion) -> Forces:
         ) from None
 
 
-def _settled(
-    scene: Scene, system: Constraints, motion: Motion, saddle: Array, right: Array
-) -> Forces:
+def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
     """The reactions, with what rubs put on the right side again until it stays."""
     bodies = body_samples(scene, motion)
     joints = rubbing_samples(scene, motion, bodies)
-    friction = {joint: np.zeros(len(right)) for joint in joints}
+    friction = {joint: np.zeros(len(system.applied)) for joint in joints}
     for _ in range(MOST):
-        pushed = right.copy()
+        pushed = system.applied.copy()
         for joint, own in joints.items():
             for name, force, torque in own.pushes(friction[joint]):
-                at = system.at[name]
+                at = system.constraints.at[name]
                 pushed[:, at : at + 2] += force
                 pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
-        solution = np.asarray(np.linalg.solve(saddle, pushed[:, :, None])[:, :, 0], np.float64)
-        found = _reactions(scene, system, motion.time_s, -solution[:, system.size :])
+        multipliers = replace(system, applied=pushed).multipliers()
+        found = reactions(scene, system.constraints, motion.time_s, -multipliers)
         before = friction
         friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
-        if all(_stays(before[joint], friction[joint]) for joint in joints):
+        change = [np.abs(friction[joint] - before[joint]) for joint in joints]
+        largest = max((np.max(np.abs(each)) for each in friction.values()), default=0.0)
+        if not change or np.max(change) <= SETTLED * largest:
             return replace(found, friction=friction)
     raise CrankcheckError(
         f"{scene.name}: friction does not settle in {MOST} repeated substitutions, which it does "
@@ -101,26 +88,79 @@ def _settled(
     )
 
 
-def _stays(before: Array, after: Array) -> bool:
-    largest = float(np.max(np.abs(after), initial=0.0))
-    return float(np.max(np.abs(after - before), initial=0.0)) <= SETTLED * largest
+@dataclass(frozen=True)
+class Equations:
+    """The equations of a scene at T samples: Phi_q and M (T, n, n), gamma and Q (T, n)."""
+
+    constraints: Constraints
+    jacobian: Array
+    gamma: Array
+    mass: Array
+    applied: Array
+
+    def accelerations(self) -> Array:
+        """q'' (T, n)."""
+        return refined(self.jacobian, self.gamma)
+
+    def multipliers(self) -> Array:
+        """lambda (T, n)."""
+        inertia = (self.mass @ self.accelerations()[:, :, None])[:, :, 0]
+        return refined(np.swapaxes(self.jacobian, 1, 2), self.applied - inertia)
+
+
+def refined(matrix: Array, right: Array) -> Array:
+    """The solutions (T, n) of linear systems, as exact as their entries are.
+
+    Elimination alone errs by the condition of the whole system, in which a far dyad near a dead
+    point counts. Steps of refinement leave an error of the size of Skeel's bound, eps |A^-1|
+    (|A| |x| + |b|), component by component (R. D. Skeel, Iterative refinement implies numerical
+    stability for Gaussian elimination, Math. Comp. 35, 1980).
+    """
+    x = np.linalg.solve(matrix, right[:, :, None])
+    for _ in range(REFINEMENTS):
+        x = x + np.linalg.solve(matrix, right[:, :, None] - matrix @ x)
+    return np.asarray(x[:, :, 0], np.float64)
+
+
+def equations(scene: Scene, motion: Motion) -> Equations:
+    """The equations at the samples of a motion. Raises CrankcheckError as `forces`."""
+    system = Constraints(scene)
+    bodies = body_samples(scene, motion)
+    own = [bodies[name] for name in system.bodies]
+    q = np.concatenate([_columns(b.origin, b.theta) for b in own], axis=1)
+    rates = np.concatenate([_columns(b.velocity, b.omega) for b in own], axis=1)
+    alpha = motion.links[scene.driver.link].alpha
+    mass, applied = np.zeros((*q.shape, system.size)), np.zeros_like(q)
+    for name, body in bodies.items():
+        _inertia(body, system.at[name], mass, applied)
+    for name, place, force, torque in weights_and_loads(scene, motion):
+        at = system.at[name]
+        applied[:, at : at + 2] += force
+        applied[:, at + 2] += torque + cross(bodies[name].arm(place), force)
+    return Equations(
+        system,
+        np.array([system.jacobian(each) for each in q]),
+        np.array([system.gamma(*each) for each in zip(q, rates, alpha.tolist(), strict=True)]),
+        mass,
+        applied,
+    )
 
 
 def _columns(places: Array, angles: Array) -> Array:
     return np.concatenate([places, angles[:, None]], axis=1)
 
 
-def _inertia(body: BodySamples, at: int, saddle: Array, right: Array) -> None:
+def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> None:
     """The mass matrix of a body about its frame's origin, and its centrifugal force."""
     mass, arm = body.mass, body.arm(body.centre)
-    saddle[:, at, at] = saddle[:, at + 1, at + 1] = mass
-    saddle[:, at, at + 2] = saddle[:, at + 2, at] = -mass * arm[:, 1]
-    saddle[:, at + 1, at + 2] = saddle[:, at + 2, at + 1] = mass * arm[:, 0]
-    saddle[:, at + 2, at + 2] = body.inertia + mass * np.sum(arm**2, axis=1)
+    mass_matrix[:, at, at] = mass_matrix[:, at + 1, at + 1] = mass
+    mass_matrix[:, at, at + 2] = mass_matrix[:, at + 2, at] = -mass * arm[:, 1]
+    mass_matrix[:, at + 1, at + 2] = mass_matrix[:, at + 2, at + 1] = mass * arm[:, 0]
+    mass_matrix[:, at + 2, at + 2] = body.inertia + mass * np.sum(arm**2, axis=1)
     right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
 
 
-def _reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
+def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
     """What the multipliers mean: pushes along the gradients of the equations, in their order."""
     pins: dict[str, dict[str, Array]] = {}
     row = 0

@@ -26,8 +26,9 @@ MOST = 60
 """Steps, of which Newton's take some five; plain ones are as many as a contraction needs."""
 SETTLED = 1e-13
 """A change over the largest friction at which nothing more is gained."""
-SOLVED = 1e-9
-"""What a solution may leave open, over itself, where one is looked for from many starts."""
+SEARCHED, SOLVED = 30, 1e-9
+"""Steps from each start where solutions are looked for from many, and what one may leave open,
+over itself."""
 MOST_STARTS = 64
 
 
@@ -72,6 +73,7 @@ class CoulombSolution:
     change: Array
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # dead points, searches that fail
 def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
     """Friction in all joints.
 
@@ -79,7 +81,9 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
     `MOST_STARTS` of them): all are found in one joint, and in six sliders; with pins among several
     joints some may be missed. Of two the one with the least friction is given.
     """
-    contracts = np.all(weights(system.gains()) > 0.0, axis=1)
+    finite = np.isfinite(system.alone).all(axis=(1, 2))
+    finite &= np.isfinite(system.influence).all(axis=(1, 2, 3))
+    contracts = finite & np.all(weights(system.gains()) > 0.0, axis=1)
     count = len(system.alone)
     g, change = np.full((count, len(system.mu)), np.nan), np.full(count, np.nan)
     solutions, iterations = np.zeros(count), np.zeros(count)
@@ -87,12 +91,10 @@ def solve_coulomb(system: CoulombSystem) -> CoulombSolution:
         solutions[contracts] = 1
         part = _contracted(system.at(contracts))
         g[contracts], iterations[contracts], change[contracts] = part
-    finite = np.isfinite(system.alone).all(axis=(1, 2))
-    finite &= np.isfinite(system.influence).all(axis=(1, 2, 3))
     other = ~contracts & finite
     if other.any():
         g[other], solutions[other], change[other] = _searched(system.at(other))
-        iterations[other] = MOST
+        iterations[other] = SEARCHED
     solutions[~finite] = 1  # a dead point, which has its own words
     return CoulombSolution(g, solutions, iterations, change)
 
@@ -148,7 +150,7 @@ def _searched(system: CoulombSystem) -> tuple[Array, Array, Array]:
     solutions = np.zeros(count)
     for start in _starts(system):
         g = start
-        for _ in range(MOST):
+        for _ in range(SEARCHED):
             g = system.along(_directions(system.reactions(g)))
         size = np.max(np.abs(g), axis=1)
         off = np.max(np.abs(system.friction(g) - g), axis=1) / np.where(size > 0.0, size, 1.0)

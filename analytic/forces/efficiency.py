@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -59,12 +59,14 @@ def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
     time_s, part_s = looks(scene, count), cycle_s(scene) / count
     motion = solve(scene, time_s, bound=False)
     found = forces(scene, time_s, bound=False, skip_dead_points=True)
-    power = found.torque * motion.links[scene.driver.link].omega
+    omega = motion.links[scene.driver.link].omega
+    power = found.torque * omega
     lost = -sum(friction_power(scene, motion, found.friction).values(), np.zeros_like(power))
     going_on = power - lost
     with np.errstate(divide="ignore", invalid="ignore"):
         instantaneous = np.where(going_on > 0.0, going_on / power, np.nan)
-    works = [float(np.sum(each)) * part_s for each in (power, -_load_power(scene, time_s), lost)]
+    against = -reduced_machine(scene, time_s).torque * omega  # weights do no work in a cycle
+    works = [float(np.sum(each)) * part_s for each in (power, against, lost)]
     put_in, useful, wasted = works if np.isfinite(works).all() else [float("nan")] * 3
     theta, locked = motion.links[scene.driver.link].theta, self_locking(scene, count)
     return Efficiency(theta, power, lost, instantaneous, put_in, useful, wasted, locked)
@@ -89,9 +91,3 @@ def friction_power(scene: Scene, motion: Motion, friction: Mapping[str, Array]) 
             rate = turning[second] - turning[first]
         power[joint] = own * rate
     return power
-
-
-def _load_power(scene: Scene, time_s: Array) -> Array:
-    """What the loads put in [W]."""
-    weightless = replace(scene, gravity_m_s2=(0.0, 0.0))
-    return reduced_machine(weightless, time_s).torque * scene.driver.law.at(time_s)[1]

@@ -60,8 +60,10 @@ def forces(
     -------
     Forces
         With redundant links the torque alone, by virtual power: how such links share the load is
-        not for statics to say. Friction is in it; of a joint that does not move it is anywhere
-        within its limits, taken as 0, and the bound says so.
+        not for statics to say. Friction of the scene is in torque and reactions; in a joint that
+        does not move it is anywhere within its limits, taken as 0, and the bound says so.
+        ``friction_solution`` says where Coulomb's has two equilibria; bounds are infinite where
+        it is not shown to have one alone.
 
     Raises
     ------

@@ -6,7 +6,8 @@ reduced torque of weights and loads are::
     I = sum (m v'^2 + J theta'^2)         M = sum (F v' + M theta')
     torque = I alpha + I' omega^2 / 2 - M          (I' = dI/dphi)
 
-Source: I. I. Artobolevskii, Theory of Mechanisms, on reduced masses.
+Friction is not in it: it hangs on the reactions. Source: I. I. Artobolevskii, Theory of
+Mechanisms, on reduced masses.
 """
 
 from __future__ import annotations

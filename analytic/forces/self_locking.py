@@ -15,7 +15,7 @@ from models.scene import Scene
 
 LOOKS = 720
 """Looks at a cycle; what is shorter than one of its parts is missed."""
-HALVINGS = 60
+HALVINGS = 46
 
 
 @dataclass(frozen=True)

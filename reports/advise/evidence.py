@@ -11,6 +11,7 @@ from pathlib import Path
 
 from models.errors import EngineError
 from models.files import parse_scene
+from models.friction import ConstantFriction
 from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.advise.choices import Choice, key_of
@@ -105,7 +106,8 @@ def evidence(
 
     A line of cells serves where the scene is the same but for the size of the speed, the engine is
     the version installed, the drive the usual one, and nothing but the crank sets a time scale: no
-    gravity, and no setting in seconds, unless the speed is that of the study.
+    gravity, loads or constant friction, and no setting in seconds, unless the speed is that of the
+    study.
     """
     by_key = {choice.key: choice for choice in wanted}
     scenes = {scene.name: scene for scene in demand.scenes}
@@ -144,12 +146,22 @@ def _refusal(line: Line, stored_text: str, scene: Scene, text: str, choice: Choi
         return f"{line.scene} turns the other way"
     if math.isclose(law.speed_rad_s, ours.speed_rad_s, rel_tol=SAME_SPEED):
         return ""
-    if scene.gravity_m_s2 != (0.0, 0.0):
-        return f"{line.scene} has gravity, and turns at {law.speed_rad_s:g} rad/s there"
+    if own := _forces_of_their_own(scene):
+        return f"{line.scene} has {own}, and turns at {law.speed_rad_s:g} rad/s there"
     if choice.in_seconds:
         named = ", ".join(choice.in_seconds)
         return f"{named} in seconds, measured at {law.speed_rad_s:g} rad/s"
     return ""
+
+
+def _forces_of_their_own(scene: Scene) -> str:
+    """What does not grow with the square of the speed, as inertia does; "" where nothing is so."""
+    found = {
+        "gravity": scene.gravity_m_s2 != (0.0, 0.0),
+        "loads": bool(scene.loads),
+        "constant friction": any(isinstance(f, ConstantFriction) for f in scene.friction.values()),
+    }
+    return ", ".join(name for name, has in found.items() if has)
 
 
 def _steps(line: Line) -> MeasuredSteps:

@@ -60,6 +60,9 @@ StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]
 Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
+Forces = Annotated[
+    bool, typer.Option("--forces", help="Reactions, moments and driving torque as well.")
+]
 Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
 """Options that several commands have."""
 

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from models.errors import CrankcheckError
-from reports.cli.application import Engines, Jobs, StepS, StepsPerTurn, Turns, command
+from reports.cli.application import Engines, Forces, Jobs, StepS, StepsPerTurn, Turns, command
 from reports.output.console import terminal
 
 PRESCRIBED = "prescribed"
@@ -50,6 +50,7 @@ class VerifyRequest:
             help="Run at half and quarter step too, and say what the error does.",
         ),
     ] = True
+    forces: Forces = False
     jobs: Jobs = 0
     junit: Annotated[Path | None, typer.Option(help="Write JUnit XML.")] = None
     csv: Annotated[Path | None, typer.Option(help="Write the cells as CSV.")] = None
@@ -173,6 +174,9 @@ class SelftestRequest:
             "--fault", metavar="NAME", help="Fault of the table; may be repeated; all if none."
         ),
     ] = ()
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
+    ] = False
     jobs: Jobs = 0
     csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None
     json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None

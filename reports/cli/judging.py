@@ -33,6 +33,9 @@ class JudgeRequest:
         str,
         typer.Option(help="scene, fitted (speed and start), or logged (geometry at its angle)."),
     ] = "scene"
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
+    ] = False
     step_s: Annotated[
         float | None,
         typer.Option("--step", metavar="SECONDS", parser=seconds, help="Step of the solver."),

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Engines, Jobs, app, command, guarded, seconds
+from reports.cli.application import Engines, Forces, Jobs, app, command, guarded, seconds
 from reports.output.console import terminal
 
 
@@ -37,6 +37,7 @@ class SweepRequest:
         Sequence[str],
         typer.Option("--set", metavar="ENGINE.SETTING=A,B", help="One variant per value."),
     ] = ()
+    forces: Forces = False
     limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0
     memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0
     jobs: Jobs = 0

@@ -31,7 +31,8 @@ class SolveRequest:
         int | None, typer.Option(help="Samples in a turn (default 12, in a file 360).")
     ] = None
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
+        Path | None,
+        typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx, or a page, .html."),
     ] = None
     clockwise: Annotated[
         bool, typer.Option("--clockwise", help="With --at-deg: the driver turning clockwise there.")
@@ -40,11 +41,19 @@ class SolveRequest:
         Sequence[str],
         typer.Option(metavar="POINT:DEG", help="Stroke of a point along a direction; repeatable."),
     ] = ()
+    forces: Annotated[
+        bool, typer.Option("--forces", help="The reactions and the driving torque as well.")
+    ] = False
+    figures: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="With --forces: draw them over a turn, as SVG and PDF."),
+    ] = None
 
 
 @command
 def solve(request: SolveRequest) -> int:
-    """Show the closed-form reference alone: angles, points and sliders with all their rates."""
+    """Show the closed-form reference alone: angles, points and sliders with all their rates, and
+    the forces that these ask for."""
     from reports.cli.commands import solve as verb
 
     verb.run_solve(request, terminal())
@@ -160,9 +169,12 @@ def view(
         Path | None,
         typer.Option("-o", "--output", help="Draw into a .gif or .png in place of the viewer."),
     ] = None,
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Draw the forces as arrows, into a file.")
+    ] = False,
 ) -> None:
     """Open MuJoCo's viewer, or, without a screen or with -o, draw the motion into a file."""
     with guarded():
         from reports.cli.commands import view as command
 
-        command.run_view(scene, output, terminal())
+        command.run_view(scene, output, terminal(), with_forces=forces)

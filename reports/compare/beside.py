@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
+from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
 from models.motion import Motion, State
@@ -42,6 +43,7 @@ class Truth:
     links: tuple[str, ...] | None = None
     points: tuple[str, ...] | None = None
     _motions: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
+    _loaded: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def start(self) -> State:
@@ -56,10 +58,29 @@ class Truth:
             motion = solve(
                 self.scene, time_s, links=self.links, points=self.points, bound=self.bound
             )
-            for oldest in list(self._motions)[: 1 - SETS]:
-                self._motions.pop(oldest, None)  # another thread may have done so
-            self._motions[instants] = motion
+            _keep(self._motions, instants, motion)
         return motion
+
+    def with_forces_at(self, time_s: Array) -> Motion:
+        """As `at`, with the forces; there are none (NaN) in dead points."""
+        instants = time_s.tobytes()
+        motion = self._loaded.get(instants)
+        if motion is None:
+            whole = self
+            if self.links is not None or self.points is not None:
+                whole = replace(self, links=None, points=None, _motions={}, _loaded={})
+            motion = whole.at(time_s)
+            load = forces(self.scene, motion, bound=self.bound, skip_dead_points=True)
+            motion = replace(motion, forces=load)
+            _keep(self._loaded, instants, motion)
+        return motion
+
+
+def _keep(motions: dict[bytes, Motion], instants: bytes, motion: Motion) -> None:
+    """Keep a motion in the place of the oldest."""
+    for oldest in list(motions)[: 1 - SETS]:
+        motions.pop(oldest, None)  # another thread may have done so
+    motions[instants] = motion
 
 
 @dataclass(frozen=True)

@@ -27,10 +27,12 @@ from reports.compare.branch import departure
 from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
+from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track
 from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import QUANTITIES, named
+from reports.quantities.forces import acting_at, largest_reaction, silent
 from reports.quantities.quantity import Role, Source
 
 EPSILON = float(np.finfo(np.float64).eps)
@@ -86,6 +88,7 @@ def compare(beside: Beside | None) -> Errors | None:
     at = _instants(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
+    borne = force_rows(beside)
     jolt = jolts(scene, beside.whole)
     far = uneven(scene, reference, at.driver_rad) if beside.of_engine else {}
     return Errors(
@@ -96,14 +99,15 @@ def compare(beside: Beside | None) -> Errors | None:
             *_whole(beside, at, "closure"),
             *reported,
             *_differenced(beside, at),
+            *borne.rows,
         ),
-        not_reported=not_reported,
-        notes=notes,
+        not_reported=(*not_reported, *borne.not_reported),
+        notes=(*notes, *borne.notes),
         curvature=curvature(scene, beside.whole),
         conditioning=conditioning(reference, at.driver_rad),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=beside.missing,
-        incomplete=beside.incomplete,
+        incomplete=beside.incomplete or borne.incomplete,
         uncertain=_uncertain(beside),
         departure=departure(beside),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
@@ -113,6 +117,37 @@ def compare(beside: Beside | None) -> Errors | None:
         starts_in_passage=bool(np.any(at.passed[: at.first])),
         uneven=far,
         uneven_rates=unevenly_turned(scene, far),
+        unbalanced=borne.unbalanced,
+        start_load=borne.start_load,
+    )
+
+
+def force_rows(beside: Beside) -> ForceErrors:
+    """The errors of forces, at the instants that they act at; none where none were asked for."""
+    run = beside.run
+    if not run.with_forces:
+        return ForceErrors()
+    known = acting_at(run)
+    time_s = beside.motion.time_s if known is None else known
+    reference = beside.truth.with_forces_at(time_s)
+    assert reference.forces is not None
+    alive = np.isfinite(reference.forces.torque)
+    at = _instants(beside, time_s, reference)[alive]
+    rows, missing, start = list[Error](), list[str](), 0.0
+    for track in beside.tracks(named("force"), reference) if np.any(alive) else ():
+        start = max(start, float(length(track.truth)[alive][0]) / track.scale)
+        if silent(run) and np.all(np.isnan(track.error)):
+            missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
+            continue
+        kept = replace(track, error=track.error[alive], bound=track.bound[alive])
+        rows += _rate_rows(kept, at, "reported")
+    return ForceErrors(
+        tuple(rows),
+        tuple(missing),
+        force_notes(run, reference.forces, int(np.sum(~alive))),
+        unbalanced(run, largest_reaction(beside.scene, reference)),
+        start if run.forces_of == "steps" else 0.0,
+        off_stamps(run),
     )
 
 

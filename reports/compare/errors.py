@@ -68,6 +68,14 @@ class Departure:
 
 
 @dataclass(frozen=True)
+class Unbalanced:
+    """What the forces of a pin add up to at most, as a share of the largest reaction."""
+
+    point: str
+    share: float
+
+
+@dataclass(frozen=True)
 class Errors:
     """All errors of one run.
 
@@ -85,7 +93,9 @@ class Errors:
     run, and ``mass_ratio`` the mass of the heaviest body over that of the lightest.
     ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
     how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
-    rates do too (`reports.compare.uneven`).
+    rates do too (`reports.compare.uneven`). ``unbalanced`` is the pin whose forces add up to most,
+    None where there are none; ``start_load`` the largest force at the start, as a share of the
+    largest of its kind, where the engine's forces are those of steps, which start with half a step.
     """
 
     rows: tuple[Error, ...]
@@ -105,6 +115,8 @@ class Errors:
     starts_in_passage: bool = False
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
+    unbalanced: Unbalanced | None = None
+    start_load: float = 0.0
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

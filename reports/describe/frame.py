@@ -8,11 +8,13 @@ import numpy as np
 import pandas as pd
 
 from models.motion import BodyMotion, Motion
+from reports.describe.force_frame import force_columns
 from sim.engine import Run
 
 
 def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
-    """One row per sample: each link, point and slider with its rates, vectors also by length."""
+    """One row per sample: each link, point and slider with its rates, vectors also by length; and
+    the forces, where there are any (`reports.describe.force_frame`)."""
     columns: dict[str, object] = {"time_s": motion.time_s}
     for name, link in motion.links.items():
         columns[f"{name}_theta_rad"] = link.theta
@@ -32,6 +34,8 @@ def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
         columns[f"{name}_slider_displacement_m"] = slider.displacement
         columns[f"{name}_slider_speed_m_s"] = slider.speed
         columns[f"{name}_slider_acceleration_m_s2"] = slider.acceleration
+    if motion.forces is not None:
+        columns |= force_columns(motion.forces, lengths=lengths)
     return pd.DataFrame(columns)
 
 
@@ -51,6 +55,8 @@ def run_frame(run: Run) -> pd.DataFrame:
     instants = {"velocity_time_s": run.velocity_time_s}
     if run.reports_accelerations:
         instants["acceleration_time_s"] = run.acceleration_time_s
+    if run.motion.forces is not None:
+        instants["force_time_s"] = run.motion.forces.time_s
     others = {
         name: time_s
         for name, time_s in instants.items()

@@ -27,13 +27,13 @@ def digits(value: float) -> str:
 def position_tables(scene: Scene, motion: Motion) -> list[Table]:
     """Those that the motion has of links, points and sliders, at one position; the Coriolis
     component of those on a moving guide, where there are any."""
-    links = _table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
+    links = head_table("link", ("theta deg", "theta rad", "omega rad/s", "alpha rad/s^2"))
     for name, link in motion.links.items():
         theta = float(link.theta[0])
         numbers = (math.degrees(theta), theta, float(link.omega[0]), float(link.alpha[0]))
         links.add_row(name, *map(digits, numbers))
-    places = _table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
-    rates = _table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
+    places = head_table("point", ("x m", "y m", "vx m/s", "vy m/s", "v m/s"))
+    rates = head_table("point", ("ax m/s^2", "ay m/s^2", "a m/s^2"))
     for name, point in motion.points.items():
         v, a = point.velocity[0], point.acceleration[0]
         row = [*point.position[0], *v, np.hypot(*v)]
@@ -44,7 +44,7 @@ def position_tables(scene: Scene, motion: Motion) -> list[Table]:
         whole = motion.sliders.keys() == scene.sliders.keys() and motion.links
         turned = coriolis(scene, motion) if whole else {}
         heads = ("displacement m", "speed m/s", "acceleration m/s^2")
-        sliders = _table("slider", (*heads, "Coriolis m/s^2") if turned else heads)
+        sliders = head_table("slider", (*heads, "Coriolis m/s^2") if turned else heads)
         for name, slider in motion.sliders.items():
             row = [slider.displacement[0], slider.speed[0], slider.acceleration[0]]
             row += [turned[name][0] if name in turned else 0.0] if turned else []
@@ -79,7 +79,6 @@ def certainty(motion: Motion) -> str:
 
 def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     """Links and sliders over time, as many bodies to a table as the terminal has room for."""
-    together = 2 if width >= WIDE else 1
     bodies: list[tuple[str, Columns]] = [
         (name, [("theta\nrad", m.theta), ("omega\nrad/s", m.omega), ("alpha\nrad/s^2", m.alpha)])
         for name, m in motion.links.items()
@@ -88,6 +87,14 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     for name, s in motion.sliders.items():
         rates = [("speed\nm/s", s.speed), ("accel.\nm/s^2", s.acceleration)]
         bodies.append((f"slider {name}", [("place\nm", s.displacement), *rates]))
+    return tables_over_time(scene, motion, bodies, width)
+
+
+def tables_over_time(
+    scene: Scene, motion: Motion, bodies: Sequence[tuple[str, Columns]], width: int
+) -> list[Table]:
+    """Series by owner beside the time and the driver's angle; ``width`` is the terminal's."""
+    together = 2 if width >= WIDE else 1
     driver = motion.links.get(scene.driver.link)
     instants: Columns = [("\ntime\ns", motion.time_s)]
     if driver is not None:
@@ -97,7 +104,7 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
         table = plain_table(gap=2)
         columns = [*instants]
         for name, series in bodies[first : first + together]:
-            owners = (name, "", "")
+            owners = (name, *[""] * (len(series) - 1))
             columns += [(f"{o}\n{head}", v) for o, (head, v) in zip(owners, series, strict=True)]
         for title, _ in columns:
             table.add_column(title, justify="right", no_wrap=True)
@@ -108,9 +115,10 @@ def motion_tables(scene: Scene, motion: Motion, width: int) -> list[Table]:
     return tables
 
 
-def _table(head: str, columns: Sequence[str]) -> Table:
+def head_table(head: str, columns: Sequence[str]) -> Table:
+    """A table with a first column of names; each other head is a word and its unit."""
     table = plain_table()
     table.add_column(head, no_wrap=True)
     for column in columns:
-        table.add_column(column.replace(" ", "\n"), justify="right", no_wrap=True)
+        table.add_column(column.replace(" ", "\n", 1), justify="right", no_wrap=True)
     return table

@@ -5,37 +5,48 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from PIL import Image
 
 from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
-from reports.drawing.shape import MARGIN, PATH_SAMPLES, box_of, colours_of, guide_direction, turn_of
+from reports.drawing.force_arrows import ForceArrows, force_arrows
+from reports.drawing.plotted_arrows import INK, draw_arrows, scale_bar
+from reports.drawing.shape import (
+    PATH_SAMPLES,
+    box_of,
+    colours_of,
+    guide_direction,
+    size_of_motion,
+    turn_of,
+)
+from reports.output.numbers import readable
 
 FRAMES = 60
 STRIP = 6
-INK = "#1f2933"
 GUIDE = "#9aa5b1"
 
 
-def animation(scene: Scene) -> bytes:
-    """One turn of the scene as a GIF that repeats."""
-    path = turn_of(scene, PATH_SAMPLES)
-    motion = turn_of(scene, FRAMES + 1)
-    figure = _figure(path, columns=1, rows=1, width=6.4)
+def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
+    """One turn of the scene as a GIF that repeats, its forces as arrows where they are wanted."""
+    turn = _Turn.of(scene, FRAMES, with_forces=with_forces)
+    figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    _legend(figure, scene)
+    _legend(figure, scene, with_forces=with_forces)
     frames = []
     for index in range(FRAMES):
         axes.clear()
-        _draw(axes, scene, motion, index, path)
+        _draw(axes, turn, index)
         canvas.draw()  # type: ignore[no-untyped-call]  # matplotlib has no annotation here
         pixels = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]  # as above
         picture = Image.fromarray(pixels).convert("RGB")
@@ -47,23 +58,43 @@ def animation(scene: Scene) -> bytes:
     return buffer.getvalue()
 
 
-def strip(scene: Scene) -> bytes:
-    """Six positions over one turn, side by side, as a PNG."""
-    path = turn_of(scene, PATH_SAMPLES)
-    motion = turn_of(scene, STRIP + 1)
+def strip(scene: Scene, *, with_forces: bool = False) -> bytes:
+    """Six positions over one turn, side by side, as a PNG; forces as in `animation`."""
+    turn = _Turn.of(scene, STRIP, with_forces=with_forces)
     columns, rows = STRIP // 2, 2
-    figure = _figure(path, columns, rows, width=4.0)
+    figure = _figure(turn.box, columns, rows, width=4.0)
     for index in range(STRIP):
-        _draw(figure.add_subplot(rows, columns, index + 1), scene, motion, index, path)
-    _legend(figure, scene)
+        _draw(figure.add_subplot(rows, columns, index + 1), turn, index)
+    _legend(figure, scene, with_forces=with_forces)
     buffer = io.BytesIO()
     FigureCanvasAgg(figure).print_png(buffer)  # type: ignore[no-untyped-call]  # as above
     return buffer.getvalue()
 
 
-def _figure(path: Motion, columns: int, rows: int, width: float) -> Figure:
+@dataclass(frozen=True)
+class _Turn:
+    """What is drawn: the positions, the whole turn behind them, and arrows where they are wanted,
+    within the corners of a box [m]."""
+
+    scene: Scene
+    motion: Motion
+    path: Motion
+    box: tuple[Array, Array]
+    arrows: ForceArrows | None = None
+
+    @staticmethod
+    def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
+        path = turn_of(scene, PATH_SAMPLES, with_forces=with_forces)
+        motion = turn_of(scene, positions + 1, with_forces=with_forces)
+        if not with_forces:
+            return _Turn(scene, motion, path, box_of(path))
+        arrows = force_arrows(scene, path)
+        return _Turn(scene, motion, path, arrows.box(path), arrows)
+
+
+def _figure(box: tuple[Array, Array], columns: int, rows: int, width: float) -> Figure:
     """A figure whose panels of ``width`` [inch] have the shape of what they show."""
-    low, high = box_of(path)
+    low, high = box
     left, right, top, bottom, legend = 0.65, 0.15, 0.35, 0.5, 0.35
     inner = width - left - right
     height = min(max(inner * (high[1] - low[1]) / (high[0] - low[0]), 1.2), 6.0)
@@ -80,29 +111,41 @@ def _figure(path: Motion, columns: int, rows: int, width: float) -> Figure:
     return figure
 
 
-def _legend(figure: Figure, scene: Scene) -> None:
+def _legend(figure: Figure, scene: Scene, *, with_forces: bool) -> None:
     """The links by colour, below everything that moves."""
     colours = colours_of(scene)
     handles = [Line2D([], [], color=colours[name], linewidth=4, label=name) for name in colours]
+    if with_forces:
+        words = "force on the body of that colour, black: on a block"
+        look: dict[str, Any] = {"color": INK, "linewidth": 1.6, "marker": ">", "markersize": 5}
+        handles.append(Line2D([], [], label=words, **look))
     figure.legend(
         handles=handles, loc="lower center", ncols=len(handles), fontsize=8, frameon=False
     )
 
 
-def _draw(axes: Axes, scene: Scene, motion: Motion, index: int, path: Motion) -> None:
+def _draw(axes: Axes, turn: _Turn, index: int) -> None:
     """One position with the paths of the points behind it."""
-    low, high = box_of(path)
+    scene, motion = turn.scene, turn.motion
+    low, high = turn.box
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal", adjustable="box")
-    size = draw_bodies(axes, scene, motion, path, index, 0.8)
+    size = draw_bodies(axes, scene, motion, turn.path, index, 0.8)
     blocks = {slider.point for slider in scene.sliders.values()}
     for name, point in motion.points.items():
         aside = (0.055 if name in blocks else 0.025) * size  # clear of the block
         x, y = (float(each) + aside for each in point.position[index])
-        axes.annotate(name, (x, y), fontsize=8, color=INK, zorder=6)
+        halo = [withStroke(linewidth=2.5, foreground="white")] if turn.arrows else []
+        axes.annotate(name, (x, y), fontsize=8, color=INK, zorder=9, path_effects=halo)
     theta = math.degrees(motion.links[scene.driver.link].theta[index])
-    axes.set_title(f"{scene.name}   {scene.driver.link} {theta:.0f} deg", fontsize=9, color=INK)
+    title = f"{scene.name}   {scene.driver.link} {theta:.0f} deg"
+    if turn.arrows is not None and motion.forces is not None:
+        draw_arrows(axes, turn.arrows, motion, index)
+        scale_bar(axes, turn.arrows, turn.box, fontsize=8)
+        torque = float(motion.forces.torque[index])
+        title += f"   torque {readable(torque)} N m" if math.isfinite(torque) else ""
+    axes.set_title(title, fontsize=9 if turn.arrows is None else 8, color=INK)
     axes.set_xlabel("x [m]", fontsize=8)
     axes.set_ylabel("y [m]", fontsize=8)
     axes.tick_params(labelsize=7)
@@ -118,8 +161,7 @@ def draw_bodies(
     They stand as at sample ``index`` of ``motion``; ``path`` is a whole turn. Returns the size of
     what moves [m].
     """
-    low, high = box_of(path)
-    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    size = size_of_motion(path)
     for name, point in path.points.items():
         if name not in scene.ground:
             axes.plot(*point.position.T, color=GUIDE, linewidth=line, zorder=1)

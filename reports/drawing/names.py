@@ -62,10 +62,18 @@ class _Spot:
     radius: float
 
 
-def names(scene: Scene, path: Motion, at: int, sheet: Sheet, size: Size) -> list[Name]:
+def names(
+    scene: Scene,
+    path: Motion,
+    at: int,
+    sheet: Sheet,
+    size: Size,
+    taken: Sequence[Array] = (),
+) -> list[Name]:
     """The letters of the points, then the names of the links, where there is room.
 
-    The mechanism stands as at sample ``at`` of ``path``, a whole turn.
+    The mechanism stands as at sample ``at`` of ``path``, a whole turn; places [m] that are
+    ``taken``, (n, 2) each, are kept clear.
     """
     blocks = {slider.point for slider in scene.sliders.values()}
     spots = {
@@ -83,7 +91,9 @@ def names(scene: Scene, path: Motion, at: int, sheet: Sheet, size: Size) -> list
     drawn = [p.position for name, p in path.points.items() if name not in scene.ground]
     drawn += [rail(slider, path, at, sheet.spare_m) for slider in scene.sliders.values()]
     lines = sheet.place(np.concatenate(drawn))
-    centres = place(labels, _obstacles(scene, spots, bars), lines, sheet.size)
+    heavy = [_obstacles(scene, spots, bars)]
+    heavy += [np.column_stack([sheet.place(p), np.full(len(p), BAR)]) for p in taken]
+    centres = place(labels, np.vstack(heavy), lines, sheet.size)
     low_x, low_y = (float(each) for each in sheet.low)
     return [
         Name(label.text, low_x + x / sheet.per_m, low_y + y / sheet.per_m, index < len(spots))

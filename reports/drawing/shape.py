@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
 from models.laws import Oscillating
@@ -21,15 +23,20 @@ TRIED = 24
 """Positions of a turn of which the clearest is drawn."""
 
 
-def turn_of(scene: Scene, samples: int, most_s: float = math.inf) -> Motion:
+def turn_of(
+    scene: Scene, samples: int, most_s: float = math.inf, *, with_forces: bool = False
+) -> Motion:
     """One turn, or the first ``most_s`` of it, both ends included; a driver that swings begins at
     an end of its swing, so that an even number of equal parts of its period shows the other end as
-    well."""
+    well. Its forces are those outside of dead points."""
     law = scene.driver.law
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
-    return solve(scene, time_s, bound=False)
+    motion = solve(scene, time_s, bound=False)
+    if not with_forces:
+        return motion
+    return replace(motion, forces=forces(scene, time_s, bound=False, skip_dead_points=True))
 
 
 def clearest(path: Motion) -> int:
@@ -49,6 +56,12 @@ def box_of(path: Motion) -> tuple[Array, Array]:
     # A mechanism on one line still needs some height.
     spare = np.maximum(0.35 * size - (high - low), 0.0) / 2 + MARGIN * size
     return np.asarray(low - spare), np.asarray(high + spare)
+
+
+def size_of_motion(path: Motion) -> float:
+    """How large what moves is [m]: the longer side of its box, without the margin."""
+    low, high = box_of(path)
+    return float(np.max(high - low)) / (1 + 2 * MARGIN)
 
 
 def guide_direction(slider: Slider, motion: Motion, index: int) -> Array:

@@ -16,8 +16,9 @@ import numpy as np
 from models.array import Array
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from reports.drawing.force_arrows import Arrow, ForceArrows, force_arrows
 from reports.drawing.names import Name, Sheet, names, rail
-from reports.drawing.shape import MARGIN, box_of, clearest, guide_direction, turn_of
+from reports.drawing.shape import box_of, clearest, guide_direction, size_of_motion, turn_of
 
 WIDTH, HEIGHT = 440, 320
 """The largest picture [px]; the mechanism's own shape makes it narrower or lower."""
@@ -44,25 +45,35 @@ class _Paper:
         return np.asarray((places - (self.left, self.top)) * (self.per_m, -self.per_m))
 
 
-def svg(scene: Scene, logged: Motion | None = None, most_s: float = math.inf) -> str:
+def svg(
+    scene: Scene,
+    logged: Motion | None = None,
+    most_s: float = math.inf,
+    *,
+    with_forces: bool = False,
+) -> str:
     """The mechanism where its points stand farthest apart, and their paths over a turn, or over the
-    first ``most_s`` of it.
+    first ``most_s`` of it; where they are wanted, with its forces as arrows, where these are
+    largest.
 
     Paths of ``logged``, the motion of a run, are drawn over those of the reference. Raises
-    CrankcheckError where the mechanism can not go through all of that.
+    CrankcheckError where the mechanism can not go through all of that, or there are no forces.
     """
-    path = turn_of(scene, SAMPLES, most_s)
-    low, high = box_of(path)
-    at = clearest(path)
+    path = turn_of(scene, SAMPLES, most_s, with_forces=with_forces)
+    arrows = force_arrows(scene, path) if with_forces else None
+    low, high = box_of(path) if arrows is None else arrows.box(path)
+    at = clearest(path) if arrows is None else arrows.largest_at(path)
     per_m = float(min(WIDTH / (high[0] - low[0]), HEIGHT / (high[1] - low[1])))
     wide, tall = (float(each) * per_m for each in high - low)
     paper = _Paper(float(low[0]), float(high[1]), per_m)
-    size = float(np.max(high - low)) / (1 + 2 * MARGIN)
+    size = size_of_motion(path)
     colours = colours_of(scene)
     spare_m = 0.08 * size
     sheet = Sheet(low, (wide / INCH, tall / INCH), per_m / INCH, spare_m, math.hypot(*BLOCK) / INCH)
     degrees = math.degrees(path.links[scene.driver.link].theta[at]) % 360.0
     title = f"{scene.name}, {scene.driver.link} at {degrees:.0f} deg"
+    acting = arrows.at(path, at) if arrows else []
+    taken = [each.shaft for each in acting]
     parts = [
         *_paths(scene, path, paper, 'opacity="0.35" stroke-width="1.2"'),
         *(_paths(scene, logged, paper, 'opacity="0.8" stroke-dasharray="3 4"') if logged else ()),
@@ -71,7 +82,9 @@ def svg(scene: Scene, logged: Motion | None = None, most_s: float = math.inf) ->
         *(_bar(scene, name, path, at, paper, colours[name]) for name in scene.links),
         *(_block(slider, path, at, paper) for slider in scene.sliders.values()),
         *(_pin(point.position[at], paper) for point in path.points.values()),
-        *(_text(name, paper) for name in names(scene, path, at, sheet, _size)),
+        *(_arrow(each, paper, size, colours) for each in acting),
+        *(_text(name, paper) for name in names(scene, path, at, sheet, _size, taken)),
+        *(_scale_bar(arrows, paper, (wide, tall)) if arrows else ()),
     ]
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{wide:.0f}" '
@@ -145,6 +158,31 @@ def _feet(place: Array, paper: _Paper, size: float) -> str:
 def _pin(place: Array, paper: _Paper) -> str:
     x, y = paper.at(place)
     return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="currentColor" stroke="none"/>'
+
+
+def _arrow(arrow: Arrow, paper: _Paper, size: float, colours: dict[str, str]) -> str:
+    """A force in the colour of the body that it acts on; a block's has that of the text."""
+    colour = colours.get(arrow.body, "currentColor")
+    head = arrow.head(size)
+    ends = np.array([arrow.tail, head[1:].mean(axis=0) if arrow.is_whole else arrow.tip])
+    corners = f'<polygon points="{_points(paper.at(head))}" fill="{colour}" stroke="none"/>'
+    return (
+        f'<polyline points="{_points(paper.at(ends))}" stroke="{colour}" stroke-width="2"/>'
+        f"{corners * arrow.is_whole}"
+    )
+
+
+def _scale_bar(arrows: ForceArrows, paper: _Paper, size: tuple[float, float]) -> Iterable[str]:
+    """How long a force is drawn, in the lower right corner of a picture of a size [px]."""
+    if arrows.bar_n:
+        right, low = size[0] - 10.0, size[1] - 8.0
+        left = right - arrows.bar_n * arrows.m_per_n * paper.per_m
+        yield (
+            f'<path d="M{left:.1f} {low - 4:.1f}v8m0-4H{right:.1f}m0-4v8"/>'
+            f'<text x="{(left + right) / 2:.1f}" y="{low - 6:.1f}" font-size="{LINK_NAME}" '
+            'font-family="sans-serif" text-anchor="middle" fill="currentColor" stroke="none">'
+            f"{arrows.bar_n:g} N</text>"
+        )
 
 
 def _text(name: Name, paper: _Paper) -> str:

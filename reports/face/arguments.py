@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from models.errors import CrankcheckError, shown, suggestion
-from models.files import load_scene, shipped
+from models.files import every_shipped, load_scene
 from models.scene import KEPT, Scene
 from reports.judge.tolerance import DEFAULTS
 from reports.output.numbers import listed
@@ -29,7 +29,7 @@ def scene_of(scene: SceneLike) -> Scene:
     """The scene that was meant. Raises CrankcheckError as `load_scene`, and for what is none."""
     if isinstance(scene, Scene):
         return scene
-    if isinstance(scene, str) and scene in shipped():
+    if isinstance(scene, str) and scene in every_shipped():
         return _shipped(scene)
     if not isinstance(scene, str | PathLike):
         raise CrankcheckError(

@@ -15,6 +15,7 @@ from models.errors import CrankcheckError
 from models.laws import MOST_TURNS
 from models.motion import Motion
 from models.scene import Scene
+from reports.describe.with_forces import cleaned_forces, with_forces
 from reports.face.arguments import SceneLike, is_true, scene_of
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
@@ -34,7 +35,8 @@ Names = str | Iterable[str] | None
 class Solution(Shown, Motion):
     """The motion of a scene in closed form, with a bound of its own error at every sample.
 
-    ``links``, ``points`` and ``sliders`` are what moves, by name (`Motion`).
+    ``links``, ``points`` and ``sliders`` are what moves, by name (`Motion`); ``forces`` what that
+    asks of joints and drive, where they were asked for (`Forces`).
     """
 
     scene: Scene
@@ -50,6 +52,7 @@ class Solution(Shown, Motion):
         from reports.describe.facts import speed_facts
         from reports.face.solution_text import (
             show_heading,
+            show_largest,
             show_motion,
             show_notes,
             show_position,
@@ -60,15 +63,18 @@ class Solution(Shown, Motion):
         if self.time_s.size == 1:
             show_position(console, self.scene, self)
         else:
-            few = thinned(self, ROWS)
+            acting = self.forces and cleaned_forces(self.forces)
+            few = thinned(replace(self, forces=acting), ROWS)
             show_motion(console, self.scene, few)
             if few.time_s.size < self.time_s.size:
                 left = f"{few.time_s.size} of {self.time_s.size} samples; all of them: frame()"
                 console.print(left, style="dim", highlight=False)
+            if self.forces is not None:
+                show_largest(console, self.scene)
         show_notes(console, self.scene, self)
 
     def _drawn(self) -> str:
-        return drawn(self.scene)
+        return drawn(self.scene, with_forces=self.forces is not None)
 
 
 @told_at_the_call
@@ -80,6 +86,7 @@ def solve(
     points: Names = None,
     sliders: Names = None,
     bound: bool = True,
+    forces: bool = False,
 ) -> Solution:
     """The motion of a scene at some times, in closed form.
 
@@ -93,12 +100,15 @@ def solve(
         What to return, by one name or several; None is all, () is none.
     bound : bool
         Carry error bounds (about three times the work).
+    forces : bool
+        Have the reactions and the driving torque as well; NaN in dead points of the driver.
 
     Raises
     ------
     CrankcheckError
         A scene, times or names that are none; a StructureError for a mechanism without a closed
-        form, a ReachError for a driver angle that it can not be assembled in.
+        form, a ReachError for a driver angle that it can not be assembled in. Of forces: a scene
+        without mass and load, or no instant outside of dead points.
     """
     scene = scene_of(scene)
     if time_s is None:
@@ -113,6 +123,8 @@ def solve(
         bound=is_true(bound, "bound"),
     )
     _refuse_far(scene, motion)
+    if is_true(forces, "forces"):
+        motion = with_forces(scene, motion, bound=bound)
     return Solution(**vars(motion), scene=scene)
 
 
@@ -140,6 +152,7 @@ def solve_driven(
     points: Names = None,
     sliders: Names = None,
     bound: bool = True,
+    forces: bool = False,
 ) -> Solution:
     """The motion of a scene whose driver has given angles, rates and accelerations.
 
@@ -150,8 +163,8 @@ def solve_driven(
         exact; one rate, or one acceleration, counts for all samples.
     time_s : ArrayLike or None
         Times [s] that label the samples, and nothing else.
-    scene, links, points, sliders, bound
-        As of `solve`.
+    scene, links, points, sliders, bound, forces
+        As of `solve`; forces need the whole motion.
 
     Raises
     ------
@@ -170,6 +183,8 @@ def solve_driven(
         sliders=sliders,
         bound=is_true(bound, "bound"),
     )
+    if is_true(forces, "forces"):
+        motion = with_forces(scene, motion, by_law=False, bound=bound)
     return Solution(**vars(motion), scene=scene)
 
 
@@ -180,19 +195,21 @@ def thinned(motion: Motion, most: int) -> Motion:
         return motion
     kept = np.linspace(0, size - 1, most).round().astype(int)
     few = motion.each_series(lambda series: series[kept])
-    bound = motion.bound
+    acting, bound = motion.forces, motion.bound
+    acting = acting and acting.stretch(kept)
     if bound is not None:
         whole = replace(motion, links=bound.links, points=bound.points, sliders=bound.sliders)
         parts = whole.each_series(lambda series: series[kept])
         bound = replace(bound, links=parts.links, points=parts.points, sliders=parts.sliders)
-    return replace(few, time_s=motion.time_s[kept], bound=bound, conditioning={})
+    return replace(few, time_s=motion.time_s[kept], bound=bound, forces=acting, conditioning={})
 
 
-def drawn(scene: Scene, logged: Motion | None = None) -> str:
-    """The mechanism as SVG, with the paths of a run; "" where it can not go through a turn."""
+def drawn(scene: Scene, logged: Motion | None = None, *, with_forces: bool = False) -> str:
+    """The mechanism as SVG, with the paths of a run or the reference's forces; "" where it can not
+    go through a turn."""
     from reports.drawing.svg import svg
 
     try:
-        return svg(scene, logged)
+        return svg(scene, logged, with_forces=with_forces)
     except CrankcheckError:
         return ""

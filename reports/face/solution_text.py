@@ -8,12 +8,25 @@ from rich.console import Console
 
 from analytic.mechanism.cycle import Along
 from analytic.structure.mobility import Structure
+from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.facts import SpeedFacts, facts
+from reports.describe.force_tables import (
+    largest_table,
+    motion_force_tables,
+    position_force_tables,
+)
 from reports.describe.frame import cleaned
 from reports.describe.law import describe_law
 from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
+from reports.describe.with_forces import (
+    cleaned_forces,
+    dead_point_note,
+    force_certainty,
+    force_notes,
+    turn_with_forces,
+)
 from reports.plan.singular import continued_note, singular_note
 
 
@@ -46,17 +59,41 @@ def show_position(console: Console, scene: Scene, motion: Motion) -> None:
     """Print a single position in full, and how certain it is."""
     for table in position_tables(scene, cleaned(motion)):
         console.print(table, "")
-    console.print(certainty(motion), style="dim", highlight=False)
+    told = [certainty(motion)]
+    if motion.forces is not None:
+        told.append(force_certainty(motion.forces))
+        for table in position_force_tables(scene, motion, cleaned_forces(motion.forces)):
+            console.print(table, "")
+    console.print("\n".join(filter(None, told)), style="dim", highlight=False)
 
 
 def show_motion(console: Console, scene: Scene, motion: Motion) -> None:
     """Print every sample of a motion."""
     for table in motion_tables(scene, cleaned(motion), console.width):
         console.print(table, "")
+    if motion.forces is not None:
+        acting = cleaned_forces(motion.forces)
+        for table in motion_force_tables(scene, motion, acting, console.width):
+            console.print(table, "")
+
+
+def show_largest(console: Console, scene: Scene) -> None:
+    """Print the largest forces over a turn, closely sampled, and their means over time, where the
+    driver goes through a turn."""
+    try:
+        turn = turn_with_forces(scene)
+    except CrankcheckError:
+        return
+    assert turn.forces is not None
+    console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
+    for note in dead_point_note(scene, turn):
+        console.print(note, style="yellow", highlight=False, markup=False)
 
 
 def show_notes(console: Console, scene: Scene, motion: Motion) -> None:
-    """Print what change points and singular positions are on the way, if any."""
+    """Print what change points and singular positions are on the way, if any, and what of forces
+    is not determined."""
     singular = singular_note(scene, motion) if scene.driver.link in motion.links else ""
-    for note in filter(None, (continued_note(motion), singular)):
+    notes = (continued_note(motion), singular, *force_notes(scene, motion))
+    for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)

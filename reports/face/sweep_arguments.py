@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from models.errors import CrankcheckError
-from models.files import load_scene, shipped
+from models.files import every_shipped, load_scene
 from models.scene_text import scene_text
 from reports.face.arguments import each_of, kind_of, path_of, scene_of, setting_of
 from reports.plan.chosen_study import Overrides, StudyChoice, refuse_other_engine
@@ -49,7 +49,7 @@ def scene_names(scenes: object, kept: ExitStack) -> list[str]:
             names.append(str(path_of(each, "scenes")))
             continue
         scene = scene_of(each)
-        if scene.name in shipped() and load_scene(scene.name) == scene:
+        if scene.name in every_shipped() and load_scene(scene.name) == scene:
             names.append(scene.name)
             continue
         path = Path(kept.enter_context(TemporaryDirectory())) / f"{scene.name}.toml"

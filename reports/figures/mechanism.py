@@ -12,7 +12,9 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
+from models.array import Array
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.drawing.gif import draw_bodies
@@ -22,6 +24,9 @@ from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
 from reports.results.origin import facts_of
 from reports.results.overview import Report
+
+NUMBER_IN = 0.38
+"""Room for a number of the horizontal axis [inch]."""
 
 
 def draw(report: Report, name: str) -> Figure | None:
@@ -39,23 +44,32 @@ def draw(report: Report, name: str) -> Figure | None:
     title = f"{name}, {scene.driver.link} at {angle:.0f} deg"
     under = [f"{scene.source}. {scene.note}", _origin(report, scene)]
     figure, (axes,) = sheet(COLUMN_IN, replace(panels, height=height), title, [], under)
-    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    axes.set_aspect("equal", adjustable="box", anchor="N")
     per_m = min(wide / (high[0] - low[0]), height / (high[1] - low[1]))
+    frame(axes, low, high, float(per_m))
     draw_bodies(axes, scene, path, path, at, 0.5)
     paper = Sheet(low, tuple((high - low) * per_m), float(per_m), 0.1 * scene.longest_m)
-    for each in names(scene, path, at, paper, _size):
-        _write(axes, each)
+    for each in names(scene, path, at, paper, name_size):
+        write_name(axes, each)
     return figure
 
 
-def _write(axes: Axes, each: Name) -> None:
+def frame(axes: Axes, low: Array, high: Array, per_m: float) -> None:
+    """Axes in metres from corner to corner, ``per_m`` inches each, with numbers that have room."""
+    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    axes.set_aspect("equal", adjustable="box", anchor="N")
+    room = per_m * float(high[0] - low[0])
+    axes.xaxis.set_major_locator(
+        MaxNLocator(min(max(int(room / NUMBER_IN), 1), 9), steps=[1, 2, 5, 10])
+    )
+
+
+def write_name(axes: Axes, each: Name) -> None:
     """A letter or a name in its place."""
     size, style = (SIZE, "normal") if each.is_point else (SMALL, "italic")
     axes.text(each.x, each.y, each.text, size=size, style=style, ha="center", va="center", zorder=8)
 
 
-def _size(text: str, is_point: bool) -> tuple[float, float]:
+def name_size(text: str, is_point: bool) -> tuple[float, float]:
     """Width and height of a text [inch]."""
     points = SIZE if is_point else SMALL
     return width_in(text, points), 0.75 * points / POINTS

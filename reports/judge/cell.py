@@ -15,7 +15,7 @@ from reports.compare.asked import not_asked_for
 from reports.compare.beside import Beside, Truth, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
-from reports.judge.halving import followed
+from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import limits
@@ -31,7 +31,8 @@ CellRunner = Callable[..., Run]
 @dataclass(frozen=True)
 class Cell:
     """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
-    shown and judged, and does not count for the exit code. ``settings`` override the profile."""
+    shown and judged, and does not count for the exit code. ``settings`` override the profile.
+    ``with_forces`` asks for the reactions and the driving torque as well."""
 
     scene: Scene
     engine: str
@@ -43,6 +44,7 @@ class Cell:
     tolerance: Mapping[str, float] = field(default_factory=dict)
     converge: bool = True
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
+    with_forces: bool = False
 
     @property
     def turns(self) -> float:
@@ -129,7 +131,7 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
     status, reason = done.status, done.reason
     if status == "ok" and errors and errors.departure:
         status, reason = "branch-changed", left_words(errors.departure)
-    adapter, seen = runs.adapter if runs else engine(cell.engine), None
+    adapter, seen = runs.adapter if runs else engine(cell.engine), Followed()
     placing = adapter.placing(resolved(profile_of(adapter, cell.profile), cell.settings))
     if cell.converge and errors and runs:
         nature = placing, adapter.order
@@ -140,7 +142,8 @@ def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
         stopped_at_s=done.stopped_at_s,
         errors=errors,
         limits=limits(cell.scene, errors, cell.tolerance) if errors else {},
-        convergence=seen,
+        convergence=seen.places,
+        force_convergence=seen.forces,
         gated=cell.gated,
         profile="" if runs and runs.given else cell.profile,
         placing=placing,
@@ -178,6 +181,7 @@ class _Runs:
             "every": finer,
             "drive": cell.drive,
             "settings": cell.settings,
+            **({"with_forces": True} if cell.with_forces else {}),
         }
         done = self.runner(cell.scene, self.state, *names, **options)
         asked = setup(cell.scene, self.state, *names, **options)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.compare import places
+from reports.compare.compare import force_rows, places
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
@@ -18,13 +18,21 @@ from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
 
-PLACES, CLOSED = named("place"), named("place", "closure")
+PLACES, CLOSED, FORCES = named("place"), named("place", "closure"), named("force")
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
 to it what their sums may be off by (`reports.compare.drive_rounding`)."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What became of the largest error of place, and of the forces, where there are any."""
+
+    places: Convergence | None = None
+    forces: Convergence | None = None
 
 
 def followed(
@@ -35,8 +43,8 @@ def followed(
     rerun: Callable[[int], Run],
     placing: Placing = "integrated",
     order: int = 2,
-) -> Convergence | None:
-    """The largest error of place at ``dt_s``, its half and its quarter.
+) -> Followed:
+    """The largest error of place, and of the forces, at ``dt_s``, its half and its quarter.
 
     The quantity that is worst at the full step is followed, at the same instants throughout.
 
@@ -49,30 +57,51 @@ def followed(
     placing, order : Placing, int
         The engine's, see `sim.engine.Engine`.
     """
-    worst = worst_place(errors)
+    worst, force = worst_place(errors), _worst_of(errors.rows, FORCES)
     if worst is None:
-        return None
+        return Followed()
     parts = [2**halving for halving in range(HALVINGS + 1)]
     finer = [_finer(truth, dt_s, p, rerun) for p in parts[1:]]
-    same = [largest(row for row in rows if row.quantity == worst.quantity) for rows, _ in finer]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
     drive = largest(row for row in every_row if row.quantity == "drive")
     rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * errors.summed_rad)
-    return convergence(
-        [dt_s / p for p in parts],
-        [worst.pure, *(row.pure if row else math.nan for row in same)],
+    steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
+
+    def pure(followed: Error) -> list[float]:
+        same = [_worst_of(rows, [followed.quantity]) for rows, _ in finer]
+        return [followed.pure, *(row.pure if row else math.nan for row in same)]
+
+    def over(quantities: Sequence[str], rounding: float) -> list[str]:
+        numbered = zip(parts[1:], finer, strict=True)
+        texts = (
+            _over(truth.scene, dt_s, errors, tolerance, p, rows, quantities, rounding)
+            for p, (rows, _) in numbered
+        )
+        return [text for text in texts if text]
+
+    of_places = convergence(
+        steps_s,
+        pure(worst),
         "rad" if worst.unit == "rad" else "of the longest link",
         rounding,
-        faults=[fault for _, fault in finer if fault],
-        over=[
-            text
-            for p, (rows, _) in zip(parts[1:], finer, strict=True)
-            if (text := _over(truth.scene, dt_s, errors, tolerance, p, rows, rounding))
-        ],
+        faults=faults,
+        over=over(CLOSED, rounding),
         copied=_copied(errors, dt_s, parts, [errors.rows, *(rows for rows, _ in finer)], order)
         if placing == "integrated"
         else (),
     )
+    if force is None:
+        return Followed(of_places)
+    exact = max(rounding, force.pure_bound)
+    of_forces = convergence(
+        steps_s, pure(force), _share_words(force), exact, over=over(FORCES, exact)
+    )
+    return Followed(of_places, of_forces)
+
+
+def _share_words(force: Error) -> str:
+    """What an error of a force is a share of."""
+    return f"of the largest {'torque' if force.quantity == 'torque' else 'reaction'}"
 
 
 def _finer(
@@ -82,7 +111,9 @@ def _finer(
     at = f"at dt {dt_s / parts:.3g} s"
     try:
         done = rerun(parts)
-        rows = places(Beside.of(truth, done))
+        beside = Beside.of(truth, done)
+        rows = places(beside)
+        rows += force_rows(beside).rows if beside else ()
     except CrankcheckError as error:
         return [], f"{at} there is nothing to compare: {error}"
     if done.status != "ok":
@@ -97,7 +128,8 @@ def _over(
     errors: Errors,
     tolerance: Mapping[str, float],
     parts: int,
-    rows: list[Error],
+    rows: Sequence[Error],
+    quantities: Sequence[str],
     rounding: float,
 ) -> str:
     """Which errors of a finer run are over the limits of its step, the worst of each quantity.
@@ -108,8 +140,8 @@ def _over(
     finer = replace(errors, step_rad=errors.step_rad / parts, summed_rad=errors.summed_rad * parts)
     in_force = limits(scene, finer, tolerance)
     texts = []
-    for name in CLOSED:
-        full, fine = errors.worst(name), largest(row for row in rows if row.quantity == name)
+    for name in quantities:
+        full, fine = errors.worst(name), _worst_of(rows, [name])
         if full is None or fine is None or not full.pure <= before[name].number:
             continue
         limit = in_force[name].number
@@ -159,4 +191,9 @@ def _rounding(drive: Error | None, exact: float) -> float:
 
 def worst_place(errors: Errors) -> Error | None:
     """The largest total error of angle, displacement or position, as pure numbers."""
-    return largest(row for row in errors.rows if row.quantity in PLACES and row.kind == "total")
+    return _worst_of(errors.rows, PLACES)
+
+
+def _worst_of(rows: Iterable[Error], quantities: Collection[str]) -> Error | None:
+    """The largest total error of some quantities, as pure numbers."""
+    return largest(row for row in rows if row.quantity in quantities and row.kind == "total")

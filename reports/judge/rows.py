@@ -29,6 +29,12 @@ def _columns() -> Iterator[Column]:
 
 
 ERROR_COLUMNS = tuple(_columns())
+FORCE_COLUMNS = frozenset(
+    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("force")
+)
+"""Those of cells of which forces were asked for."""
+MOVING = tuple(name for name in DEFAULTS if name not in named("force"))
+"""The tolerances of what is compared of every cell."""
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
 """The first columns of the frame of errors: what an error has of that name."""
 
@@ -68,10 +74,13 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "failed_rules": " ".join(finding.rule for finding in checked.failures),
     }
     errors = checked.errors.rows if checked.errors else ()
+    wanted = DEFAULTS if checked.cell.with_forces else MOVING
     for name, *key in ERROR_COLUMNS:
+        if name in FORCE_COLUMNS and not checked.cell.with_forces:
+            continue
         worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
         row[name] = worst.maximum if worst else None
-    for name in DEFAULTS:
+    for name in wanted:
         worst = largest(e for e in errors if e.kind == "total" and e.tolerance == name)
         column = name.replace("-", "_")
         row[f"{column}_pure"] = worst.pure if worst else None
@@ -88,7 +97,23 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "settings": json.dumps(dict(checked.settings)),
         "warnings": " | ".join(checked.warnings),
     }
-    return row
+    return row | _force_convergence(checked) if checked.cell.with_forces else row
+
+
+def _force_convergence(checked: Checked) -> dict[str, object]:
+    """The worst force, and what it does when the step is halved."""
+    seen = checked.force_convergence
+    forces = largest(
+        each
+        for each in (checked.errors.rows if checked.errors else ())
+        if each.quantity in named("force") and each.kind == "total"
+    )
+    return {
+        "force_pure": forces.pure if forces else None,
+        "force_trend": seen.trend if seen else None,
+        "force_order": seen.order if seen else None,
+        "force_floor": seen.floor if seen else None,
+    }
 
 
 def _worst(*pure: object) -> float | None:

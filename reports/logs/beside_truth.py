@@ -139,6 +139,8 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
             motion = truth.at(instants[kind.order]).points[body]
             fields[kind.field] = getattr(motion, kind.field).copy()
         fields[kind.field][:, kind.axis] += wrong
+    alone, borne = isinstance(truth, AtCrank), log.forces
+    moved = _motion(log.time_s, bodies)
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
     run = Run(
         scene=scene.name,
@@ -150,7 +152,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         status="ok",
         reason="",
         settings={},
-        motion=_motion(log.time_s, bodies),
+        motion=replace(moved, forces=borne.forces if borne else None),
         gaps={**_gaps(log), **{gap.of: gap.opening_m for gap in log.gaps}},
         velocity_time_s=instants[1],
         acceleration_time_s=instants[2],
@@ -158,9 +160,10 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         start_s=float(log.time_s[0]),
         steps=steps,
         every=1,
+        with_forces=borne is not None and not alone,
+        forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None
-    alone = isinstance(truth, AtCrank)
     return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
 
 
@@ -233,20 +236,21 @@ def _gaps(log: OwnLog) -> dict[str, Array]:
 
 
 def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
-    """What of the scene's places and rates the log does not hold, quantity by quantity."""
-    scene, reference = beside.scene, beside.whole
-    held = {
-        (track.quantity, track.body)
-        for name in QUANTITIES
-        for track in beside.tracks((name,), beside.reference)
-    }
-    return tuple(
-        f"{name} of {body}"
-        for name, entry in QUANTITIES.items()
-        for measure in entry.measures
-        for body in measure.truth(scene, reference)
-        if (name, body) not in held
-    )
+    """What of the scene's places, rates and, where they were asked for, forces the log does not
+    hold, quantity by quantity."""
+    held, there = list[tuple[str, str]](), list[tuple[str, str]]()
+    for name, entry in QUANTITIES.items():
+        if entry.role == "force" and not beside.run.with_forces:
+            continue
+        reference, whole = beside.reference, beside.whole
+        if entry.role == "force":
+            instants = entry.instants(beside.run)
+            at = log.time_s if instants is None else instants
+            reference = whole = beside.truth.with_forces_at(at)
+        held += [(name, track.body) for track in beside.tracks((name,), reference)]
+        every = (measure.truth(beside.scene, whole) for measure in entry.measures)
+        there += [(name, body) for bodies in every for body in bodies]
+    return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
 
 
 def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:

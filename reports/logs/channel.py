@@ -11,6 +11,7 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.logs.force_columns import LogForces
 from reports.logs.kinds import Kind
 
 
@@ -98,7 +99,7 @@ class OwnLog:
     Several ``readings`` may be of one rate of a point, or of one link, each relative to another.
     ``copies`` are readings of a point's place as further bodies have it, which the gap is taken of;
     ``gaps`` are those that the log itself tells. ``unused`` names
-    columns that nothing was made of, with the reason.
+    columns that nothing was made of, with the reason. ``forces`` are read where they are asked for.
     """
 
     source: str
@@ -110,3 +111,4 @@ class OwnLog:
     copies: tuple[Reading, ...] = ()
     gaps: tuple[Gap, ...] = ()
     unused: tuple[tuple[str, str], ...] = ()
+    forces: LogForces | None = None

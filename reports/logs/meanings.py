@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from models.errors import CrankcheckError, cut, few
 from models.scene import Scene
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.column_meaning import GapColumn, column_meaning
 from reports.logs.columns import Columns
+from reports.logs.force_columns import TIMES, log_forces, names_force
 from reports.logs.instants import instants, refuse_far
 from reports.logs.judged_channels import judged_channels, without_lengths
 from reports.logs.map_file import ChannelTable, Map
@@ -17,9 +19,13 @@ from reports.logs.readings import Reader, gaps_told
 from reports.logs.scene_names import SceneNames
 from reports.logs.time_columns import further_instants, time_columns, time_of, unit_of_time
 
+A_FORCE = "a force, which is judged with --forces"
 
-def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> OwnLog:
-    """The log of a scene.
+
+def understood(
+    columns: Columns, scene: Scene, map_: Map | None = None, *, forces: bool = False
+) -> OwnLog:
+    """The log of a scene, its ``forces`` as well where that is asked.
 
     Parameters
     ----------
@@ -45,12 +51,14 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> OwnLo
                 f"[[channel]] {column!r}: it is the column of times; say of it in [time], or which "
                 "other column that is"
             )
-    channels, gaps, unused = _by_meaning(columns, scene, told, times)
+    borne = {name for name in columns.raw if forces and names_force(name, scene)}
+    moving = replace(columns, raw={n: x for n, x in columns.raw.items() if n not in borne})
+    channels, gaps, unused = _by_meaning(moving, scene, told, times)
     channels, lengths = without_lengths(channels, told)
     unused += lengths
     channels, copies, spare = judged_channels(channels, scene)
     unused += spare
-    if not (channels or gaps):
+    if not (channels or gaps or borne):
         in_python = "(in Python: the argument map, with {'channel': [{'column': ...}]})"
         raise CrankcheckError(f"{_nothing(columns, scene, unused)} {in_python}")
     main = times["time"]
@@ -60,6 +68,8 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> OwnLo
     refuse_far(columns, main, base, scene)
     others = {c: further_instants(columns, c, zero_s, scene) for c in times.values() if c != main}
     reader = Reader(columns, base, others)
+    ignored = {column for column, one in told.items() if one.ignore}
+    acts = further_instants(columns, TIMES, zero_s, scene) if TIMES in borne else None
     return OwnLog(
         source=columns.source,
         scene=scene,
@@ -70,10 +80,11 @@ def understood(columns: Columns, scene: Scene, map_: Map | None = None) -> OwnLo
         copies=tuple(reader.reading(each, told.get(each.column)) for each in copies),
         gaps=gaps_told(columns, gaps),
         unused=tuple(unused),
+        forces=log_forces(columns, scene, base, acts, ignored) if forces else None,
     )
 
 
-def wanted(scene: Scene, map_: Map) -> Callable[[str], bool]:
+def wanted(scene: Scene, map_: Map, *, forces: bool = False) -> Callable[[str], bool]:
     """Whether a column of that name is worth reading: others are only named."""
     named = SceneNames(scene)
     told = {one.column: one for one in map_.channel}
@@ -81,6 +92,8 @@ def wanted(scene: Scene, map_: Map) -> Callable[[str], bool]:
     def is_wanted(column: str) -> bool:
         if column in told:
             return not told[column].ignore
+        if forces and names_force(column, scene):
+            return True
         try:
             if column == map_.time.column or time_of(column):
                 return True
@@ -105,7 +118,7 @@ def _by_meaning(
             continue
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
-            unused.append((column, found))
+            unused.append((column, A_FORCE if names_force(column, scene) else found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
         else:

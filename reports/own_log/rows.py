@@ -89,6 +89,8 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
         for gap in judged.log.gaps:
             if (error.quantity, error.body) == ("gap", gap.of):
                 columns, unit = (gap.column,), (gap.unit, UNITS["length"][gap.unit])
+        if judged.log.forces and (error.quantity, error.body) in judged.log.forces.columns:
+            columns = judged.log.forces.columns[error.quantity, error.body]
         rows.append(LogRow(columns, _what(error), error, limit, *unit))
     return rows
 

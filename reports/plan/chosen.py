@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
-from models.files import load_scene, shipped
+from models.files import load_scene, names_of_scenes, shipped
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
@@ -20,7 +20,7 @@ PROFILES = ("tuned", "as-shipped")
 
 
 def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
-    """The named scenes, each once; all shipped ones where none is named.
+    """The named scenes and kinds, each scene once; all of kinematics where none is named.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
         ReachError of the reference, which names group or range.
     """
     scenes: dict[str, Scene] = {}
-    for name in dict.fromkeys(names_in(names, "scenes") or shipped()):
+    for name in names_of_scenes(names) or shipped():
         scene = load_scene(name)
         refuse_unfollowed(scene)
         if scenes.setdefault(scene.name, scene) != scene:

@@ -25,6 +25,7 @@ class StudyChoice:
     steps_per_turn: Sequence[float] = ()
     turns: float | None = None
     overrides: Overrides = field(default_factory=dict)
+    forces: bool = False
 
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
@@ -65,6 +66,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
             "scenes": list(choice.scenes) or study.scenes,
             "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
             "turns": study.turns if choice.turns is None else choice.turns,
+            "forces": study.forces or choice.forces,
         }
     )
 

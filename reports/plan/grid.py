@@ -7,10 +7,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from models.errors import CrankcheckError, few
-from models.files import scene_texts, shipped
+from models.files import names_of_scenes, scene_texts, shipped
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.forces import gives_forces, refuse_forceless
 from reports.plan.key import cell_key, digest, line_key
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
@@ -70,7 +71,10 @@ def grid(study: Study) -> Grid:
     for scene in scenes:
         name = digest(texts[scene.name])
         steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
-        refuse_singular(scene, max(dt_s * count for dt_s, count in steps))
+        longest_s = max(dt_s * count for dt_s, count in steps)
+        refuse_singular(scene, longest_s)
+        if study.forces:
+            refuse_forceless(scene, longest_s)
         for variant, settings in complete:
             for dt_s, count in steps:
                 cell = Cell(
@@ -83,6 +87,7 @@ def grid(study: Study) -> Grid:
                     drive=study.drive,
                     converge=False,
                     settings=variant.chosen,
+                    with_forces=study.forces and gives_forces(variant.engine),
                 )
                 version = versions[variant.engine]
                 line = line_key(cell, study.turns, name, version, settings)
@@ -94,7 +99,7 @@ def grid(study: Study) -> Grid:
 def refuse_endless(study: Study) -> None:
     """Refuse more cells than anybody waits for, before they are laid out. Raises CrankcheckError
     that tells what there are many of."""
-    scenes, steps = len(set(study.scenes)) or len(shipped()), len(study.steps_per_turn)
+    scenes, steps = len(names_of_scenes(study.scenes) or shipped()), len(study.steps_per_turn)
     lists = [
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
         for variant in study.variants

@@ -50,6 +50,7 @@ def line_key(
             sorted(settings.items()),
             cell.drive,
             turns,
+            *(["forces"] if cell.with_forces else ()),
         ]
     )
 

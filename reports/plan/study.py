@@ -5,6 +5,7 @@
     scenes = ["fourbar-lecture-1", "my-scene.toml"]   # all shipped ones if left out
     steps_per_turn = [90, 180, 360, 720]
     turns = 2
+    forces = false                     # reactions and torque too, of engines that report them
 
     [[variants]]
     name = "stiff"                     # how tables and legends call it
@@ -83,6 +84,7 @@ class Study(BaseModel):
     steps_per_turn: list[float] = Field(min_length=1)
     turns: float = 2.0
     drive: Literal["prescribed", "servo"] = "prescribed"
+    forces: bool = False
 
 
 def load_study(path: Path | None) -> Study:

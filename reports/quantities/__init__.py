@@ -5,16 +5,26 @@ A new quantity is an entry here. Its columns, rows, limit, rule and diagrams fol
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
+from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
 from reports.quantities.places import ANGLE, DISPLACEMENT, DRIVE, GAP, POSITION
 from reports.quantities.quantity import Quantity, Role
 from reports.quantities.rates import ACCELERATION, VELOCITY
 
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
-    for entry in (DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION)
+    for entry in (
+        *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
+        *(REACTION, NORMAL, MOMENT, TORQUE),
+    )
 }
 
 
 def named(*roles: Role) -> tuple[str, ...]:
     """The quantities that play one of some roles."""
     return tuple(name for name, entry in QUANTITIES.items() if entry.role in roles)
+
+
+MOVES: Collection[Role] = ("drive", "place", "closure", "derived")
+"""The roles of what is compared of every run."""

@@ -14,9 +14,10 @@ from sim.engine import Run
 
 BodyKind = Literal["driver", "link", "slider", "point"]
 Source = Literal["reported", "differenced"]
-Role = Literal["drive", "place", "closure", "derived"]
+Role = Literal["drive", "place", "closure", "derived", "force"]
 """Places are what convergence, geometric errors and differences are taken of. What is derived comes
-of them: its first samples, and those near change points, are rows of their own."""
+of them, and forces go with it: the first samples, and those near change points, are rows of their
+own. Forces are compared where they were asked for alone."""
 Series = Mapping[str, Array]
 """A number (T,) or two (T, 2) per sample, by body."""
 
@@ -45,7 +46,7 @@ class Measure:
 @dataclass(frozen=True)
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, and `reports.judge.start_allowance` that of ``jump`` and ``parts``."""
+    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``."""
 
     reason: str
     cap: float = math.inf
@@ -61,6 +62,7 @@ class Tolerance:
     rate: int = 0
     jump: float = 0.0
     parts: bool = False
+    makes_up: bool = False
 
 
 @dataclass(frozen=True)

@@ -153,7 +153,7 @@ def _unit(quantity: str) -> str:
         names = [n for n in QUANTITIES if quantity.startswith(f"{n.replace('-', '_')}_")]
         return QUANTITIES[names[0]].share if names else "rad"
     units = {measure.unit for entry in QUANTITIES.values() for measure in entry.measures}
-    ends = {f"_{re.sub('[ /]', '_', unit).replace('^', '')}": unit for unit in units}
+    ends = {f"_{re.sub('[ /]', '_', unit).replace('^', '').lower()}": unit for unit in units}
     end = max((end for end in ends if quantity.endswith(end)), key=len, default="")
     return ends.get(end, "")
 

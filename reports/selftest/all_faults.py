@@ -8,6 +8,7 @@ from models.errors import CrankcheckError, suggestion
 from reports.selftest import (
     clock,
     engines,
+    forces,
     handed_back,
     mechanism,
     misplaced,
@@ -19,7 +20,17 @@ from reports.selftest.fault import Fault
 
 FAULTS: dict[str, Fault] = {
     fault.name: fault
-    for module in (requests, handed_back, mechanism, engines, clock, values, misplaced, missing)
+    for module in (
+        requests,
+        handed_back,
+        mechanism,
+        engines,
+        clock,
+        values,
+        misplaced,
+        missing,
+        forces,
+    )
     for fault in module.FAULTS
 }
 """To add a fault, add it to the module of its group."""
@@ -32,11 +43,15 @@ GROUPS = {
     "log": "wrong numbers in the log",
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
+    "force": "a right motion with wrong forces",
 }
 
 
-def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
-    """The named faults, each once, or all; of them those that one of the engines can have.
+def chosen_faults(
+    names: Sequence[str], engines: Iterable[str], *, of_forces: bool = False
+) -> list[Fault]:
+    """The named faults, each once, or all, of motions or of forces; of them those that one of the
+    engines can have.
 
     Raises
     ------
@@ -54,5 +69,6 @@ def chosen_faults(names: Sequence[str], engines: Iterable[str]) -> list[Fault]:
                 f"--fault {name}: it can be planted in {able} only; "
                 f"found --engine {', '.join(sorted(chosen))}"
             )
-    order = dict.fromkeys(names or FAULTS)
+    every = [name for name, fault in FAULTS.items() if fault.of_forces == of_forces]
+    order = dict.fromkeys(names or every)
     return [FAULTS[name] for name in order if any(map(FAULTS[name].possible, chosen))]

@@ -31,7 +31,7 @@ REFUSED = "the engine does not hold"
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
 FaultGroup = Literal[
-    "request", "reference", "scene", "engine", "clock", "log", "misplaced", "missing"
+    "request", "reference", "scene", "engine", "clock", "log", "misplaced", "missing", "force"
 ]
 
 
@@ -60,6 +60,11 @@ class Fault:
     finer: bool = False
     settings: Callable[[str], Settings] = lambda _: {}
     shown: Callable[[float], str] | None = None
+
+    @property
+    def of_forces(self) -> bool:
+        """Whether it is the forces that are wrong, which its runs are asked for."""
+        return self.group == "force"
 
     @property
     def planted(self) -> float:

@@ -85,9 +85,9 @@ class Verdict:
 
 
 @cache
-def healthy(scene: str, engine: str, steps: int = STEPS) -> Checked:
-    """A run without any fault."""
-    return check(_cell(load_scene(scene), engine, steps, converge=True))
+def healthy(scene: str, engine: str, steps: int = STEPS, *, forces: bool = False) -> Checked:
+    """A run without any fault, with its forces or without."""
+    return check(_cell(load_scene(scene), engine, steps, converge=True, forces=forces))
 
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
@@ -114,7 +114,9 @@ def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = 
     """Plant the fault of that name in all its places; ``search`` for the smallest sizes too."""
     fault = FAULTS[name]
     pairs = sites([fault], engines)
-    sound = all(passes(healthy(scene, engine, steps)) for scene, engine in pairs)
+    sound = all(
+        passes(healthy(scene, engine, steps, forces=fault.of_forces)) for scene, engine in pairs
+    )
     places = [_place(fault, load_scene(scene), engine, steps, search) for scene, engine in pairs]
     return Verdict(name, tuple(places), sound)
 
@@ -166,7 +168,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     """A fault in one place."""
 
     def planted(size: float) -> Checked:
-        cell = _cell(scene, engine, steps, converge=fault.finer)
+        cell = _cell(scene, engine, steps, converge=fault.finer, forces=fault.of_forces)
         cell = replace(cell, settings=fault.settings(engine))
         return examined(cell, fault.plant(size))[0]
 
@@ -186,9 +188,9 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     )
 
 
-def _cell(scene: Scene, engine: str, steps: int, converge: bool) -> Cell:
+def _cell(scene: Scene, engine: str, steps: int, *, converge: bool, forces: bool = False) -> Cell:
     dt_s = scene.driver.law.period_s / steps
-    return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge)
+    return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge, with_forces=forces)
 
 
 def _named(fault: Fault, checked: Checked) -> Finding | None:

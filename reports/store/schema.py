@@ -30,6 +30,7 @@ TEXT = {
     "reason",
     "failed_rules",
     "trend",
+    "force_trend",
     "convergence_of",
     "settings",
     "asked",

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from models.scene import Same
 from reports.compare.beside import truth_of
 from reports.judge.cell import Cell, Checked, check
-from reports.judge.rules import PLACES, RATES, TUNABLE, judge
+from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
 from sim.engine import Settings
 from sim.registry import engine
 from sim.remedies import remedies
@@ -42,7 +42,7 @@ def _mendable(checked: Checked) -> bool:
     return (
         (cell.profile, cell.drive) == ("tuned", "prescribed")
         and checked.status in ENDS
-        and any(finding.rule in (*TUNABLE, *RATES) for finding in checked.failures)
+        and any(finding.rule in (*TUNABLE, *RATES, *FORCES) for finding in checked.failures)
     )
 
 
@@ -94,7 +94,7 @@ def _worst(checked: Checked) -> str:
     and for a run that did not end well."""
     if checked.status != "ok":
         return ""
-    failing = [f.rule for f in checked.failures if f.rule in (*PLACES, *RATES)]
+    failing = [f.rule for f in checked.failures if f.rule in (*PLACES, *RATES, *FORCES)]
     return max(failing, key=lambda rule: _share(checked, rule), default="")
 
 
@@ -108,7 +108,7 @@ def _share(checked: Checked, rule: str) -> float:
     parts = [
         finding.number / finding.limit
         for finding in checked.findings
-        if finding.rule in ([rule] if rule else (*PLACES, *RATES))
+        if finding.rule in ([rule] if rule else (*PLACES, *RATES, *FORCES))
         and finding.number is not None
         and finding.limit
     ]

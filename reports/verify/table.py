@@ -13,11 +13,11 @@ from rich.text import Text
 
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
-from reports.judge.rules import RULES
+from reports.judge.rules import FORCES, RULES
 from reports.judge.rules.rule import Finding
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count
-from reports.quantities import QUANTITIES
+from reports.quantities import QUANTITIES, named
 
 MARKS = {
     "within": Text("ok", "green"),
@@ -26,13 +26,21 @@ MARKS = {
 }
 
 
-ANGLE, GAP = (QUANTITIES[name].head for name in ("angle", "gap"))
+ANGLE, GAP, REACTION, TORQUE = (
+    QUANTITIES[name].head for name in ("angle", "gap", "reaction", "torque")
+)
 NUMBERS = {
     entry.head: [name for name, each in QUANTITIES.items() if each.head == entry.head]
     for entry in QUANTITIES.values()
-    if entry.head
+    if entry.head and entry.role != "force"
 }
 """The columns of numbers: head, and the quantities that it shows the worst of."""
+FORCE_NUMBERS = {QUANTITIES[name].head: [name] for name in named("force")}
+"""Those of the table of forces."""
+FORCES_SAID = (
+    "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
+    "torque over the run."
+)
 WIDE, STACKED = 100, 76
 """Columns of a terminal that show every number; below which the engine stands under the scene."""
 
@@ -44,6 +52,9 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
         console.print(_table(profile, gated, chosen, console.width), "")
+        loaded = [one for one in chosen if one.cell.with_forces and one.errors]
+        if loaded:
+            console.print(_table(profile, gated, loaded, console.width, forces=True), "")
     _advice(console, checked)
     console.print(_summary(checked, failed))
     console.print(_footer(checked, facts), style="dim", highlight=False)
@@ -73,18 +84,22 @@ def _mark(one: Checked) -> Text:
     return mark if one.cell.gated or one.verdict == "within" else Text(mark.plain, "yellow")
 
 
-def _heads(width: int) -> tuple[str, ...]:
+def _heads(width: int, *, forces: bool) -> tuple[str, ...]:
     """The numbers that a terminal of a width has room for; the others are in the files."""
+    if forces:
+        return tuple(FORCE_NUMBERS) if width >= STACKED else (REACTION, TORQUE)
     if width >= WIDE:
         return tuple(NUMBERS)
     return (ANGLE, GAP) if width >= STACKED else (ANGLE,)
 
 
-def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
-    """The cells of one profile, those out of tolerance first."""
-    heads, stacked = _heads(width), width < STACKED
+def _table(
+    profile: str, gated: bool, chosen: Sequence[Checked], width: int, *, forces: bool = False
+) -> Table:
+    """The cells of one profile, those out of tolerance first: how they move, or their forces."""
+    heads, stacked = _heads(width, forces=forces), width < STACKED
     role = "gated" if gated else "shown, not gated"
-    table = plain_table(f"profile {profile} ({role})")
+    table = plain_table(f"{'forces, ' * forces}profile {profile} ({role})")
     table.add_column("")
     table.add_column("scene\nengine" if stacked else "scene", overflow="fold", min_width=22)
     if not stacked:
@@ -96,21 +111,24 @@ def _table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> 
     table.add_column("when dt\nis halved", overflow="fold", min_width=least, max_width=most)
     for one in sorted(chosen, key=lambda one: one.verdict == "within"):
         names = (one.cell.scene.name, one.cell.engine)
-        table.add_row(_mark(one), *(["\n".join(names)] if stacked else names), *_cells(one, heads))
+        numbers = _cells(one, heads, forces=forces)
+        table.add_row(_mark(one), *(["\n".join(names)] if stacked else names), *numbers)
     return table
 
 
-def _cells(one: Checked, heads: Sequence[str]) -> list[Text | str]:
+def _cells(one: Checked, heads: Sequence[str], *, forces: bool) -> list[Text | str]:
     """One row, from its numbers on."""
     errors = one.errors
     if errors is None:
         return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
-    numbers = [_largest(errors, NUMBERS[head]) for head in heads]
-    seen = one.convergence.words.replace(": ", "\n") if one.convergence else ""
+    numbers = [_largest(errors, (FORCE_NUMBERS if forces else NUMBERS)[head]) for head in heads]
+    convergence = one.force_convergence if forces else one.convergence
+    seen = convergence.words.replace(": ", "\n") if convergence else ""
     if one.status != "ok":
         early = one.status != "branch-changed"  # such a run goes on to its end
         seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
-    return [*(_number(error) for error in numbers), _share(one.findings), seen]
+    own = [finding for finding in one.findings if (finding.rule in FORCES) == forces]
+    return [*(_number(error) for error in numbers), _share(own), seen]
 
 
 def _largest(errors: Errors, quantities: Sequence[str]) -> Error | None:
@@ -185,12 +203,25 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     lines = [
         "Largest errors against the closed form at the commanded time; L longest link, w driver's "
         "peak speed.",
+        *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
+        *_notes(checked),
         f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
         + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
         + "- not reported.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     return escape("\n".join(lines))
+
+
+def _notes(checked: Sequence[Checked]) -> list[str]:
+    """What is to be said of forces, each scene's once."""
+    notes = {
+        f"{one.cell.scene.name}: {note}.": None
+        for one in checked
+        if one.cell.with_forces and one.errors
+        for note in one.errors.notes
+    }
+    return list(notes)
 
 
 def _span(values: Sequence[float]) -> str:

@@ -15,4 +15,7 @@ ENGINE = Engine(
     open=ExudynSession,
     placing=placing,
     in_seconds=lambda settings: (),
+    forces_of="states",
+    applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from models.array import Array
 from models.errors import EngineError
-from models.laws import ConstantSpeed
 from models.motion import State
-from models.poses import inertia_scale
-from models.scene import Point, Scene
-from sim.engine import BodyPose, Drive, Facts, Log, Poses, Settings
+from models.scene import Scene
+from sim.engine import Drive, Facts, Log, Poses, Settings
+from sim.exudyn.applied import Applied
 from sim.exudyn.crank import CrankCourse
+from sim.exudyn.crank_drive import CrankDrive
+from sim.exudyn.friction import apply_friction
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
+from sim.exudyn.loads import apply_loads
+from sim.exudyn.multipliers import Multipliers
+from sim.exudyn.poses import LEVELS, WIDTH, body_poses
+from sim.exudyn.present import Present
+from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import checked
-from sim.exudyn.solver import constraints, held, initialized, simulation
+from sim.exudyn.solver import constraints, held, initialized, multipliers, simulation
 from sim.exudyn.system import build, masses
 
 LEAST_DT_S = 1e-9
 """exudyn takes an end of a run that is 1e-10 s away for reached."""
-LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
-WIDTH = 3
-"""Coordinates of a body: x, y, angle."""
 
 
 class ExudynSession:
@@ -41,55 +45,37 @@ class ExudynSession:
             )
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
-        self._course: CrankCourse | None = None
         self._heard: list[str] = []
         with quiet(self._heard):
             self._model = build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
-            if drive != "free":
-                self._drive_crank(drive)
+            self._applied = self._loaded(state, drive)
+            self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
             self._sensors = self._sense()
             self._system.Assemble()
             self._asked = simulation(settings, dt_s)
-            self._solver = initialized(self._system, self._asked, settings)
-            if self._course is not None:
-                self._set_off(self._course)
+            self._solver = self._initialized()
+            course = self._crank.course
+            first = None if course is None else self._set_off(course)
+            self._multipliers = Multipliers(self._system, first)
 
-    def _drive_crank(self, drive: Drive) -> None:
-        """Add what turns the crank. Constant speeds are parameters; exudyn calls back for those of
-        another law."""
-        law = self._scene.driver.law
-        ends = self._model.crank_markers(self._scene.driver.link)
-        if drive == "servo":
-            gain = float(self._settings["servo_gain"]) * inertia_scale(self._scene)
-            self._add_motor(ends, gain * law.peak_speed_rad_s)
-            return
-        told: dict[str, object]
-        if isinstance(law, ConstantSpeed):
-            told = {"velocityLevel": True, "offset": law.speed_rad_s}
-        else:
-            self._course = course = CrankCourse(law, self._start_s, self._dt)
-            told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
-        self._system.AddObject(items.ObjectConnectorCoordinate(markerNumbers=ends, **told))
+    def _loaded(self, state: State, drive: Drive) -> Applied:
+        """Add what acts from outside and in the joints."""
+        scene, applied = self._scene, Applied(self._scene, self._model)
+        if scene.loads or scene.friction:
+            present = Present(scene, state, self._model)
+            apply_loads(scene, state, drive, applied, present)
+            apply_friction(scene, drive, self._model, applied, present)
+        return applied
 
-    def _add_motor(self, ends: list[Any], gain: float) -> None:
-        """A damper to the ground, and the torque that it has at the law's speed."""
-        self._system.AddObject(
-            items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, damping=gain)
-        )
-        law, start_s = self._scene.driver.law, self._start_s
-
-        def torque(_system: object, time_s: float, _load: float) -> float:
-            return gain * float(law.at(np.array(start_s + time_s))[1])
-
-        steady = isinstance(law, ConstantSpeed)
-        self._system.AddLoad(
-            items.LoadCoordinate(
-                markerNumber=ends[1],
-                load=torque(None, 0.0, 0.0),
-                loadUserFunction=0 if steady else torque,
-            )
-        )
+    def _initialized(self) -> Any:
+        """The solver. Raises EngineError for a load that has no size at the start."""
+        try:
+            return initialized(self._system, self._asked, self._settings)
+        except ValueError:  # as exudyn has it
+            if self._applied.fault:
+                raise EngineError(self._applied.fault) from None
+            raise
 
     def _sense(self) -> list[Any]:
         """A sensor for each level of each body's coordinates."""
@@ -106,8 +92,9 @@ class ExudynSession:
             for level in LEVELS
         ]
 
-    def _set_off(self, course: CrankCourse) -> None:
-        """Start with the rates that go with the crank's, and accelerations that go with its own.
+    def _set_off(self, course: CrankCourse) -> Array:
+        """Start with the rates that go with the crank's, and accelerations that go with its own;
+        the multipliers that go with these, which exudyn does not work out then.
 
         exudyn leaves out what a driver's acceleration adds to its initial ones, and the trapezoidal
         rule would alternate about the true ones ever after.
@@ -117,14 +104,16 @@ class ExudynSession:
         _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
         ratio = self._per_crank()
         if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
-            first = course.speed(None, 0.0, None, 0.0)
+            told = course.speed(None, 0.0, None, 0.0)
             rates.SetODE2Coordinates_t(
-                np.add(rates.GetODE2Coordinates_t(own), (first - omega) * ratio), own
+                np.add(rates.GetODE2Coordinates_t(own), (told - omega) * ratio), own
             )
-        push = np.add(rates.GetODE2Coordinates_tt(), alpha * ratio)
+        push: Array = np.add(rates.GetODE2Coordinates_tt(), alpha * ratio)
         rates.SetODE2Coordinates_tt(push, own)
+        first = multipliers(self._solver, self._system, push)
         self._asked.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
         self._solver.InitializeSolver(self._system, self._asked)
+        return first
 
     def _per_crank(self) -> Array:
         """The rates of all coordinates over that of the crank; the drive is the last constraint."""
@@ -136,7 +125,7 @@ class ExudynSession:
     def facts(self) -> Facts:
         """The system as exudyn holds it now; its bodies have their centres at their nodes."""
         held_masses = masses(self._model)
-        loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.load.values()]
+        loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
         return Facts(
             version=VERSION,
@@ -171,24 +160,43 @@ class ExudynSession:
         levels = np.stack([each[rows, 1:] for each in kept], axis=1)
         good = there & np.isfinite(levels).all(axis=(1, 2))
         count = len(at) if good.all() else int(np.argmin(good))
-        poses = self._poses(levels[:count], at[:count])
+        poses = self._shown(levels[:count], at[:count])
         diverged = bool(stopped) or count < len(at)
         warnings = tuple(dict.fromkeys(self._heard))
         return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with the multipliers of each state as forces."""
+        done = self._done
+        with self._multipliers.kept(done):
+            log = self.record(steps, every)
+        at = done + every * np.arange(len(log.poses.time_s), dtype=np.float64)
+        lambdas = self._multipliers.at(self._dt * at)
+        torque = self._crank.torque(log.poses, lambdas, self._multipliers)
+        return replace(
+            log,
+            forces=reactions(
+                self._scene, self._model, self._multipliers, lambdas, log.poses, torque
+            ),
+        )
 
     def read(self) -> Poses:
         """The current state."""
         state = self._system.systemData
         levels = [np.array(getattr(state, f"GetODE2{level}")()) for level in LEVELS]
         bodies = np.stack(levels).reshape(len(LEVELS), -1, WIDTH).swapaxes(0, 1)
-        return self._poses(bodies.reshape(1, -1, WIDTH), np.array([float(self._done)]))
+        return self._shown(bodies.reshape(1, -1, WIDTH), np.array([float(self._done)]))
+
+    def _shown(self, levels: Array, at: Array) -> Poses:
+        """Poses of samples, after so many steps, of the three levels of each body in turn."""
+        return Poses(self._start_s + self._dt * at, body_poses(self._model, levels))
 
     def _advance(self, steps: int, *, log: bool) -> str:
         """Step in one go or, where steps may be cut, so that each ends in time. Why exudyn goes no
         further, in its own words; empty where it does."""
         self._asked.solution.sensors.active = log
-        if self._course is not None:
-            self._course.reach(self._done + steps)
+        if self._crank.course is not None:
+            self._crank.course.reach(self._done + steps)
         done, self._done = self._done, self._done + steps
         clock, length = self._solver.it, 1 if self._solver.it.adaptiveStep else steps
         with quiet(self._heard):
@@ -200,31 +208,6 @@ class ExudynSession:
                     self._asked.solution.file.writeInitialValues = start == done
                     if not self._solver.SolveSteps(self._system, self._asked):
                         return str(self._solver.GetErrorString())
-            except RuntimeError as error:  # all of exudyn's are
-                return plain(str(error))
+            except (RuntimeError, ValueError) as error:  # all of exudyn's are
+                return self._applied.fault or plain(str(error))
         return ""
-
-    def _poses(self, levels: Array, at: Array) -> Poses:
-        """Poses of the links' own frames, of samples of the three levels of each body in turn."""
-        poses = {}
-        for row, (name, node) in enumerate(self._model.node.items()):
-            place, rate, push = (levels[:, len(LEVELS) * row + k] for k in range(len(LEVELS)))
-            reference = self._system.GetNode(node)["referenceCoordinates"]
-            poses[name] = _pose(place + reference, rate, push, self._model.centre[name])
-        return Poses(self._start_s + self._dt * at, poses)
-
-
-def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
-    """The frame in which ``centre`` is where the node is, from coordinates and their rates."""
-    theta, omega, alpha = place[:, 2], rate[:, 2], push[:, 2]
-    c, s = np.cos(theta), np.sin(theta)
-    arm = np.stack([c * centre[0] - s * centre[1], s * centre[0] + c * centre[1]], axis=-1)
-    across = np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    return BodyPose(
-        origin=place[:, :2] - arm,
-        theta=theta,
-        velocity=rate[:, :2] - omega[:, None] * across,
-        omega=omega,
-        origin_acceleration=push[:, :2] - alpha[:, None] * across + omega[:, None] ** 2 * arm,
-        alpha=alpha,
-    )

@@ -74,6 +74,17 @@ def constraints(solver: Any, system: Any) -> Array:
     return np.array(solver.GetSystemJacobian())[count:, :count]
 
 
+def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
+    """Those of the constraints that go with accelerations, as the system stands; afterwards the
+    solver has to be initialized again."""
+    held_by = constraints(solver, system)
+    solver.ComputeMassMatrix(system)
+    solver.ComputeODE2RHS(system)
+    asked = np.array(solver.GetSystemResidual())[: len(accelerations)]
+    left = asked - np.array(solver.GetSystemMassMatrix()) @ accelerations
+    return np.asarray(np.linalg.lstsq(held_by.T, left, rcond=None)[0])
+
+
 def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
     """The settings by our names, as the solver and what it is given hold them.
 

@@ -39,8 +39,9 @@ Index = Any
 class PlaneSystem:
     """A system that is not assembled yet: of the bodies by name, in the order they were added.
 
-    ``centre`` is where the node of a body lies in the frame of its link [m]. ``joint`` is by the
-    name of a pin or slider, all that hold it. A system lives as long as its ``container``.
+    ``centre`` is where the node of a body lies in the frame of its link [m]. ``hinge`` has, by pin,
+    the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
+    ``weight`` is the load of each body's gravity. A system lives as long as its ``container``.
     """
 
     container: Any
@@ -49,8 +50,9 @@ class PlaneSystem:
     body: dict[str, Index] = field(default_factory=dict)
     node: dict[str, Index] = field(default_factory=dict)
     centre: dict[str, Point] = field(default_factory=dict)
-    joint: dict[str, list[Index]] = field(default_factory=dict)
-    load: dict[str, Index] = field(default_factory=dict)
+    hinge: dict[str, dict[tuple[str, str], Index]] = field(default_factory=dict)
+    prismatic: dict[str, Index] = field(default_factory=dict)
+    weight: dict[str, Index] = field(default_factory=dict)
 
     def marker(self, scene: Scene, name: str, point: str) -> Index:
         """A new marker at a point of a body or of the ground."""
@@ -124,7 +126,7 @@ def _weigh(scene: Scene, made: PlaneSystem, name: str) -> None:
     """Add gravity to a body."""
     if any(scene.gravity_m_s2):
         marker = made.system.AddMarker(items.MarkerBodyMass(bodyNumber=made.body[name]))
-        made.load[name] = made.system.AddLoad(
+        made.weight[name] = made.system.AddLoad(
             items.LoadMassProportional(markerNumber=marker, loadVector=[*scene.gravity_m_s2, 0.0])
         )
 
@@ -134,8 +136,8 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
     ties = joints(scene)
     for pin in ties.pins:
         first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
-        made.joint[pin.point] = [
-            made.system.AddObject(
+        made.hinge[pin.point] = {
+            (first, other): made.system.AddObject(
                 items.ObjectJointRevolute2D(
                     markerNumbers=[
                         made.marker(scene, first, pin.point),
@@ -144,7 +146,7 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
                 )
             )
             for other in others
-        ]
+        }
     for slide in ties.slides:
         slider, rider = slide.slider, riding_body(slide)
         axis = turned((1.0, 0.0), slider.direction_rad - _kept_angle(slide))
@@ -158,7 +160,7 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
             normalMarker1=[*normal, 0.0],
             constrainRotation=isinstance(slide, Prism),
         )
-        made.joint.setdefault(slider.name, []).append(made.system.AddObject(joint))
+        made.prismatic[slider.name] = made.system.AddObject(joint)
 
 
 def _kept_angle(slide: Prism | Slot) -> float:

@@ -3,5 +3,7 @@
 from sim.registry import Declaration
 
 DECLARATION = Declaration(
-    "mujoco", "mujoco", ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader")
+    "mujoco",
+    "mujoco",
+    ("snippet", "knobs", "remedies", "spoiler", "viewer", "reader", "force_recipe"),
 )

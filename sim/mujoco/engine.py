@@ -16,4 +16,6 @@ ENGINE = Engine(
     holds=holds,
     in_seconds=in_seconds,
     forces_of="states",
+    applies_loads=True,
+    applies_constant_friction=True,
 )

@@ -16,18 +16,21 @@ import numpy as np
 
 from models.array import Array
 from models.tree import Limb
+from sim.mujoco.wrench import Wrench
 
 
 class JointForces:
     """Forces in the joints of the states that it is shown, one row a state."""
 
-    def __init__(self, model: Any, limbs: tuple[Limb, ...]) -> None:
+    def __init__(self, model: Any, limbs: tuple[Limb, ...], first_load: int) -> None:
         self._bodies = np.array([model.body(limb.body).id for limb in limbs])
         self._roots = model.body_rootid[self._bodies]
         self._limbs = limbs
         self._wrenches: list[Array] = []
         self._centres: list[Array] = []
         self._loops: list[Array] = []
+        self._friction: list[Array] = []
+        self._first_load, self._sizes = first_load, list[Array]()
 
     def look(self, model: Any, data: Any) -> None:
         """Take the forces of a state; `mj_forward` has seen it."""
@@ -35,18 +38,30 @@ class JointForces:
         self._wrenches.append(data.cfrc_int[self._bodies, 2:5])
         self._centres.append(data.subtree_com[self._roots, :2])
         loops = np.zeros((model.neq, 3))
-        # Equalities come first among the rows of constraints; one that is off has none.
+        # Equalities come first among the rows of constraints; one that is off has none. Friction
+        # follows them, a row for each joint that has some.
         loops[data.efc_id[: data.ne : 3]] = data.efc_force[: data.ne].reshape(-1, 3)
         self._loops.append(loops[:, :2])
+        friction = np.zeros(model.nv)
+        rubbing = slice(data.ne, data.ne + data.nf)
+        friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
+        self._friction.append(friction)
+        self._sizes.append(data.ctrl[self._first_load :].copy())
 
-    def from_parent(self, limb: Limb) -> tuple[Array, Array, Array]:
-        """What the parent exerts on a limb: force (T, 2), its moment (T,) about a place (T, 2).
-
-        The place is where MuJoCo has it: the centre of mass of the tree that the limb is part of.
-        """
+    def from_parent(self, limb: Limb) -> Wrench:
+        """What the parent exerts on a limb, about the place where MuJoCo has it: the centre of mass
+        of the tree that the limb is part of."""
         k = self._limbs.index(limb)
-        wrench = np.array([each[k] for each in self._wrenches])
-        return wrench[:, 1:], wrench[:, 0], np.array([each[k] for each in self._centres])
+        given = np.array([each[k] for each in self._wrenches])
+        return Wrench(given[:, 1:], given[:, 0], np.array([each[k] for each in self._centres]))
+
+    def of_load(self, load: int) -> Array:
+        """The size of a load, (T,)."""
+        return np.array([each[load] for each in self._sizes])
+
+    def of_friction(self, joint: int) -> Array:
+        """What friction does along a coordinate, (T,)."""
+        return np.array([each[joint] for each in self._friction])
 
     def at_loop(self, equality: int) -> Array:
         """What a connect exerts on its first body, (T, 2)."""

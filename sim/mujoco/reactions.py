@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from models.array import Array
 from models.forces import Forces, SliderForces
 from models.joints import block_name, joined_at, local_point
-from models.scene import GROUND, Scene
+from models.mjcf_friction import rubbing_freedom
+from models.mjcf_loads import point_of_application
+from models.scene import GROUND, Point, Scene, Slider
 from models.tree import Limb, Tree
-from sim.engine import BodyPose, Poses
+from sim.engine import Poses
 from sim.mujoco.joint_forces import JointForces
+from sim.mujoco.wrench import Wrench
 
 
 def reactions(scene: Scene, tree: Tree, poses: Poses, found: JointForces) -> Forces:
     """The forces at the states of ``poses``, which act at the instants of their positions."""
-    return _Reactions(scene, poses, found).of(tree)
+    return _Reactions(scene, tree, poses, found).forces()
 
 
 class _Reactions:
     """The reactions while they are put together, joint by joint."""
 
-    def __init__(self, scene: Scene, poses: Poses, found: JointForces) -> None:
-        self._scene, self._poses, self._found = scene, poses, found
+    def __init__(self, scene: Scene, tree: Tree, poses: Poses, found: JointForces) -> None:
+        self._scene, self._tree, self._poses, self._found = scene, tree, poses, found
         count = len(poses.time_s)
         self._pins = {
             point: {body: np.zeros((count, 2)) for body in names}
@@ -32,17 +33,44 @@ class _Reactions:
         }
         self._sliders: dict[str, SliderForces] = {}
         self._torque = np.full(count, np.nan)
+        self._loads = [self._load(k) for k in range(len(scene.loads))]
 
-    def of(self, tree: Tree) -> Forces:
-        for limb in tree.limbs:
+    def forces(self) -> Forces:
+        for limb in self._tree.limbs:
             if limb.slider is None:
                 self._hinge(limb)
             else:
-                self._slide(limb)
-        for k, closure in enumerate(tree.closures):
-            self._pin(closure.point, closure.bodies[1], closure.bodies[0], self._found.at_loop(k))
+                self._slide(limb, limb.slider)
+        for k, closure in enumerate(self._tree.closures):
+            taker, giver = closure.bodies
+            self._pin(closure.point, giver, taker, self._found.at_loop(k))
         sliders = {name: self._sliders[name] for name in self._scene.sliders}
-        return Forces(self._poses.time_s, self._pins, sliders, self._torque)
+        friction = self._friction()
+        pivot = self._scene.driver_pivot
+        if pivot in friction:  # the hinge is given the drive's torque and the friction
+            self._torque = self._torque - friction[pivot]
+        time_s = self._poses.time_s
+        return Forces(time_s, self._pins, sliders, self._torque, friction=friction)
+
+    def _friction(self) -> dict[str, Array]:
+        """What rubs: in pins the couple of the first body on the second, in sliders the force of
+        the guide along the line."""
+        found = {}
+        freedoms = [(limb, freedom) for limb in self._tree.limbs for freedom in limb.freedoms]
+        for one in self._scene.friction.values():
+            for k, (limb, freedom) in enumerate(freedoms):
+                if rubbing_freedom(self._scene, limb, one.joint) is freedom:
+                    sign = self._sense(limb, one.joint) if freedom.kind == "hinge" else 1.0
+                    found[one.joint] = sign * self._found.of_friction(k)
+        return found
+
+    def _sense(self, limb: Limb, point: str) -> float:
+        """1 where the limb turns with the second body of a pin, -1 where with the first."""
+        turning = limb.body
+        slider = limb.slider
+        if slider is not None and slider.on == limb.body:  # a block turns with its guide
+            turning = block_name(slider)
+        return 1.0 if joined_at(self._scene)[point][1] == turning else -1.0
 
     def _pin(self, point: str, giver: str, taker: str, force: Array) -> None:
         """A body exerts a force on another by the pin that they share."""
@@ -50,44 +78,70 @@ class _Reactions:
         self._pins[point][giver] -= force
 
     def _hinge(self, limb: Limb) -> None:
-        force, _, _ = self._found.from_parent(limb)
-        self._pin(limb.point, limb.parent, limb.body, force)
+        given = self._from_parent(limb)
+        self._pin(limb.point, limb.parent, limb.body, given.force)
         if limb.body == self._scene.driver.link:
-            self._torque = self._moment(limb, limb.body)
+            self._torque = given.moment_about(self._point(limb.body, limb.point))
 
-    def _slide(self, limb: Limb) -> None:
-        """The guide is the parent, or else the child of what slides on it."""
-        slider = limb.slider
-        assert slider is not None
+    def _slide(self, limb: Limb, slider: Slider) -> None:
+        """The guide is the parent of what slides on it, or else its child."""
         rides = limb.parent == slider.on
-        rider, sign = (limb.body, 1.0) if rides else (limb.parent, -1.0)
-        force = sign * self._found.from_parent(limb)[0]
-        across = self._theta(slider.on) + slider.direction_rad + 0.5 * np.pi
-        normal = force[:, 0] * np.cos(across) + force[:, 1] * np.sin(across)
-        self._sliders[slider.name] = SliderForces(normal, sign * self._moment(limb, rider))
+        rider = limb.body if rides else limb.parent
+        given = self._from_parent(limb) if rides else -self._from_parent(limb)
+        moment = given.moment_about(self._point(rider, slider.point))
         if slider.link is None and slider.mass_kg == 0.0:
-            # Nothing is left in a block without mass: what the guide exerts goes to the pin.
-            self._pin(slider.point, block_name(slider), rider, force)
+            moment = moment + self._block(slider, rider, given.force)
+        across = self._theta(slider.on) + slider.direction_rad + 0.5 * np.pi
+        normal = given.force[:, 0] * np.cos(across) + given.force[:, 1] * np.sin(across)
+        self._sliders[slider.name] = SliderForces(normal, moment)
 
-    def _moment(self, limb: Limb, carrier: str) -> Array:
-        """The moment of what the parent exerts on a limb, about the point of its joint."""
-        force, moment, centre = self._found.from_parent(limb)
-        arm = centre - self._place(carrier, limb.point)
-        return np.asarray(moment + arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
+    def _block(self, slider: Slider, rider: str, force: Array) -> Array:
+        """Hand on what acts on a block without mass, in which nothing is left: what its guide and
+        the loads exert goes to the pin. Gives the moment that its guide takes from loads."""
+        block = block_name(slider)
+        self._pin(slider.point, block, rider, force)
+        moment = np.zeros_like(self._torque)
+        for (body, load), spec in zip(self._loads, self._scene.loads.values(), strict=True):
+            if spec.body == block and spec.point is None:
+                moment -= load.moment
+            elif spec.body == block:
+                self._pin(slider.point, block, body, load.force)
+        return moment
 
-    def _place(self, body: str, point: str) -> Array:
-        """Where a body has one of its points, (T, 2)."""
-        x, y = local_point(self._scene, body, point)
-        theta, origin = self._theta(body), self._origin(body)
+    def _from_parent(self, limb: Limb) -> Wrench:
+        """What the parent exerts on a limb: what MuJoCo has, less the loads on all that hangs on
+        the limb, which it takes to come through the joint."""
+        given = self._found.from_parent(limb)
+        hanging = {limb.body}
+        for other in self._tree.limbs:  # parents before children
+            if other.parent in hanging:
+                hanging.add(other.body)
+        for body, load in self._loads:
+            if body in hanging:
+                given = given - load
+        return given
+
+    def _load(self, k: int) -> tuple[str, Wrench]:
+        """The body on which a load acts in MuJoCo, and what it exerts there."""
+        load = list(self._scene.loads.values())[k]
+        size, at = self._found.of_load(k), point_of_application(self._scene, load)
+        place = self._place(at.body, at.place)
+        if load.point is None:
+            return at.body, Wrench(np.zeros_like(place), size, place)
+        angle = at.direction_rad + (self._theta(at.body) if at.turns else np.zeros_like(size))
+        force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        return at.body, Wrench(force, np.zeros_like(size), place)
+
+    def _point(self, body: str, point: str) -> Array:
+        return self._place(body, local_point(self._scene, body, point))
+
+    def _place(self, body: str, local: Point) -> Array:
+        """Where a body has a place of its frame, (T, 2)."""
+        theta = self._theta(body)
         c, s = np.cos(theta), np.sin(theta)
-        return np.stack([origin[:, 0] + c * x - s * y, origin[:, 1] + s * x + c * y], axis=-1)
+        x, y = local
+        arm = np.stack([c * x - s * y, s * x + c * y], axis=-1)
+        return arm if body == GROUND else arm + self._poses.bodies[body].origin
 
     def _theta(self, body: str) -> Array:
-        return np.zeros_like(self._torque) if body == GROUND else self._pose(body).theta
-
-    def _origin(self, body: str) -> Array:
-        return np.zeros((len(self._torque), 2)) if body == GROUND else self._pose(body).origin
-
-    def _pose(self, body: str) -> BodyPose:
-        bodies: Mapping[str, BodyPose] = self._poses.bodies
-        return bodies[body]
+        return np.zeros_like(self._torque) if body == GROUND else self._poses.bodies[body].theta

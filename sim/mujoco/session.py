@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from models.array import Array
 from models.errors import EngineError
 from models.mjcf import build
+from models.mjcf_friction import planned
 from models.mjcf_options import Writing, driver_joint, has_control
 from models.motion import State
 from models.scene import Point, Scene
@@ -16,9 +19,10 @@ from models.tree import Tree, plan
 from sim import drive as drives
 from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue
 from sim.mujoco.joint_forces import JointForces
+from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import reactions
 from sim.mujoco.settings import INTEGRATORS, OF_DRIVES, holds, velocity_shift, writing
-from sim.mujoco.stepped import VERSION, SteppedModel, compiled
+from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 from sim.settings import SettingError
 from sim.tree_poses import body_poses
 
@@ -35,11 +39,12 @@ class MujocoSession(SteppedModel):
         self._tree = tree = _tree(scene, state, chosen)
         self._limbs = tree.limbs
         self._closed = ", ".join(dict.fromkeys(c.point for c in tree.closures))
-        with self._quiet():
+        with heard(self._warnings.append):
             model = compiled(build(scene, state, chosen, tree))
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
+        self._loading = Loading(scene, self._model, self._limbs, drive, state.time_s)
         self._free = chosen.free
         self._crank = int(self._model.joint(driver_joint(scene)).dofadr[0])
         if not self._free:
@@ -83,7 +88,7 @@ class MujocoSession(SteppedModel):
 
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of `mj_forward` at each kept state."""
-        found = JointForces(self._model, self._limbs)
+        found = JointForces(self._model, self._limbs, self._loading.first)
         log = self._recorded(steps, every, found.look)
         return replace(log, forces=reactions(self._scene, self._tree, log.poses, found))
 
@@ -96,18 +101,29 @@ class MujocoSession(SteppedModel):
 
     @property
     def _stays(self) -> bool:
-        return not self._controlled
+        return not self._model.nu
 
     def _start(self) -> Poses:
         """The current state; the accelerations of the first are there from the opening."""
-        if self._done or self._controlled:  # by what the law asks for, which the opening left out
+        if self._done or self._model.nu:  # by what the law asks for, which the opening left out
             return self.read()
         return self._placed(self._full_state()[None], np.zeros(1), self._data.qacc[None].copy())
 
     def _controls(self, steps: int) -> Array | None:
-        """The control of each of the next steps; None where the model has no actuator."""
-        if not self._controlled:
+        """The controls of each of the next steps; None where the model has no actuator.
+
+        A load that is known ahead is held through a step at its size in the middle of what the
+        step makes of the velocity. At the start of a step of RK4 it would come half a step late:
+        of first order, where this is of second.
+        """
+        if not self._model.nu:
             return None
+        middle = self._done + np.arange(steps, dtype=np.float64) + 0.5 + self._shift
+        loads = self._loading.at_times(self._start_s + self._dt * middle)
+        return np.hstack([self._driving(steps), loads]) if self._controlled else loads
+
+    def _driving(self, steps: int) -> Array:
+        """The control of the crank in each of the next steps, (steps, 1)."""
         law, end = self._scene.driver.law, self._done + steps
         if self._servo:  # the speed that the step leads to is its mean speed
             return drives.chords(law, self._start_s, self._dt, self._done, end - 1)[:, None]
@@ -123,11 +139,21 @@ class MujocoSession(SteppedModel):
         return Poses(self._start_s + self._dt * at, poses, lag)
 
     def _control_at(self, at: Array) -> Array | None:
-        """The law's own speed or acceleration at the steps, for the actuator."""
-        if not self._controlled:
+        """The law's own speed or acceleration at the steps, and the sizes of the loads."""
+        if not self._model.nu:
             return None
-        _, omega, alpha = self._scene.driver.law.at(self._start_s + self._dt * at)
-        return (omega if self._servo else alpha)[:, None]
+        time_s = self._start_s + self._dt * at
+        loads = self._loading.at_times(time_s)
+        if not self._controlled:
+            return loads
+        _, omega, alpha = self._scene.driver.law.at(time_s)
+        return np.column_stack([omega if self._servo else alpha, loads])
+
+    @contextmanager
+    def _at_work(self) -> Iterator[None]:
+        """As of any model; and loads follow the motion."""
+        with super()._at_work(), self._loading.following():
+            yield
 
 
 def _pair(vector: Array) -> Point:
@@ -138,7 +164,7 @@ def _pair(vector: Array) -> Point:
 def _tree(scene: Scene, state: State, chosen: Writing) -> Tree:
     """The tree; a fault that only the setting ``close`` causes is a fault of the setting."""
     try:
-        return plan(scene, state, chosen.close, delay_s=chosen.delay_s)
+        return planned(scene, state, chosen)
     except EngineError as error:
         if not chosen.close:
             raise

@@ -34,6 +34,7 @@ RANGES = {
     "servo_gain": (1e-9, 1e15),
 }
 """What MuJoCo takes; it clips impedances to these without a word."""
+ITERATIONS_OF_FRICTION = 20
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 """What a free crank does not have."""
 
@@ -122,7 +123,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
             "timestep": dt_s,
             "integrator": str(held["integrator"]),
             "solver": str(settings["solver"]),
-            "iterations": int(settings["iterations"]),
+            "iterations": _iterations(scene, settings),
             "tolerance": float(held["tolerance"]),
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
@@ -135,6 +136,13 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
         delay_s=velocity_shift(settings, drive) * dt_s,
         free=drive == "free",
     )
+
+
+def _iterations(scene: Scene, settings: Settings) -> int:
+    """Those of the settings, where friction does not need more: with it, which of two signs it has
+    makes the solver's problem more than quadratic."""
+    asked = int(settings["iterations"])
+    return max(asked, ITERATIONS_OF_FRICTION) if scene.friction else asked
 
 
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:

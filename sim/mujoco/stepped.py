@@ -54,7 +54,7 @@ class SteppedModel(ABC):
 
     def _forward(self) -> None:
         """Work out what follows from the state that was set."""
-        with self._quiet():
+        with self._at_work():
             mujoco.mj_forward(self._model, self._data)
 
     @abstractmethod
@@ -78,7 +78,7 @@ class SteppedModel(ABC):
         """Advance in C without logging."""
         if not steps:
             return
-        with self._quiet():
+        with self._at_work():
             if self._stays:
                 mujoco.mj_step(self._model, self._data, steps)
             else:
@@ -93,7 +93,7 @@ class SteppedModel(ABC):
         """As `record`; ``look`` is shown each kept state with all that follows from it."""
         first = self._full_state()[None]
         began = time.perf_counter()
-        with self._quiet():
+        with self._at_work():
             states = self._roll(steps)
         wall = time.perf_counter() - began
         kept = np.concatenate([first, states[every - 1 :: every]])
@@ -101,14 +101,14 @@ class SteppedModel(ABC):
         good = np.abs(kept[:, 0] - kept[0, 0] - (at - self._done) * self._dt) < 0.5 * self._dt
         diverged = any(self._data.warning[kind].number for kind in DIVERGED)
         count = len(kept) if good.all() else int(np.argmin(good))
-        with self._quiet():
+        with self._at_work():
             poses = self._poses(kept[:count], at[:count], look)
         self._done += steps
         return Log(poses, (count - 1) * every, diverged or count < len(kept), self.taken(), wall)
 
     def read(self) -> Poses:
         """The current state."""
-        with self._quiet():
+        with self._at_work():
             return self._poses(self._full_state()[None], np.array([float(self._done)]))
 
     def taken(self) -> tuple[str, ...]:
@@ -162,8 +162,8 @@ class SteppedModel(ABC):
         return states[:, 1 : 1 + nq], states[:, 1 + nq : 1 + nq + nv]
 
     @contextmanager
-    def _quiet(self) -> Iterator[None]:
-        """Collect MuJoCo's warnings."""
+    def _at_work(self) -> Iterator[None]:
+        """What goes on while MuJoCo works: its warnings are collected."""
         with heard(self._warnings.append):
             yield
 

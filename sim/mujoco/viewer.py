@@ -4,39 +4,49 @@ from __future__ import annotations
 
 from typing import Any
 
-import mujoco  # type: ignore[import-untyped]  # ships no types
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import mujoco.viewer  # type: ignore[import-untyped]  # as above
 import numpy as np
 
 from models.laws import Law
 from models.mjcf import build
+from models.mjcf_options import exact, has_control
 from models.motion import State
 from models.scene import Scene
+from models.tree import plan
+from sim.mujoco.loading import Loading
 from sim.viewing import Viewer
 
 
 def show(scene: Scene, start: State) -> None:
     """Open a scene, assembled at the start; returns when the window is closed.
 
-    Where the model has an actuator it is the motor of the crank, which gets the acceleration of
-    the law at every step.
+    Where the model has actuators, the motor of the crank gets the acceleration of the law at every
+    step, and the loads their sizes.
     """
-    model = mujoco.MjModel.from_xml_string(build(scene, start))
+    writing = exact(scene)
+    tree = plan(scene, start)
+    model = mujoco.MjModel.from_xml_string(build(scene, start, writing, tree))
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)
     if model.nu:
-        mujoco.set_mjcb_control(driven(scene.driver.law))
+        law = scene.driver.law if has_control(scene, writing) else None
+        loading = Loading(scene, model, tree.limbs, "prescribed", 0.0)
+        mujoco.set_mjcb_control(_controlled(law, loading))
     try:
         mujoco.viewer.launch(model, state)
     finally:
         mujoco.set_mjcb_control(None)
 
 
-def driven(law: Law) -> Any:
-    """The control callback that drives the crank by a law."""
+def _controlled(law: Law | None, loading: Loading) -> Any:
+    """The control callback that drives the crank by a law, and sizes the loads."""
 
     def control(_model: Any, data: Any) -> None:
-        data.ctrl[0] = law.at(np.array([data.time]))[2][0]
+        if law is not None:
+            data.ctrl[0] = law.at(np.array([data.time]))[2][0]
+        for k, load in enumerate(loading.loads):
+            data.ctrl[loading.first + k] = loading.size(load, data)
 
     return control
 

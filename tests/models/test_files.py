@@ -12,7 +12,17 @@ from pathlib import Path
 import pytest
 
 from models.errors import CrankcheckError, SceneError
-from models.files import load_scene, parse_scene, read_scene, shipped
+from models.files import (
+    every_shipped,
+    find_scenes,
+    kinds,
+    load_scene,
+    names_of_scenes,
+    parse_scene,
+    read_scene,
+    scene_texts,
+    shipped,
+)
 from models.laws import Oscillating
 from models.regular import MOST_TEXT
 
@@ -32,7 +42,7 @@ start_deg = 90.0
 """
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", every_shipped())
 def test_shipped_scene_loads_under_its_file_name_and_says_its_source(name: str) -> None:
     scene = load_scene(name)
     assert scene.name == name
@@ -48,6 +58,31 @@ def test_enough_scenes_ship() -> None:
         "tangent", "sixbar-watt", "sixbar-stephenson",
     }  # fmt: skip
     assert asked <= set(shipped())
+    loaded = {
+        "shaper-cutting", "engine-four-stroke", "compressor", "fourbar-gravity", "toggle-press",
+    }  # fmt: skip
+    assert loaded <= set(shipped("forces"))
+
+
+def test_no_two_kinds_share_a_name_and_no_scene_is_called_as_a_kind() -> None:
+    names = [name for kind in kinds() for name in shipped(kind)]
+    assert len(set(names)) == len(names)
+    assert not set(kinds()) & set(names)
+    assert kinds()[0] == "kinematics"
+
+
+def test_all_scenes_of_a_kind_are_meant_by_its_name_and_those_of_no_kind_by_none() -> None:
+    several = ["shaper", "forces", "toggle-press", "shaper"]
+    assert names_of_scenes(several) == ["shaper", *shipped("forces")]
+    assert names_of_scenes("kinematics") == list(shipped())
+    assert scene_texts(()).keys() == scene_texts("kinematics").keys() == shipped().keys()
+    assert scene_texts("forces").keys() == shipped("forces").keys()
+    assert [path.stem for path in find_scenes("forces")] == list(shipped("forces"))
+
+
+def test_one_scene_is_not_a_kind() -> None:
+    with pytest.raises(CrankcheckError, match="'forces': a kind of scenes; name one: compressor"):
+        load_scene("forces")
 
 
 def test_bar_is_short_for_two_points_on_the_x_axis() -> None:

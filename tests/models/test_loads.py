@@ -101,7 +101,7 @@ def test_a_scene_without_loads_says_nothing_of_them(name: str) -> None:
 
 def test_a_characteristic_of_another_kind_has_no_words() -> None:
     class Own(Characteristic):
-        at = steepest = rounding = lambda *_: 0.0  # type: ignore[assignment]
+        at = steepest = rounding = carried = lambda *_: 0.0  # type: ignore[assignment]
 
     scene = load_scene("fourbar-lecture-1")
     with pytest.raises(CrankcheckError, match="load x: a scene file has no words for a Own"):

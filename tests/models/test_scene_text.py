@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from models.errors import CrankcheckError
-from models.files import load_scene, parse_scene, shipped
+from models.files import every_shipped, load_scene, parse_scene
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.scene_text import scene_text
 
@@ -20,7 +20,7 @@ LAWS = [
 ]
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", every_shipped())
 def test_every_shipped_scene_reads_back_as_itself(name: str) -> None:
     scene = load_scene(name)
     again = parse_scene(scene_text(scene), name)

@@ -7,7 +7,7 @@ import random
 import re
 from collections.abc import Callable, Iterator
 
-from models.files import shipped
+from models.files import every_shipped
 
 Rng = random.Random
 NUMBER = re.compile(r"(?<![\w.-])-?\d+\.\d*(?:e[+-]?\d+)?(?![\w.])")
@@ -58,7 +58,7 @@ def mutant(seed: int) -> bytes:
 def retied() -> Iterator[tuple[str, bytes]]:
     """Every shipped file with one name in place of another, each with each: what was done, and the
     file."""
-    for name, path in shipped().items():
+    for name, path in every_shipped().items():
         text = path.read_text(encoding="utf-8")
         body = text.index("[ground]")
         found = [one for one in TIED.finditer(text) if one.start() > body]
@@ -72,7 +72,7 @@ def retied() -> Iterator[tuple[str, bytes]]:
 
 def stretched() -> Iterator[tuple[str, bytes]]:
     """Every shipped file with one number in place of each of its own."""
-    for name, path in shipped().items():
+    for name, path in every_shipped().items():
         text = path.read_text(encoding="utf-8")
         for one in NUMBER.finditer(text):
             for new in ENDS:
@@ -81,7 +81,7 @@ def stretched() -> Iterator[tuple[str, bytes]]:
 
 
 def _shipped(rng: Rng) -> str:
-    return rng.choice(list(shipped().values())).read_text(encoding="utf-8")
+    return rng.choice(list(every_shipped().values())).read_text(encoding="utf-8")
 
 
 def _number(rng: Rng, text: str) -> str:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
+from models.loads import Load, Stroke
 from models.scene import Driver, Scene
+
+OPPOSITE: dict[Stroke, Stroke] = {"both": "both", "forward": "backward", "backward": "forward"}
 
 
 def faster_law(law: Law, factor: float) -> Law:
@@ -25,10 +29,28 @@ def faster_law(law: Law, factor: float) -> Law:
 
 
 def sped_up(scene: Scene, factor: float) -> Scene:
-    """The scene driven ``factor`` times as fast through the same angles, in similar motion."""
+    """The scene driven ``factor`` times as fast through the same angles, in similar motion.
+
+    Loads and constant friction grow as inertia does. Where the factor is below 0 a stroke forward
+    becomes one backward; friction turns round with the motion, so forces with it are others then.
+    """
     g = scene.gravity_m_s2
+
+    def load(old: Load) -> Load:
+        stretch = 1.0 / factor if old.over == "time" else 1.0
+        return replace(
+            old,
+            characteristic=old.characteristic.carried(factor**2, stretch=stretch),
+            stroke=old.stroke if factor > 0.0 else OPPOSITE[old.stroke],
+        )
+
+    def rubbing(old: Friction) -> Friction:
+        return replace(old, size=old.size * factor**2) if isinstance(old, ConstantFriction) else old
+
     return replace(
         scene,
         driver=Driver(scene.driver.link, faster_law(scene.driver.law, factor)),
         gravity_m_s2=(g[0] * factor**2, g[1] * factor**2),
+        loads={name: load(old) for name, old in scene.loads.items()},
+        friction={name: rubbing(old) for name, old in scene.friction.items()},
     )

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rich.console import Console
 
 from models.errors import CrankcheckError, listed
-from models.files import find_scene, parse_scene, scene_texts
+from models.files import find_scenes, parse_scene, scene_texts
 from models.scene import Scene
 from reports.advise.advice import Advice, offers
 from reports.advise.choices import choices
@@ -36,7 +36,7 @@ def run_advise(request: AdviseRequest, console: Console, progress: Console) -> i
     """Do it; returns the exit code: 0 where some settings reach the target, 1 where none do, 2
     where none could be run. Raises CrankcheckError for what can be told of the request before
     anything runs."""
-    read = [*map(find_scene, request.scenes), *stored_files(request.study)]
+    read = [*find_scenes(request.scenes), *stored_files(request.study)]
     check_outputs({"--json": request.json}, inputs=read)
     stored = _study(request)
     scenes, texts = _scenes(request, stored)

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scene
+from models.files import find_scenes
 from reports.cli.changes import HistoryRequest
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify
@@ -132,7 +132,7 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
     """Refuse outputs that can not be written, before anything is installed."""
     if request.folder is None:
         return
-    read = [find_scene(name) for name in request.scenes]
+    read = find_scenes(request.scenes)
     check_folder(request.folder, "-o", FILES, inputs=read)
     for version in versions:
         refuse_link(request.folder / version.name, "-o")

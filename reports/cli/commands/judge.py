@@ -44,7 +44,12 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
         console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)
         return 0
     # No name for the columns, which take as much memory as all readings: let go when understood.
-    log = understood(read_columns(request.log, map_.layout, wanted(scene, map_)), scene, map_)
+    log = understood(
+        read_columns(request.log, map_.layout, wanted(scene, map_, forces=request.forces)),
+        scene,
+        map_,
+        forces=request.forces,
+    )
     judged = judge_log(log, asked)
     facts = provenance({})
     try:
@@ -68,6 +73,11 @@ def _checked(request: JudgeRequest) -> LogRequest:
             check_file(path, option, endings[option])
     files |= {"--json": request.json, "--junit": request.junit}
     check_outputs(files, inputs=(find_scene(request.scene), request.log, request.map))
+    if request.forces and request.drive == "logged":
+        raise CrankcheckError(
+            "--forces: with --drive logged the geometry alone is judged, and forces take rates; "
+            "use --drive scene or fitted"
+        )
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
     return LogRequest(

@@ -13,7 +13,7 @@ from rich.text import Text
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.errors import harmless
-from models.files import find_scene, load_scene, shipped
+from models.files import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
 from reports.describe.law import describe_law
@@ -23,15 +23,23 @@ from sim.registry import available, brought, engine
 
 
 def scenes(console: Console) -> None:
-    """The shipped scenes: structure, driver and source."""
-    table = plain_table(gap=2)
-    for head in ("scene", "groups", "driver", "source"):
-        table.add_column(head, overflow="fold", no_wrap=head == "scene")
-    for name in shipped():
-        scene = load_scene(name)
-        groups = " + ".join(group.kind for group in analyse(scene).groups)
-        table.add_row(name, groups, describe_law(scene), Text(scene.source))
-    console.print(table, highlight=False)
+    """The shipped scenes by kind: structure, driver and source."""
+    for kind in kinds():
+        console.print(Text(_heading(kind), "bold"))
+        table = plain_table(gap=2)
+        for head in ("scene", "groups", "driver", "source"):
+            table.add_column(head, overflow="fold", no_wrap=head == "scene")
+        for name in shipped(kind):
+            scene = load_scene(name)
+            groups = " + ".join(group.kind for group in analyse(scene).groups)
+            table.add_row(name, groups, describe_law(scene), Text(scene.source))
+        console.print(table, highlight=False)
+
+
+def _heading(kind: str) -> str:
+    """A kind, and how to ask for all its scenes."""
+    by_name = f"all of them by `{kind}`, as in `crankcheck verify {kind}`"
+    return f"{kind}: {'all of them where no scene is named' if kind == KINEMATICS else by_name}"
 
 
 def engines(console: Console, settings: bool) -> None:

@@ -38,7 +38,7 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
     nothing, and where nothing is planted of what need not be seen.
     Raises CrankcheckError for an unknown engine or fault, and an output that can not be written."""
     engines = chosen_engines(request.engines)
-    faults = chosen_faults(request.faults, engines)
+    faults = chosen_faults(request.faults, engines, of_forces=request.forces)
     check_outputs({"--csv": request.csv, "--json": request.json}, request.folder, IN_FOLDER)
     for name in engines:
         if name not in offering("spoiler"):
@@ -47,8 +47,12 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
         task = bar.add_task("planting", total=len(faults))
         names = [fault.name for fault in faults]
         verdicts = tried_all(names, engines, request.jobs, lambda _: bar.advance(task))
-    sound = [healthy(scene, name) for scene, name in sites(faults, engines)]
-    passed = [] if request.faults else passed_by(engines)
+    sound = [
+        healthy(scene, name, forces=of_forces)
+        for of_forces in dict.fromkeys(fault.of_forces for fault in faults)
+        for scene, name in sites([f for f in faults if f.of_forces == of_forces], engines)
+    ]
+    passed = [] if request.faults or request.forces else passed_by(engines)
     facts = provenance({name: engine(name).version() for name in engines})
     try:
         _write(request, verdicts, sound, passed, facts)

@@ -19,10 +19,20 @@ from models.scene import Scene
 from reports.cli.showing import SolveRequest
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
-from reports.face.solution_text import show_heading, show_motion, show_notes, show_position
+from reports.describe.with_forces import with_forces
+from reports.face.scene_report import page_of
+from reports.face.solution_text import (
+    show_heading,
+    show_largest,
+    show_motion,
+    show_notes,
+    show_position,
+)
+from reports.figures.forces.writing import figure_files, written_figures
 from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
-from reports.output.write import check_file
+from reports.output.write import check_file, check_folder, write
 
+PAGE = ".html"
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
@@ -41,8 +51,10 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         )
     if request.clockwise and request.at_deg is None:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
+    _check_figures(request)
     if request.output is not None:
-        check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
+        _check_page(request)
+        check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
@@ -51,10 +63,16 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         if request.at_deg is None
         else _at(scene, request.at_deg, clockwise=request.clockwise)
     )
+    if request.forces:
+        motion = with_forces(scene, motion, by_law=request.at_deg is None)
+    if request.figures is not None:
+        told = harmless(written_figures(scene, request.figures))
+        console.print(told, highlight=False, markup=False, soft_wrap=True)
+        if request.output is None:
+            return
     if request.output is not None:
-        _write(request.output, scene, motion)
-        told = harmless(f"{request.output}: {motion.time_s.size} samples of {scene.name}")
-        console.print(told, highlight=False, markup=False)
+        told = harmless(_write(request.output, scene, motion))
+        console.print(told, highlight=False, markup=False, soft_wrap=True)
         return
     speeds = speed_facts(scene, along, clockwise=request.clockwise)
     show_heading(console, scene, structure, along, speeds)
@@ -62,10 +80,36 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         show_position(console, scene, motion)
     else:
         show_motion(console, scene, motion)
+        if request.forces:
+            show_largest(console, scene)
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )
     show_notes(console, scene, motion)
+
+
+def _check_page(request: SolveRequest) -> None:
+    """Refuse a page of a single position, or of other than a turn."""
+    given = [request.at_deg, request.turns, request.steps_per_turn]
+    is_page = request.output is not None and request.output.suffix.lower() == PAGE
+    if is_page and any(each is not None for each in given):
+        raise CrankcheckError(
+            f"-o {request.output}: a page shows a turn; leave out --at-deg, --turns and "
+            "--steps-per-turn"
+        )
+
+
+def _check_figures(request: SolveRequest) -> None:
+    """Refuse figures of what is not asked for, before anything is worked out."""
+    if request.figures is None:
+        return
+    if not request.forces:
+        raise CrankcheckError("--figures: it draws forces; give --forces as well")
+    if request.at_deg is not None:
+        raise CrankcheckError(
+            f"--figures with --at-deg {request.at_deg:g}: they are of a turn; leave one of them out"
+        )
+    check_folder(request.figures, "--figures", figure_files())
 
 
 def _along(scene: Scene, text: str) -> Along:
@@ -124,7 +168,12 @@ def _over(scene: Scene, request: SolveRequest) -> Motion:
     return solve(scene, step_s * np.arange(samples, dtype=np.float64))
 
 
-def _write(path: Path, scene: Scene, motion: Motion) -> None:
-    """The motion as a file of the kind that the ending says."""
+def _write(path: Path, scene: Scene, motion: Motion) -> str:
+    """The motion as a file of the kind that the ending says; returns what was written, in a
+    line."""
+    if path.suffix.lower() == PAGE:
+        write(path, page_of(scene, with_forces=motion.forces is not None))
+        return f"{path}: {scene.name} over one turn"
     origin = {"scene": scene.name, "source": scene.source}
     write_frame(path, motion_frame(motion), "motion", origin)
+    return f"{path}: {motion.time_s.size} samples of {scene.name}"

@@ -11,6 +11,7 @@ from models.errors import CrankcheckError, shown
 from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
 from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
+from reports.plan.forces import silent_note
 from reports.plan.study import Study, StudyValue, load_study
 from reports.sweep.whole import Manner, swept
 from reports.workers.isolated import checked_limits
@@ -33,7 +34,10 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
         again=request.again,
     )
     command = ["crankcheck", *sys.argv[1:]]
-    laid, done = swept(asked(request), request.folder, manner, command, progress)
+    study = asked(request)
+    if study.forces and (note := silent_note([one.engine for one in study.variants])):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
+    laid, done = swept(study, request.folder, manner, command, progress)
     show_sweep(console, request.folder, len(laid.tasks), done)
     return 0
 
@@ -49,6 +53,7 @@ def asked(request: SweepRequest) -> Study:
         _steps(request.steps_per_turn),
         request.turns,
         _overrides(request.settings, engines),
+        request.forces,
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 

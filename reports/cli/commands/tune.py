@@ -14,7 +14,7 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError
-from models.files import find_scene, read_text
+from models.files import find_scenes, read_text
 from reports.cli.measuring import TuneRequest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
@@ -151,7 +151,7 @@ def _asked(
 ) -> dict[str, object]:
     """All that the results of the trials depend on, as plain values."""
     goal = bench.goal
-    texts = [read_text(find_scene(name)) for name in request.scenes]
+    texts = [read_text(path) for path in find_scenes(request.scenes)]
     return {
         "scene": [scene.name for scene in goal.scenes],
         "scene text": list(dict.fromkeys(digest(text) for text in texts)),

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from models.errors import CrankcheckError
-from models.files import find_scene
+from models.files import find_scenes
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands.stored_files import stored_files
 from reports.diff.junit import suite as diff_suite
@@ -27,6 +27,7 @@ from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
+from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
 from reports.results.changes.changes import Diff, compare
@@ -57,12 +58,13 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     to be run. Raises CrankcheckError for what can be told of the request before running."""
     cells = plan(request)
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    read = [find_scene(name) for name in request.scenes]
+    read = find_scenes(request.scenes)
     check_outputs(files, request.folder, IN_FOLDER, inputs=read)
     check_outputs(files, inputs=stored_files(request.baseline))  # which -o may go on from
     kept = request.baseline or request.folder or request.json
     digests = scene_digests(request.scenes) if kept else {}
-    for note in passages(cells):
+    silent = silent_note(chosen_engines(())) if request.forces and not request.engines else ""
+    for note in filter(None, (*passages(cells), silent)):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     base = _baseline(request, cells, digests)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -94,7 +96,8 @@ def _code(checked: Sequence[Checked], diff: Diff | None, progress: Console) -> i
 
 
 def plan(request: VerifyRequest) -> list[Cell]:
-    """The cells that the request asks for. Raises CrankcheckError for what can not be run."""
+    """The cells that the request asks for; with forces, engines that report none are run without
+    unless they are named. Raises CrankcheckError for what can not be run."""
     tolerance = parse(request.tolerance)
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
@@ -111,6 +114,8 @@ def plan(request: VerifyRequest) -> list[Cell]:
     for scene in scenes:
         dt_s, count = steps[scene.name]
         refuse_singular(scene, dt_s * count)
+        if request.forces:
+            refuse_forceless(scene, dt_s * count)
     return [
         Cell(
             scene=scene,
@@ -122,6 +127,7 @@ def plan(request: VerifyRequest) -> list[Cell]:
             drive=cast(Drive, request.drive),
             tolerance=tolerance,
             converge=request.converge,
+            with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
         )
         for scene in scenes
         for dt_s, count in [steps[scene.name]]

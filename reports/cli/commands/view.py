@@ -18,22 +18,30 @@ from sim.viewing import viewer
 ENDINGS = (".gif", ".png")
 
 
-def run_view(name: str, output: Path | None, console: Console) -> None:
-    """Show a scene. Raises CrankcheckError for a scene or a file that can not be used."""
+def run_view(
+    name: str, output: Path | None, console: Console, *, with_forces: bool = False
+) -> None:
+    """Show a scene; the viewer draws no forces of ours, so that these go into a file.
+
+    Raises CrankcheckError for a scene or a file that can not be used, or forces that there are
+    none of.
+    """
     read = [find_scene(name)]
     if output is not None:
         check_file(output, "-o", ENDINGS, inputs=read)
     scene = load_scene(name)
-    if output is None and has_screen():
+    if output is None and has_screen() and not with_forces:
         viewer()(scene, solve(scene, np.zeros(1)).state())
         return
     if output is None:
         output = Path(f"{scene.name}.gif")
         check_file(output, "view", ENDINGS, inputs=read)
-        console.print("no screen here, so into a file:", style="dim")
+        why = "forces are drawn" if with_forces else "no screen here, so"
+        console.print(f"{why} into a file:", style="dim")
     from reports.drawing import gif as picture
 
-    content = picture.strip(scene) if output.suffix.lower() == ".png" else picture.animation(scene)
+    draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
+    content = draw(scene, with_forces=with_forces)
     write(output, content)
     told = harmless(f"{output}: {scene.name} over one turn")
     console.print(told, highlight=False, markup=False)

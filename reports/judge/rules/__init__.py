@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from reports.judge.rules.balance import PinsBalance
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.log import AsAsked, LogComplete, Required, StatusOk, ValuesFinite
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
-from reports.judge.rules.shrinking import ErrorShrinks
+from reports.judge.rules.shrinking import ErrorShrinks, ForcesShrink
 from reports.judge.rules.smooth import ErrorSmooth
 from reports.judge.rules.start import StartWithin
 
@@ -25,11 +26,14 @@ _ALL: tuple[Rule, ...] = (
     AsAsked(),
     ErrorSmooth(),
     Required(),
+    PinsBalance(),
+    ForcesShrink(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
+FORCES = ("CC120", "CC121", "CC122", "CC123")
 TUNABLE = ("CC101", "CC110", *PLACES)
-"""Failures that come from what an engine is set to; those of rates follow from them."""
+"""Failures that come from what an engine is set to; those of rates and forces follow from them."""
 
 
 def judge(evidence: Evidence, rules: Iterable[Rule] | None = None) -> tuple[Finding, ...]:
@@ -51,7 +55,7 @@ def _cure(finding: Finding, evidence: Evidence) -> str:
     if evidence.status != "ok" and finding.rule != "CC101":
         return ""
     cure = RULES[finding.rule].cure
-    if evidence.remedy and finding.level == "fail" and finding.rule in (*TUNABLE, *RATES):
+    if evidence.remedy and finding.level == "fail" and finding.rule in (*TUNABLE, *RATES, *FORCES):
         return evidence.remedy
     if finding.rule not in TUNABLE or evidence.status in ("unsupported", "branch-changed"):
         return cure

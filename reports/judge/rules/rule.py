@@ -20,7 +20,8 @@ Level = Literal["pass", "advice", "fail"]
 class Evidence:
     """All that is known of one cell: how the run ended, its errors, the limits in force.
 
-    ``errors`` is None where nothing was logged, ``convergence`` where it was not asked for; a
+    ``errors`` is None where nothing was logged, ``convergence`` (of places) where it was not asked
+    for, as ``force_convergence`` where no forces were; a
     cell that is not ``gated`` is shown only. ``profile`` is that of the engine, "" where there is
     none to be changed for another. ``placing`` and ``order`` are the engine's
     (`sim.engine.Engine`); ``unasked`` says what of the run, and of the finer ones, is not as it was
@@ -35,6 +36,7 @@ class Evidence:
     errors: Errors | None
     limits: Mapping[str, Limit]
     convergence: Convergence | None = None
+    force_convergence: Convergence | None = None
     gated: bool = True
     profile: str = ""
     placing: Placing = "integrated"

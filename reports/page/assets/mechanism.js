@@ -47,8 +47,9 @@ crankcheck.mechanism = (() => {
     const samples = scene.crank_deg.length;
     const names = [...Object.keys(scene.ground), ...scene.points];
     element.classList.toggle("crowded", names.length > CROWD);
-    const layers = ["paths", "ground", "guides", "reference", "overlays", "pins"].map((name) => svg("g", { class: name }));
-    const [paths, ground, guides, reference, over, pins] = layers;
+    const layers = ["paths", "ground", "guides", "reference", "overlays", "pins", "forces"].map((name) => svg("g", { class: name }));
+    const [paths, ground, guides, reference, over, pins, forces] = layers;
+    const arrows = drawing.forces ? crankcheck.arrows(drawing.forces) : null;
     element.replaceChildren(...layers);
     let pixel = 1;
     let toScreen = ([x, y]) => [x, y];
@@ -62,6 +63,12 @@ crankcheck.mechanism = (() => {
       pixel = 1 / scale;
       toScreen = ([x, y]) => [left + scale * (x - scene.low[0]), top + scale * (scene.high[1] - y)];
       element.setAttribute("viewBox", `0 0 ${width || 1} ${height || 1}`);
+    }
+
+    /** Where a bar of scale ends: the lower right corner of the element. */
+    function corner() {
+      const { width, height } = element.getBoundingClientRect();
+      return [width - 14, height - 14];
     }
 
     const text = (points) => points.map((p) => toScreen(p).map((v) => v.toFixed(2)).join(" ")).join(" L");
@@ -185,6 +192,7 @@ crankcheck.mechanism = (() => {
         svg("g", { class: `run ${run.paint}`, "stroke-width": run.width ?? Math.min(2 + 2 * (runs.length - 1 - i), 6.5) },
           ...trails(position, run), ...bodies(position, run))));
       pins.replaceChildren(...names.flatMap((name) => pin(name, position)));
+      if (arrows) forces.replaceChildren(...arrows(position, (name) => toScreen(place(name, position)), 1 / pixel, corner()));
       return runs.some((run) => run.cut);
     }
 
@@ -211,7 +219,7 @@ crankcheck.mechanism = (() => {
     still();
     return {
       samples, show, farthest, worst, refit: still, size: scene.size,
-      degrees: (position) => between(scene.crank_deg, position),
+      degrees: (position) => between(scene.crank_deg, position), between,
     };
   };
 })();

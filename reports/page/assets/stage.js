@@ -6,7 +6,8 @@
  * Take the elements `${name}-picture`, `-play`, `-slider`, `-angle`, `-factor`, `-visible` and
  * `-readout`. `overlays(mechanism)` gives the runs to be drawn: `{name, rows, paint}`; `drawn` is
  * called after every drawing. A stage that stands still stands at `home(mechanism)`; going round
- * takes `lasts(mechanism)` milliseconds, after which it rests for `rest` times as long.
+ * takes `lasts(mechanism)` milliseconds, after which it rests for `rest` times as long. A stage without
+ * `-factor`, `-visible` and `-readout` is one of the reference alone.
  */
 crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = () => 5000, rest = 0, reach }) => {
   const { short } = crankcheck;
@@ -30,13 +31,13 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
 
   function draw() {
     const each = overlays(mechanism);
-    const cut = mechanism.show(position, each, Number(factor.value));
+    const cut = mechanism.show(position, each, Number(factor?.value ?? 1));
     const told = degrees(position);
     slider.value = String(Math.round(position));
     slider.setAttribute("aria-valuetext", `crank at ${told} degrees`);
     part("angle").textContent = `${told}°`;
     const off = each.map((run) => `${run.name} ${short(mechanism.farthest(run.rows, position))} m`);
-    readout.textContent = (off.length ? `Off the reference here by: ${off.join("; ")}.` : "No run is drawn.") +
+    if (readout) readout.textContent = (off.length ? `Off the reference here by: ${off.join("; ")}.` : "No run is drawn.") +
       (cut ? " What would leave the drawing is cut off." : "");
     drawn(mechanism, position);
   }
@@ -100,8 +101,8 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
 
   /** Begin: the controls work, and the drawing follows its size. Call it once, with a drawing set. */
   function start() {
-    factor.addEventListener("change", draw);
-    part("visible").addEventListener("click", makeVisible);
+    factor?.addEventListener("change", draw);
+    part("visible")?.addEventListener("click", makeVisible);
     play.addEventListener("click", () => run(!playing));
     slider.addEventListener("input", () => {
       run(false);

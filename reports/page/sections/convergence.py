@@ -18,6 +18,9 @@ SHARES = {
     "L": "of longest link",
     "w": "of crank speed",
     "w^2": "of crank speed squared",
+    "F": "of largest reaction",
+    "F L": "of largest reaction at longest link",
+    "M": "of largest torque",
 }
 DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
     f"{tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (

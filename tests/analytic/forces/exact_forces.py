@@ -67,8 +67,10 @@ class _Body:
         )
 
 
-def exact_forces(scene: Scene, time_s: float, solved: Solved) -> ExactForces:
-    """The forces of an exact motion at a time."""
+def exact_forces(
+    scene: Scene, time_s: float, solved: Solved, friction: Mapping[str, Number] | None = None
+) -> ExactForces:
+    """The forces of an exact motion at a time, under given friction in joints."""
     bodies = _bodies(scene, solved)
     names = [name for name in bodies if name != GROUND]
     at = {name: 3 * k for k, name in enumerate(names)}
@@ -110,6 +112,8 @@ def exact_forces(scene: Scene, time_s: float, solved: Solved) -> ExactForces:
         _inertia(scene, name, bodies[name], b, at[name])
     for load in scene.loads.values():
         _apply(scene, load, time_s, solved, bodies, b, at[load.body])
+    for joint, size in (friction or {}).items():
+        _rub(scene, joint, size, bodies, b, at)
     found = list(mp.lu_solve(a, b))
     pins: dict[str, dict[str, Pair]] = {}
     for k, (point, one, other) in enumerate(hinges):
@@ -199,6 +203,33 @@ def _apply(
     b[row] -= fx
     b[row + 1] -= fy
     b[row + 2] -= ax * fy - ay * fx
+
+
+def _rub(
+    scene: Scene,
+    joint: str,
+    size: Number,
+    bodies: Mapping[str, _Body],
+    b: matrix,
+    at: Mapping[str, int],
+) -> None:
+    """Take friction off what the joints have to bring about: a couple, or a force along a line."""
+    if joint not in scene.sliders:
+        first, second = _pins(scene)[joint]
+        for body, sign in ((first, -1), (second, 1)):
+            if body != GROUND:
+                b[at[body] + 2] -= sign * size
+        return
+    slider = scene.sliders[joint]
+    body, angle = sliding_body(slider), bodies[slider.on].theta + mpf(slider.direction_rad)
+    x, y = bodies[body].place(local_point(scene, body, slider.point))
+    fx, fy = size * mp.cos(angle), size * mp.sin(angle)
+    for name, sign in ((body, 1), (slider.on, -1)):
+        if name != GROUND:
+            ox, oy = bodies[name].origin
+            b[at[name]] -= sign * fx
+            b[at[name] + 1] -= sign * fy
+            b[at[name] + 2] -= sign * ((x - ox) * fy - (y - oy) * fx)
 
 
 def value_of(own: Characteristic, x: Number) -> Number:

@@ -15,7 +15,7 @@ from analytic.check.moved_scene import moved
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import load_scene, shipped
+from models.files import every_shipped, load_scene
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
@@ -85,7 +85,7 @@ def _no_bound_broken(rows: list[Held], told: object) -> None:
     assert not broken, f"{told}: {broken[:3]}"
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", every_shipped())
 def test_errors_stay_below_their_bounds_in_every_scene(name: str) -> None:
     scene = replace(load_scene(name), gravity_m_s2=(0.0, -9.81))
     times = np.random.default_rng(1).uniform(-1.0, 1.0, 4) * scene.driver.law.period_s

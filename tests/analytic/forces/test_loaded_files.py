@@ -1,26 +1,30 @@
-"""Every file with loads gives forces or a message, whatever stands in it."""
+"""Every file with loads or friction gives forces or a message, whatever stands in it."""
 
 from __future__ import annotations
 
 import random
 
 import numpy as np
+import pytest
 
 from analytic.forces.kinetostatics import forces
 from models.errors import CrankcheckError
 from models.files import parse_scene
+from tests.analytic.forces.test_self_locking import STEEP
+from tests.models.test_friction import RUBBING
 from tests.models.test_loads import PRESS
 from tests.worlds.mutation import MUTATIONS
 
-FILES = 250
+FILES = 150
 
 
-def test_a_changed_file_gives_forces_or_a_message() -> None:
+@pytest.mark.parametrize("sound", [PRESS, RUBBING, STEEP], ids=["loads", "friction", "locking"])
+def test_a_changed_file_gives_forces_or_a_message(sound: str) -> None:
     """Warnings are errors here, so that no number overflows unseen either."""
     solved = refused = 0
     for number in range(FILES):
         rng = random.Random(number)
-        text = PRESS
+        text = sound
         for _ in range(rng.choice((1, 1, 2, 3))):
             text = rng.choices(list(MUTATIONS), list(MUTATIONS.values()))[0](rng, text)
         try:

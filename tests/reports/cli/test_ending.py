@@ -99,7 +99,7 @@ def test_an_import_that_ctrl_c_cut_short_is_no_missing_engine() -> None:
 @POSIX
 def test_a_terminal_of_ascii_shows_an_escape(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
-    text = (ROOT / "models/scenes/tangent.toml").read_text(encoding="utf-8")
+    text = (ROOT / "models/scenes/kinematics/tangent.toml").read_text(encoding="utf-8")
     scene.write_text(text.replace('source = "', 'source = "\\u0110\\u1ed9ng '), encoding="utf-8")
     code, output, complaint = shell(f"crankcheck solve {scene}", PYTHONIOENCODING="ascii")
     assert (code, complaint) == (0, "")

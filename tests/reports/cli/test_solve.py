@@ -18,7 +18,7 @@ from rich.console import Console
 from typer.testing import CliRunner, Result
 
 from analytic.kinematics import solve
-from models.files import load_scene, shipped
+from models.files import kinds, load_scene, shipped
 from models.laws import Oscillating
 from models.scene import Scene
 from reports.cli import app
@@ -331,9 +331,11 @@ def test_export_without_a_file_prints_the_model(crank: Crank) -> None:
     assert result.output.rstrip().endswith("</mujoco>")
 
 
-def test_scenes_lists_every_shipped_scene_with_its_groups(crank: Crank) -> None:
+def test_scenes_lists_every_shipped_scene_under_its_kind_with_its_groups(crank: Crank) -> None:
     output = crank("scenes").output
-    assert all(name in output for name in shipped())
+    places = [output.index(f"{kind}: ") for kind in kinds()]
+    for kind, start, end in zip(kinds(), places, [*places[1:], None], strict=True):
+        assert all(f"\n{name} " in output[start:end] for name in shipped(kind))
     assert "RPR + RRP" in output
 
 

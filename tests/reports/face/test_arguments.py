@@ -16,6 +16,7 @@ import pytest
 
 import crankcheck
 from crankcheck.testing import assert_within
+from models.files import shipped
 
 SCENE = "fourbar-lecture-1"
 LOG = {"time_s": [0.0, 0.1, 0.2], "rocker_rad": [1.9, 2.0, 2.1]}
@@ -159,7 +160,7 @@ def test_messages_say_what_was_found_and_what_would_work(
 
 def test_numbers_of_numpy_and_paths_are_taken(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
-    home = Path(crankcheck.__file__).parents[1] / "models" / "scenes" / f"{SCENE}.toml"
+    home = shipped()[SCENE]
     path.write_bytes(home.read_bytes())
     options = {"turns": np.float32(0.5), "steps_per_turn": np.int64(90), "every": np.uint8(2)}
     settings: Mapping[str, object] = {"iterations": np.int32(50), "tolerance": np.float64(1e-10)}

@@ -15,6 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import crankcheck
+from models.files import shipped
 from reports.cli import app
 from reports.face.shown import Shown
 from reports.face.told import in_python
@@ -218,7 +219,7 @@ def test_arrays_are_the_callers_own() -> None:
 
 def test_names_from_files_are_no_html(tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    text = Path(crankcheck.__file__).parents[1] / "models" / "scenes" / f"{SCENE}.toml"
+    text = shipped()[SCENE]
     lines = text.read_text(encoding="utf-8").splitlines()
     lines = ['source = "<b onclick=alert(1)>[red]x[/red]</b>"' if line.startswith("source")
              else line for line in lines]  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models import mjcf, tree
+from models import mjcf_friction, tree
 from models.files import load_scene
 from sim.mujoco import session
 from sim.registry import engine
@@ -22,7 +22,7 @@ def test_the_tree_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         plans.append(args)
         return tree.plan(*args, **options)
 
-    for module in (mjcf, session):
+    for module in (mjcf_friction, session):
         monkeypatch.setattr(module, "plan", counted)
     scene, mujoco = load_scene("fourbar-lecture-1"), engine("mujoco")
     settings = resolved(mujoco.profiles["tuned"], {"close": "B"})

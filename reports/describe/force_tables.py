@@ -1,0 +1,110 @@
+"""Reactions and driving torque as tables on the terminal: at one position, and over time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from rich.table import Table
+
+from models.array import Array
+from models.forces import Forces
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.force_frame import acted_on
+from reports.describe.tables import Columns, digits, head_table, tables_over_time
+from reports.output.columns import plain_table
+
+
+def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[Table]:
+    """The driving torque with its power, the force in every pin, and that of every guide, at one
+    position; of a guide also how far along its line from the slider's point the normal force
+    acts alone."""
+    drive = head_table("drive on", ("torque N m", "power W"))
+    torque = float(acting.torque[0])
+    driver = motion.links.get(scene.driver.link)
+    power = torque * float(driver.omega[0]) if driver is not None else math.nan
+    drive.add_row(scene.driver.link, digits(torque), digits(power))
+    pins = head_table("pin, force on", ("from ", "x N", "y N", "size N", "direction deg"))
+    for point, body, source, force in acted_on(acting):
+        x, y = (float(each) for each in force[0])
+        numbers = (x, y, math.hypot(x, y), _direction(x, y))
+        pins.add_row(f"{point} {body}", source, *map(digits, numbers))
+    guides = head_table("slider, force on", ("from ", "normal N", "moment N m", "offset m"))
+    for name, slider in acting.sliders.items():
+        normal, moment = float(slider.normal[0]), float(slider.moment[0])
+        at = moment / normal if normal else math.nan
+        body = scene.sliders[name].link or "block"
+        row = (f"{name} {body}", scene.sliders[name].on, *map(digits, (normal, moment, at)))
+        guides.add_row(*row)
+    return [table for table in (drive, pins, guides) if table.row_count]
+
+
+def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
+    """Torque, pins and sliders over time, as many to a table as the terminal has room for."""
+    bodies: list[tuple[str, Columns]] = [("drive", [("torque\nN m", acting.torque)])]
+    for point, body, _, force in acted_on(acting):
+        x, y = force.T
+        columns = [("x\nN", x), ("y\nN", y), ("size\nN", np.hypot(x, y))]
+        bodies.append((f"{point} on {body}", columns))
+    for name, slider in acting.sliders.items():
+        both = [("normal\nN", slider.normal), ("moment\nN m", slider.moment)]
+        bodies.append((f"slider {name}", both))
+    return tables_over_time(scene, motion, bodies, width)
+
+
+@dataclass(frozen=True)
+class Largest:
+    """The largest value over a turn, with its sign, in ``unit``; the driver's angle there [deg],
+    and the mean over time."""
+
+    name: str
+    value: float
+    unit: str
+    at_deg: float
+    mean: float
+
+
+def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
+    """The torque, each pin by the size of its force, and each slider; a row for what is
+    determined. ``turn`` has both its ends."""
+    degrees = np.degrees(turn.links[scene.driver.link].theta) % 360.0
+    series: list[tuple[str, Array, str]] = [("driving torque", acting.torque, "N m")]
+    for point, body, _, force in acted_on(acting):
+        series.append((f"{point} on {body}", np.hypot(force[:, 0], force[:, 1]), "N"))
+    for name, slider in acting.sliders.items():
+        series.append((f"slider {name}, normal", slider.normal, "N"))
+        series.append((f"slider {name}, moment", slider.moment, "N m"))
+    rows = []
+    for name, values, unit in series:
+        if not np.isfinite(values).any():
+            continue
+        at = int(np.nanargmax(np.abs(values)))
+        value = float(values[at]) + 0.0
+        mean = float(np.nanmean(values[:-1]))
+        # What comes and goes alike has no mean but rounding.
+        mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
+        rows.append(Largest(name, value, unit, float(degrees[at]) if value else math.nan, mean))
+    return rows
+
+
+def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
+    """What `largest_of` has."""
+    table = plain_table(gap=2)
+    table.add_column("over a turn", no_wrap=True)
+    table.add_column("largest", justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    table.add_column(f"{scene.driver.link} at", justify="right", no_wrap=True)
+    table.add_column("mean", justify="right", no_wrap=True)
+    for row in largest_of(scene, turn, acting):
+        at = "-" if math.isnan(row.at_deg) else f"{row.at_deg:.4g} deg"
+        table.add_row(row.name, f"{row.value:.6g}", row.unit, at, f"{row.mean:.6g}")
+    return table
+
+
+def _direction(x: float, y: float) -> float:
+    """The angle of a force [deg], 0 to 360; none where there is no force."""
+    if x == y == 0.0:
+        return math.nan
+    return math.degrees(math.atan2(y, x)) % 360.0

@@ -1,0 +1,149 @@
+"""The forces of a solved motion, as they are shown: what is not certain, left out or open is told.
+
+Over a turn, instants in dead points have no numbers; a single position in one is refused.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.characteristics import Constant
+from models.errors import CrankcheckError
+from models.forces import Forces, SliderForces
+from models.motion import Motion
+from models.scene import Scene
+from reports.output.numbers import count, listed
+
+UNCERTAIN = 1e-6
+"""A number that its own bound swallows is 0 where the bound is less than so much of the largest of
+its kind, and unknown where it is more."""
+TURN = 721
+"""Samples of a turn whose forces are drawn, or looked through for the largest."""
+NAMED = 4
+"""Angles of dead points that a note names."""
+
+
+def with_forces(scene: Scene, motion: Motion, *, by_law: bool = True, bound: bool = True) -> Motion:
+    """The motion with its reactions and driving torque.
+
+    ``by_law`` says that its times are instants of the driver's law, of which the forces are worked
+    out; else the whole motion itself is taken.
+
+    Raises
+    ------
+    CrankcheckError
+        As `analytic.forces.kinetostatics.forces`, for dead points only where all samples are in
+        one; a load over time on a motion whose times are mere labels.
+    """
+    if not by_law:
+        _refuse_loads_over_time(scene)
+    when = motion.time_s if by_law else motion
+    acting = forces(scene, when, bound=bound, skip_dead_points=True)
+    if acting.torque.size and np.all(np.isnan(acting.torque)):
+        acting = forces(scene, when, bound=bound)  # tells why
+    return replace(motion, forces=acting)
+
+
+def turn_with_forces(scene: Scene, samples: int = TURN) -> Motion:
+    """The first turn of the driver, both ends included, with its forces and their bounds."""
+    time_s = np.linspace(0.0, scene.driver.law.period_s, samples)
+    return with_forces(scene, solve(scene, time_s))
+
+
+def _refuse_loads_over_time(scene: Scene) -> None:
+    for load in scene.loads.values():
+        if load.over == "time" and not isinstance(load.characteristic, Constant):
+            raise CrankcheckError(
+                f"forces at an angle: loads.{load.name} follows time, and an angle does not say "
+                "when it is; ask for a motion over time"
+            )
+
+
+def force_notes(scene: Scene, motion: Motion) -> list[str]:
+    """What is not determined, in sentences."""
+    acting = motion.forces
+    if acting is None:
+        return []
+    notes = [f"Reactions: none, as {acting.undetermined}."] if acting.undetermined else []
+    return notes + dead_point_note(scene, motion)
+
+
+def dead_point_note(scene: Scene, motion: Motion) -> list[str]:
+    """Where the driver stands in dead points, in a sentence, if it does."""
+    assert motion.forces is not None
+    dead = np.flatnonzero(np.isnan(motion.forces.torque))
+    if dead.size == 0:
+        return []
+    driver = motion.links.get(scene.driver.link)
+    where = count(dead.size, "instant")
+    if driver is not None:
+        degrees = np.round(np.degrees(driver.theta[dead]) % 360.0, 6) % 360.0
+        angles = [f"{each:g} deg" for each in sorted(set(degrees.tolist()))]
+        few = [*angles[:NAMED], "more"] if len(angles) > NAMED else angles
+        where = f"{scene.driver.link} at {listed(few)}"
+    return [
+        f"Dead point, {where}: the driving torque and the reactions are not determined there, and "
+        "left out; beside it they may be of any size."
+    ]
+
+
+def force_certainty(acting: Forces) -> str:
+    """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
+    the size of the forces themselves are counted apart."""
+    bound = acting.bound
+    if bound is None:
+        return ""
+    kinds: dict[str, list[tuple[Array, Array]]] = {"N": [], "N m": [(acting.torque, bound.torque)]}
+    for point, bodies in acting.pins.items():
+        kinds["N"] += [(f, bound.pins[point][body]) for body, f in bodies.items()]
+    for name, slider in acting.sliders.items():
+        kinds["N"].append((slider.normal, bound.sliders[name].normal))
+        kinds["N m"].append((slider.moment, bound.sliders[name].moment))
+    told, doubtful = [], np.isnan(acting.torque)
+    for unit, pairs in kinds.items():
+        largest = max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
+        limits = np.array([limit for _, limit in pairs])
+        fit = np.where(limits <= UNCERTAIN * largest, limits, 0.0)
+        doubtful = doubtful | np.any(limits > UNCERTAIN * largest, axis=0)
+        if np.any(limits <= UNCERTAIN * largest):
+            told.append(f"{float(fit.max()):.1e} {unit}")
+    if not told:
+        return "Forces are not certain here: a dead point is near, or a load sets in."
+    words = f"Forces certain to {', '.join(told)}"
+    if doubtful.any():
+        words += f", but at {count(int(doubtful.sum()), 'instant')}, in or near a dead point or "
+        words += "where a load sets in or ends"
+    return f"{words}."
+
+
+def cleaned_forces(acting: Forces) -> Forces:
+    """The forces to be read by people: numbers that are 0 within their own bound are 0, and those
+    of which the bound leaves nothing are NaN."""
+    bound = acting.bound
+    if bound is None:
+        return acting
+    pins = {
+        point: {body: _cleaned(force, bound.pins[point][body]) for body, force in bodies.items()}
+        for point, bodies in acting.pins.items()
+    }
+    sliders = {
+        name: SliderForces(
+            _cleaned(slider.normal, bound.sliders[name].normal),
+            _cleaned(slider.moment, bound.sliders[name].moment),
+        )
+        for name, slider in acting.sliders.items()
+    }
+    return replace(acting, pins=pins, sliders=sliders, torque=_cleaned(acting.torque, bound.torque))
+
+
+def _cleaned(series: Array, limit: Array) -> Array:
+    """A series (T,) or (T, 2) with a bound (T,)."""
+    rows = series.T
+    largest = float(np.nanmax(np.abs(rows), initial=0.0))
+    swallowed = np.where(limit <= max(UNCERTAIN * largest, 1e-9), 0.0, np.nan)
+    return np.asarray(np.where(np.abs(rows) <= limit, swallowed, rows).T)

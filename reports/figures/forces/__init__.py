@@ -1,0 +1,1 @@
+"""The forces of a turn, drawn for a paper."""

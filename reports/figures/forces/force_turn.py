@@ -1,0 +1,110 @@
+"""What the figures of forces are drawn of: a turn of a scene, and the axis that they go over."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
+
+from analytic.forces.reduced_machine import ReducedMachine, reduced_machine
+from models.array import Array
+from models.characteristics import Constant
+from models.forces import Forces
+from models.laws import ConstantSpeed, Oscillating
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.law import describe_law
+from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
+from reports.figures.style import SMALL
+from reports.output.provenance import crankcheck_version
+
+SIDES = (0.58, 0.1)
+"""Room on the left and on the right of a panel over the axis [inch]."""
+
+
+@dataclass(frozen=True)
+class ForceTurn:
+    """The first turn of a scene: its motion with forces, and the machine reduced to its driver.
+
+    ``x`` is what curves go over, called ``label``, between ``ends``; ``order`` are the samples that
+    stand there.
+    """
+
+    scene: Scene
+    motion: Motion
+    acting: Forces
+    reduced: ReducedMachine
+    x: Array
+    label: str
+    ends: tuple[float, float]
+    order: NDArray[np.intp]
+
+    def plot(self, axes: Axes, series: Array, **look: Any) -> None:
+        """Draw a series of the turn (T,)."""
+        axes.plot(self.x, series[self.order], **look)
+
+    def mark_axis(self, axes: Axes) -> None:
+        """Limits and ticks of the horizontal axis; short numbers on the other."""
+        axes.set_xlim(*self.ends)
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=False)
+        axes.yaxis.get_offset_text().set_fontsize(SMALL)
+        if self.label.endswith("[deg]"):
+            axes.xaxis.set_major_locator(MultipleLocator(60.0))
+
+    @property
+    def notes(self) -> list[str]:
+        """What stands under each figure."""
+        scene = self.scene
+        gravity = np.hypot(*scene.gravity_m_s2)
+        parts = [
+            f"crankcheck {crankcheck_version()}, closed form; driver {describe_law(scene)}",
+            f"gravity {gravity:g} m/s²" if gravity else "no gravity",
+            f"loads: {', '.join(scene.loads)}" if scene.loads else "no loads",
+        ]
+        return [f"{'; '.join(parts)}.", *force_notes(scene, self.motion)]
+
+
+def force_turn(scene: Scene) -> ForceTurn:
+    """The turn of a scene. Raises CrankcheckError as `with_forces`."""
+    motion = turn_with_forces(scene)
+    assert motion.forces is not None
+    reduced = reduced_machine(scene, motion.time_s)
+    acting = cleaned_forces(motion.forces)
+    law, every = scene.driver.law, np.arange(motion.time_s.size)
+    label = f"angle of {scene.driver.link} [deg]"
+    theta = motion.links[scene.driver.link].theta
+    x = np.degrees(theta)
+    ends = (float(x.min()), float(x.max()))
+    if isinstance(law, Oscillating):  # every angle is passed twice
+        x, label, ends = motion.time_s, "time [s]", (0.0, law.period_s)
+    elif isinstance(law, ConstantSpeed) and _is_cyclic(scene, theta):
+        # A turn is like every other: it is drawn from 0 on, wherever it began.
+        around = np.mod(np.round(x[:-1], 9), 360.0)
+        every = np.argsort(around)
+        every = np.concatenate([every[-1:], every, every[:1]])
+        x, ends = around[every], (0.0, 360.0)
+        x[0], x[-1] = x[0] - 360.0, x[-1] + 360.0
+    return ForceTurn(scene, motion, acting, reduced, x, label, ends, every)
+
+
+def _is_cyclic(scene: Scene, theta: Array) -> bool:
+    """Whether every turn of a driver of one speed is like the others: no load follows time, and
+    none follows the angle otherwise than turn by turn (a four-stroke's does)."""
+    for load in scene.loads.values():
+        own = load.characteristic
+        if isinstance(own, Constant) or load.over == "displacement":
+            continue
+        if load.over == "time":
+            return False
+        try:
+            again, size = own.at(theta - math.tau), np.max(np.abs(own.at(theta)))
+        except ValueError:  # a table of this turn alone
+            return False
+        if np.max(np.abs(again - own.at(theta))) > 1e-9 * size:
+            return False
+    return True

@@ -1,0 +1,55 @@
+"""The driving torque over the driver's angle, its mean, and what of it inertia and loads take."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from reports.figures.forces.force_turn import SIDES, ForceTurn
+from reports.figures.sheet import Panels, sheet
+from reports.figures.style import COLUMN_IN, INK, QUIET
+from reports.output.numbers import readable
+
+TORQUE = {"color": "#1f5f9e", "linewidth": 1.4}
+MEAN = {"color": INK, "linewidth": 0.8, "linestyle": (0, (5.0, 2.0))}
+INERTIA = {"color": "#c04a1d", "linewidth": 0.8, "linestyle": (0, (1.0, 1.2))}
+LOADS = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
+
+
+def draw(turn: ForceTurn) -> Figure:
+    """One panel. Shares are drawn where weights or loads act: the drive holds against the reduced
+    torque, and the rest is inertia."""
+    torque, held = turn.acting.torque, -turn.reduced.torque
+    mean = mean_torque(turn)
+    entries: list[tuple[Artist, str]] = [
+        (Line2D([], [], **TORQUE), "driving torque"),  # type: ignore[arg-type]  # looks of a line
+        (Line2D([], [], **MEAN), f"mean over time {readable(mean)} N m"),  # type: ignore[arg-type]  # as above
+    ]
+    is_loaded = bool(np.nanmax(np.abs(held), initial=0.0) > 0.0)
+    if is_loaded:
+        entries += [
+            (Line2D([], [], **INERTIA), "inertia"),  # type: ignore[arg-type]  # as above
+            (Line2D([], [], **LOADS), "weights and loads"),  # type: ignore[arg-type]  # as above
+        ]
+    panels = Panels(1, 1, 2.1, *SIDES, 0.15)
+    title = f"Driving torque: {turn.scene.name}"
+    figure, (axes,) = sheet(COLUMN_IN, panels, title, entries, turn.notes)
+    axes.axhline(0.0, color=QUIET, linewidth=0.5)
+    if is_loaded:
+        turn.plot(axes, torque - held, **INERTIA)
+        turn.plot(axes, held, **LOADS)
+    turn.plot(axes, torque, **TORQUE)
+    axes.axhline(mean, **MEAN)  # type: ignore[arg-type]  # as above
+    turn.mark_axis(axes)
+    axes.set_xlabel(turn.label)
+    axes.set_ylabel(f"torque on {turn.scene.driver.link} [N m]")
+    return figure
+
+
+def mean_torque(turn: ForceTurn) -> float:
+    """Over the turn, by time; what is nothing but rounding is 0."""
+    torque = turn.acting.torque[:-1]  # the last instant is the first again
+    mean = float(np.nanmean(torque))
+    return mean if abs(mean) > 1e-9 * float(np.nanmax(np.abs(torque))) else 0.0

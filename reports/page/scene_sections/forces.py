@@ -1,0 +1,46 @@
+"""Reactions and driving torque of a scene: the largest of a turn in a table, and the figures."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+
+from models.scene import Scene
+from reports.describe.force_tables import largest_of
+from reports.describe.with_forces import (
+    cleaned_forces,
+    force_certainty,
+    force_notes,
+    turn_with_forces,
+)
+from reports.page.sections.section import Section
+
+CAPTIONS: Mapping[str, str] = {
+    "torque": "The driving torque, and its mean over the turn.",
+    "reactions": "How large the reactions are; normal forces of guides with their sign.",
+    "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
+    "reduced": "The machine as one flywheel on the driver's shaft.",
+    "forces": "The mechanism where its reactions are largest.",
+}
+"""What stands under a figure; one that is not here has its name."""
+
+
+def build(scene: Scene, figures: Mapping[str, bytes]) -> Section:
+    """The section; ``figures`` are SVG files by their name."""
+    turn = turn_with_forces(scene)
+    assert turn.forces is not None
+    return Section(
+        anchor="forces",
+        title="Forces",
+        template="scene_forces.html",
+        words={
+            "driver": scene.driver.link,
+            "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
+            "notes": [*force_notes(scene, turn), force_certainty(turn.forces)],
+            "figures": [
+                (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
+                for name, svg in figures.items()
+            ],
+        },
+        styles=("forces.css",),
+    )

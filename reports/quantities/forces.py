@@ -1,0 +1,248 @@
+"""What the joints and the drive bear: reactions, forces and moments of sliders, driving torque.
+
+They are compared where they were asked for, at the instants that the engine says they act at.
+Errors are shares of the largest of the reference over the run (``F`` of reactions, ``M`` of the
+torque): a reaction that passes through 0 is as hard on an engine as any other.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from models.array import Array
+from models.forces import ForceBound, Forces
+from models.motion import Motion
+from models.scene import Scene
+from reports.quantities.quantity import BodyKind, Criterion, Measure, Quantity, Series, Tolerance
+from sim.engine import Run
+
+LEAST_ARM = 1e-2
+"""The least arm of a torque, over the longest link: a torque whose largest is under so much of the
+largest reaction times that link (that of a parallelogram at constant speed is 0) is held to it."""
+OPEN_SHARE = 3e-4
+"""Three times what MuJoCo's stiffest documented impedance (0.9999) leaves of a force; over the
+largest of them no ratio of masses makes it more (0.001 to 1000 times the mass of any link)."""
+TAKEN_UP = Tolerance(
+    "Second order: forces go with accelerations, at places that are off by what a step leaves "
+    "out, and a dyad passes them on enlarged by 1/sine of its transmission angle. Besides the "
+    "share of a force that soft constraints leave open.",
+    cap=0.2,  # a fifth of the largest force; twice the worst at 90 steps a turn
+    coefficient=12.0,
+    power=1.0,
+    conditioned=True,
+    share=OPEN_SHARE,
+    rate=2,
+    parts=True,
+    makes_up=True,
+)
+
+
+def acting(run: Run) -> Forces | None:
+    """The forces that a run logged, without the start where they are those of steps; None where
+    it logged none, or none that are as many as its samples."""
+    forces = run.motion.forces if run.motion is not None else None
+    if forces is None or run.motion is None or forces.time_s.shape != run.motion.time_s.shape:
+        return None
+    return forces.stretch(slice(1, None)) if run.forces_of == "steps" else forces
+
+
+def acting_at(run: Run) -> Array | None:
+    """When the forces of a run act, None where that is not known."""
+    forces = acting(run)
+    if forces is None or not np.all(np.isfinite(forces.time_s)):
+        return None
+    return forces.time_s
+
+
+def silent(run: Run) -> bool:
+    """Whether the engine says why it has no number of some forces."""
+    forces = acting(run)
+    return forces is not None and bool(forces.undetermined)
+
+
+def largest_reaction(_: Scene, reference: Motion) -> float:
+    """The largest reaction in a pin, or normal force of a slider, over the run [N]."""
+    forces = reference.forces
+    assert forces is not None
+    pins = (np.hypot(*force.T) for bodies in forces.pins.values() for force in bodies.values())
+    sliders = (np.abs(slider.normal) for slider in forces.sliders.values())
+    return _largest(itertools.chain(pins, sliders)) or 1.0
+
+
+def largest_moment(scene: Scene, reference: Motion) -> float:
+    """The largest reaction at the end of the longest link [N m]."""
+    return largest_reaction(scene, reference) * scene.longest_m
+
+
+def largest_torque(scene: Scene, reference: Motion) -> float:
+    """The largest torque over the run, or of the largest reaction on the least arm [N m]."""
+    forces = reference.forces
+    assert forces is not None
+    bears = largest_reaction(scene, reference) if forces.pins else _inertia(scene)
+    return max(_largest([np.abs(forces.torque)]), LEAST_ARM * scene.longest_m * bears)
+
+
+def _inertia(scene: Scene) -> float:
+    """The force that all masses take at the speed of the longest link, and their weight [N]: of
+    redundant links no reaction is known."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    push = scene.longest_m * scene.driver.law.peak_speed_rad_s**2 + math.hypot(*scene.gravity_m_s2)
+    return sum(masses) * push or 1.0
+
+
+def _largest(series: object) -> float:
+    """The largest finite number of some series (T,), 0 where there is none."""
+    sizes = [
+        np.max(each, where=np.isfinite(each), initial=0.0)
+        for each in series  # type: ignore[attr-defined]
+    ]
+    return float(max(sizes, default=0.0))
+
+
+Read = Callable[[Scene, Forces | ForceBound], Series]
+
+
+def _pins(_: Scene, forces: Forces | ForceBound) -> Series:
+    """The force on the second of two bodies that meet in a pin; on each, where there are more."""
+    found: dict[str, Array] = {}
+    for point, bodies in forces.pins.items():
+        if len(bodies) == 2:
+            found[point] = list(bodies.values())[1]
+        else:
+            found |= {f"{point} on {body}": force for body, force in bodies.items()}
+    return found
+
+
+def _normal(_: Scene, forces: Forces | ForceBound) -> Series:
+    return {name: slider.normal for name, slider in forces.sliders.items()}
+
+
+def _moment(_: Scene, forces: Forces | ForceBound) -> Series:
+    return {name: slider.moment for name, slider in forces.sliders.items()}
+
+
+def _torque(scene: Scene, forces: Forces | ForceBound) -> Series:
+    return {scene.driver.link: forces.torque}
+
+
+def _bound(scene: Scene, reference: Motion, read: Read) -> Series:
+    forces = reference.forces
+    return read(scene, forces.bound) if forces is not None and forces.bound is not None else {}
+
+
+def _logged(scene: Scene, run: Run, read: Read) -> Series:
+    forces = acting(run)
+    return read(scene, forces) if forces is not None else {}
+
+
+def _truth(scene: Scene, reference: Motion, read: Read) -> Series:
+    """The reference's, of a motion that has forces."""
+    return read(scene, reference.forces) if reference.forces is not None else {}
+
+
+def _force(
+    name: str,
+    kind: BodyKind,
+    read: Read,
+    unit: str,
+    share: str,
+    scale: Callable[[Scene, Motion], float],
+    criterion: Criterion,
+) -> Quantity:
+    """A quantity of forces, which one kind of bodies has."""
+    measure = Measure(
+        body_kind=kind,
+        column=f"{name}_error_{unit.lower().replace(' ', '_')}",
+        unit=unit,
+        share=share,
+        scale=scale,
+        truth=lambda scene, reference: _truth(scene, reference, read),
+        logged=lambda scene, run: _logged(scene, run, read),
+        bound=lambda scene, reference: _bound(scene, reference, read),
+    )
+    head = f"{criterion.short}\n/ {share}"
+    return Quantity(name, "force", (measure,), (criterion,), head, acting_at, silent)
+
+
+CURE = (
+    "Shorten the step; look at which instant the engine's forces belong to, and in whose frame "
+    "they are: `crankcheck recipe forces --engine NAME` reads them right."
+)
+REACTION = _force(
+    "reaction",
+    "point",
+    _pins,
+    "N",
+    "F",
+    largest_reaction,
+    Criterion(
+        "CC120",
+        "reaction",
+        "The force in every pin, as a vector in the ground's frame, against kinetostatics at the "
+        "instant that it acts at; where more than two bodies meet, that on each of them.",
+        CURE,
+        "react.",
+        TAKEN_UP,
+        diagram="reactions in pins",
+    ),
+)
+NORMAL = _force(
+    "normal",
+    "slider",
+    _normal,
+    "N",
+    "F",
+    largest_reaction,
+    Criterion(
+        "CC121",
+        "normal force",
+        "The force that each guide exerts across its line, against kinetostatics.",
+        CURE,
+        "normal",
+        TAKEN_UP,
+        diagram="normal forces of sliders",
+    ),
+)
+MOMENT = _force(
+    "moment",
+    "slider",
+    _moment,
+    "N m",
+    "F L",
+    largest_moment,
+    Criterion(
+        "CC122",
+        "moment",
+        "The moment that each guide exerts about the slider's point, against kinetostatics.",
+        f"{CURE} A moment is about a point: about another it is another moment.",
+        "moment",
+        TAKEN_UP,
+        diagram="moments of sliders",
+    ),
+)
+TORQUE = _force(
+    "torque",
+    "driver",
+    _torque,
+    "N m",
+    "M",
+    largest_torque,
+    Criterion(
+        "CC123",
+        "torque",
+        "The torque that the drive exerts on the driver, against kinetostatics.",
+        f"{CURE} What turns a flywheel in the model is no part of it.",
+        "torque",
+        replace(
+            TAKEN_UP,
+            reason="As of reactions, of which it takes what their arms make of them.",
+        ),
+        diagram="driving torque",
+    ),
+)

@@ -1,0 +1,239 @@
+"""Change the forces of a log, and leave its motion.
+
+What leaves an inertia or a weight out, or comes of another mechanism, is the healthy log with the
+difference that kinetostatics makes of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.forces.kinetostatics import forces
+from models.array import Array
+from models.forces import Forces, SliderForces
+from models.scene import Scene
+from reports.selftest.fault import Plant, in_log
+from reports.selftest.logs import moved, spoilt
+from sim.engine import Run
+from sim.registry import engine
+
+Change = Callable[[Scene, Run, Forces, float], Forces]
+QUARTER = np.pi / 2
+
+
+def in_forces(change: Change) -> Plant:
+    """The forces of a healthy log, changed by a size; as they are for a size of 0."""
+
+    def changed(scene: Scene, done: Run, size: float) -> Run:
+        motion = moved(done)
+        if motion.forces is None or not size:
+            return done
+        return replace(
+            done, motion=replace(motion, forces=change(scene, done, motion.forces, size))
+        )
+
+    return in_log(changed)
+
+
+def each_force(change: Callable[[Array, float], Array]) -> Plant:
+    """Every series of forces, changed by a size."""
+    return in_forces(lambda scene, done, own, size: own.each_series(lambda x: change(x, size)))
+
+
+def each_pin(own: Forces, change: Callable[[str, str, Array], Array]) -> Forces:
+    """The reactions of every pin and body changed."""
+    pins = {
+        point: {body: change(point, body, force) for body, force in bodies.items()}
+        for point, bodies in own.pins.items()
+    }
+    return replace(own, pins=pins)
+
+
+def _last_pin(own: Forces, change: Callable[[Array], Array]) -> Forces:
+    """The reactions of the last pin changed."""
+    last = list(own.pins)[-1]
+    return each_pin(own, lambda point, _, force: change(force) if point == last else force)
+
+
+def each_slider(own: Forces, change: Callable[[SliderForces], SliderForces]) -> Forces:
+    """What the guides of all sliders exert, changed."""
+    return replace(own, sliders={name: change(slider) for name, slider in own.sliders.items()})
+
+
+def largest_n(own: Forces) -> float:
+    """The largest logged reaction [N]."""
+    every = (force for bodies in own.pins.values() for force in bodies.values())
+    return max(float(np.nanmax(np.abs(force))) for force in every)
+
+
+def in_body_frame(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    """Vectors stand in the frames of the bodies that they act on."""
+    links = moved(done).links
+
+    def turned(_: str, body: str, force: Array) -> Array:
+        if body not in links:
+            return force
+        turn = np.exp(-1j * size * links[body].theta)
+        there = (force @ np.array([1.0, 1j])) * turn
+        return np.stack([there.real, there.imag], axis=-1)
+
+    return each_pin(own, turned)
+
+
+def stamped(_: Scene, done: Run, own: Forces, steps: float) -> Forces:
+    return replace(own, time_s=own.time_s + steps * done.dt_s)
+
+
+def rows_late(_: Scene, done: Run, own: Forces, samples: float) -> Forces:
+    """What stands in a row is what acted some samples before."""
+    by = round(samples)
+    return own.each_series(lambda x: np.concatenate([x[:by], x[:-by]]) if by else x)
+
+
+def of_the_giver(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    """What a pin exerts on one body is said of the other, in the last pin."""
+    last = list(own.pins)[-1]
+    bodies = own.pins[last]
+    reverse = dict(zip(bodies, reversed(list(bodies.values())), strict=True))
+    return replace(own, pins={**own.pins, last: reverse})
+
+
+def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    """The last two pins of two bodies have each other's reactions."""
+    one, other = [point for point, bodies in own.pins.items() if len(bodies) == 2][-2:]
+    there = {one: own.pins[other].values(), other: own.pins[one].values()}
+    swapped = {
+        point: dict(zip(own.pins[point], values, strict=True)) for point, values in there.items()
+    }
+    return replace(own, pins={**own.pins, **swapped})
+
+
+def of_another(change: Callable[[Scene, float], Scene]) -> Change:
+    """The forces that another scene would have, at the same instants."""
+
+    def changed(scene: Scene, done: Run, own: Forces, size: float) -> Forces:
+        known = np.isfinite(own.time_s)
+        times = np.where(known, own.time_s, 0.0)
+        right, wrong = (
+            forces(each, times, bound=False, skip_dead_points=True)
+            for each in (scene, change(scene, size))
+        )
+        pins = {
+            point: {
+                body: force + wrong.pins[point][body] - right.pins[point][body]
+                for body, force in bodies.items()
+            }
+            for point, bodies in own.pins.items()
+        }
+        sliders = {
+            name: SliderForces(
+                slider.normal + wrong.sliders[name].normal - right.sliders[name].normal,
+                slider.moment + wrong.sliders[name].moment - right.sliders[name].moment,
+            )
+            for name, slider in own.sliders.items()
+        }
+        torque = own.torque + wrong.torque - right.torque
+        return replace(own, pins=pins, sliders=sliders, torque=torque)
+
+    return changed
+
+
+def lighter(scene: Scene, share: float) -> Scene:
+    """The mass and inertia of the link that is pinned to the driver are left out."""
+    name = list(scene.links)[1]
+    link, left = scene.links[name], 1.0 - share
+    light = replace(link, mass_kg=left * link.mass_kg, inertia_kg_m2=left * link.inertia_kg_m2)
+    return replace(scene, links={**scene.links, name: light})
+
+
+def turning_lighter(scene: Scene, share: float) -> Scene:
+    """The inertia of that link alone."""
+    name = list(scene.links)[1]
+    link = scene.links[name]
+    light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
+    return replace(scene, links={**scene.links, name: light})
+
+
+def weighed(scene: Scene, more_m_s2: float) -> Scene:
+    """Gravity is put on top of what there is."""
+    x, y = scene.gravity_m_s2
+    return replace(scene, gravity_m_s2=(x, y - more_m_s2))
+
+
+def of_reference(scene: Scene, done: Run, own: Forces, size: float) -> Forces:
+    """The reference's forces, in the engine's place."""
+    times = np.where(np.isfinite(own.time_s), own.time_s, 0.0)
+    return forces(scene, times, bound=False, skip_dead_points=True)
+
+
+def smoothed(series: Array, samples: float) -> Array:
+    """The mean over so many samples around each."""
+    reach = round(samples) // 2
+    if not reach:
+        return series
+    rows = np.pad(series, [(reach, reach)] + [(0, 0)] * (series.ndim - 1), mode="edge")
+    sums = np.cumsum(np.concatenate([np.zeros_like(rows[:1]), np.nan_to_num(rows)]), axis=0)
+    width = 2 * reach + 1
+    return np.asarray((sums[width:] - sums[:-width]) / width)
+
+
+def about_another_point(scene: Scene, done: Run, own: Forces, share: float) -> Forces:
+    """The moment is taken about a point so far from the slider's along its line."""
+    arm = share * scene.longest_m
+    return each_slider(own, lambda one: replace(one, moment=one.moment + arm * one.normal))
+
+
+def spoilt_pin(at: int | slice) -> Change:
+    """The reactions of the last pin are off at some samples, opposite on its bodies."""
+
+    def changed(_: Scene, done: Run, own: Forces, share: float) -> Forces:
+        last = list(own.pins)[-1]
+        signs = dict(zip(own.pins[last], (-1.0, 1.0), strict=False))
+        off = share * largest_n(own)
+
+        def spoil(point: str, body: str, force: Array) -> Array:
+            return spoilt(force, at, signs.get(body, 0.0) * off) if point == last else force
+
+        return each_pin(own, spoil)
+
+    return changed
+
+
+def one_sided(_: Scene, done: Run, own: Forces, share: float) -> Forces:
+    """A pin pushes one of its bodies, and less of it the other."""
+    last = list(own.pins)[-1]
+    body = next(iter(own.pins[last]))
+    return each_pin(
+        own,
+        lambda point, b, force: force * (1.0 + share) if (point, b) == (last, body) else force,
+    )
+
+
+def without_last_pin(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    return replace(own, pins=dict(list(own.pins.items())[:-1]))
+
+
+def nan_at_end(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    return _last_pin(own, lambda force: spoilt(force, slice(-1, None), np.nan))
+
+
+def in_torque(change: Callable[[Array, float], Array]) -> Plant:
+    return in_forces(lambda scene, done, own, size: replace(own, torque=change(own.torque, size)))
+
+
+def turned_aside(_: Scene, done: Run, own: Forces, size: float) -> Forces:
+    """All reactions are turned by a quarter of a turn, as x for y would have it."""
+    angle = size * QUARTER
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return each_pin(own, lambda point, body, force: force @ turn)
+
+
+def dropped(_: Scene, done: Run, size: float) -> Run:
+    return replace(done, motion=replace(moved(done), forces=None)) if size else done
+
+
+def gives(name: str) -> bool:
+    return engine(name).forces_of != "nothing"

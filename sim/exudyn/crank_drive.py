@@ -1,0 +1,82 @@
+"""What turns the crank in exudyn: a constraint of its angle, or a motor; and the torque of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from models.array import Array
+from models.laws import ConstantSpeed
+from models.poses import inertia_scale
+from models.scene import Scene
+from sim.engine import Drive, Poses, Settings
+from sim.exudyn.crank import CrankCourse
+from sim.exudyn.library import items
+from sim.exudyn.multipliers import Multipliers
+from sim.exudyn.system import Index, PlaneSystem
+
+
+class CrankDrive:
+    """The drive of a system: nothing where it is free. Constant speeds are parameters; exudyn calls
+    back for those of another law, whose ``course`` it then has."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        made: PlaneSystem,
+        settings: Settings,
+        drive: Drive,
+        start_s: float,
+        dt_s: float,
+    ) -> None:
+        self._law, self._link, self._start_s = scene.driver.law, scene.driver.link, start_s
+        self._system = made.system
+        self.course: CrankCourse | None = None
+        self._gain = 0.0
+        self._constraint: Index = None
+        if drive == "servo":
+            gain = float(settings["servo_gain"]) * inertia_scale(scene)
+            self._gain = gain * self._law.peak_speed_rad_s
+            self._add_motor(made.crank_markers(self._link))
+        elif drive == "prescribed":
+            self._constrain(made.crank_markers(self._link), dt_s)
+
+    def _constrain(self, ends: list[Any], dt_s: float) -> None:
+        """A constraint of the speed, or of the angle where the speed changes."""
+        told: dict[str, object]
+        if isinstance(self._law, ConstantSpeed):
+            told = {"velocityLevel": True, "offset": self._law.speed_rad_s}
+        else:
+            self.course = course = CrankCourse(self._law, self._start_s, dt_s)
+            told = {"offsetUserFunction": course.angle, "offsetUserFunction_t": course.speed}
+        self._constraint = self._system.AddObject(
+            items.ObjectConnectorCoordinate(markerNumbers=ends, **told)
+        )
+
+    def _add_motor(self, ends: list[Any]) -> None:
+        """A damper to the ground, and the torque that it has at the law's speed."""
+        law, gain, start_s = self._law, self._gain, self._start_s
+        self._system.AddObject(
+            items.ObjectConnectorCoordinateSpringDamper(markerNumbers=ends, damping=gain)
+        )
+
+        def torque(_system: object, time_s: float, _load: float) -> float:
+            return gain * float(law.at(np.array(start_s + time_s))[1])
+
+        steady = isinstance(law, ConstantSpeed)
+        self._system.AddLoad(
+            items.LoadCoordinate(
+                markerNumber=ends[1],
+                load=torque(None, 0.0, 0.0),
+                loadUserFunction=0 if steady else torque,
+            )
+        )
+
+    def torque(self, poses: Poses, lambdas: Array, held: Multipliers) -> Array:
+        """What it exerts on the crank [N m] at states with such multipliers, a row each."""
+        if self._constraint is not None:
+            (row,) = held.rows(self._constraint)
+            return np.asarray(-lambdas[:, row])
+        lag = self._law.at(poses.time_s)[1] - poses.bodies[self._link].omega
+        return np.asarray(self._gain * lag)

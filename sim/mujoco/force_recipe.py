@@ -1,0 +1,144 @@
+"""How to read reactions and the driving torque out of MuJoCo, as a program."""
+
+from __future__ import annotations
+
+from models.characteristics import Constant
+from models.errors import EngineError
+from models.joints import joined_at
+from models.laws import ConstantSpeed
+from models.mjcf import build
+from models.mjcf_friction import planned
+from models.mjcf_options import driver_joint
+from models.motion import State
+from models.scene import Scene
+from models.tree import Tree
+from sim.engine import Settings
+from sim.force_recipes import ForceRecipe
+from sim.mujoco.settings import writing
+
+PROGRAM = '''"""Reactions and driving torque of {scene} in MuJoCo, over one turn of {driver}."""
+
+import mujoco
+import numpy as np
+
+MODEL = """\\
+{model}"""
+
+model = mujoco.MjModel.from_xml_string(MODEL)
+data = mujoco.MjData(model)
+mujoco.mj_resetDataKeyframe(model, data, 0)  # assembled, with the speeds that go together
+
+# Pins that close a loop: the equality, and the sign of its force on the body named. A connect
+# pushes its first body by +force and its second by -force.
+LOOPS = {loops}
+# Pins of the tree: the body that hangs there, and the sign for the body named.
+HINGES = {hinges}
+crank = model.joint({joint!r}).dofadr[0]
+
+
+def loop_force(equality):
+    """Of a connect [N], along x and y of the world."""
+    # efc_force holds three rows for each active connect, x, y and z; efc_id says of which equality.
+    # Equalities come first, so that the rows of one stand together among the first ne.
+    rows = np.flatnonzero(data.efc_id[: data.ne] == model.equality(equality).id)
+    return data.efc_force[rows[:2]]
+
+
+print(",".join(["time_s", *(f"{{pin}}.{{axis}}_n" for pin in (*LOOPS, *HINGES) for axis in "xy"),
+                "torque_n_m"]))
+inertial = np.zeros(model.nv)
+for step in range({steps}):
+    # After mj_step the accelerations and forces in data still are those of the state before it,
+    # under RK4 of its last stage. mj_forward works them out at the state that data holds now.
+    mujoco.mj_forward(model, data)
+    # cfrc_int, what each body is given by its parent, is filled by this call alone. Its rows are
+    # moment and force, in the world's axes, about the centre of mass of the whole tree: the force
+    # is that at the pin, the moment is not.
+    mujoco.mj_rnePostConstraint(model, data)
+    # What the bodies take of the crank's hinge for their acceleration, velocity and weight. The
+    # armature that keeps the speed is no part of it, as qfrc_actuator or M qacc would have it.
+    mujoco.mj_rne(model, data, 1, inertial)
+    # Loops, friction and loads do their share; the drive does what is left.
+    torque = inertial[crank] - data.qfrc_constraint[crank] - data.qfrc_actuator[crank]
+    forces = [sign * loop_force(name) for name, sign in LOOPS.values()]
+    forces += [sign * data.cfrc_int[model.body(name).id, 3:5] for name, sign in HINGES.values()]
+    # The clock adds up steps, and rounding; number times step does not.
+    row = [{start!r} + step * model.opt.timestep, *np.ravel(forces), torque]
+    print(",".join(f"{{number:.12g}}" for number in row))
+    mujoco.mj_step(model, data)
+'''
+
+
+def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
+    """Pins of two bodies; those of the tree where no loads act, which ``cfrc_int`` would count as
+    coming through them. Refused are drives and loads that a file does not hold."""
+    _check_held(scene)
+    chosen = writing(scene, settings, dt_s, "prescribed")
+    tree = planned(scene, state, chosen)
+    loops = _loops(scene, tree)
+    if not loops:
+        raise EngineError(
+            f"{scene.name}: no loop closes at a pin of two bodies, whose reaction this recipe "
+            "reads; take another scene, or close it elsewhere (setting close)"
+        )
+    return PROGRAM.format(
+        scene=scene.name,
+        driver=scene.driver.link,
+        model=build(scene, state, chosen, tree).replace("\\", "\\\\").replace('"""', '\\"""'),
+        loops=_listed(loops),
+        hinges=_listed({} if scene.loads else _hinges(scene, tree)),
+        joint=driver_joint(scene),
+        steps=round(scene.driver.law.period_s / dt_s) + 1,
+        start=state.time_s,
+    )
+
+
+def _check_held(scene: Scene) -> None:
+    """Refuse what comes as a control of each step."""
+    varying = [
+        f"loads.{load.name}"
+        for load in scene.loads.values()
+        if not isinstance(load.characteristic, Constant) or load.stroke != "both"
+    ]
+    if not isinstance(scene.driver.law, ConstantSpeed):
+        varying.insert(0, "driver")
+    if varying:
+        raise EngineError(
+            f"{scene.name}: {', '.join(varying)} comes as a control of each step, which the recipe "
+            "leaves out; take a scene of constant speed and constant loads"
+        )
+
+
+def _loops(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
+    """By pin and its second body: the connect, and the sign of its force there."""
+    pins = joined_at(scene)
+    return {
+        f"{c.point}.{pins[c.point][1]}": (
+            f"{c.point}: {c.bodies[0]} to {c.bodies[1]}",
+            1 if c.bodies[0] == pins[c.point][1] else -1,
+        )
+        for c in tree.closures
+        if len(pins[c.point]) == 2
+    }
+
+
+def _hinges(scene: Scene, tree: Tree) -> dict[str, tuple[str, int]]:
+    """By pin and its second body: the body that hangs there, and the sign of what it is given."""
+    pins = joined_at(scene)
+    return {
+        f"{limb.point}.{pins[limb.point][1]}": (
+            limb.body,
+            1 if limb.body == pins[limb.point][1] else -1,
+        )
+        for limb in tree.limbs
+        if limb.slider is None and len(pins[limb.point]) == 2
+    }
+
+
+def _listed(table: dict[str, tuple[str, int]]) -> str:
+    """A dictionary, an entry a line."""
+    rows = "".join(f"    {key!r}: {value!r},\n" for key, value in table.items())
+    return f"{{\n{rows}}}" if rows else "{}"
+
+
+FORCE_RECIPE: ForceRecipe = write_recipe

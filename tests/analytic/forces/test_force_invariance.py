@@ -1,0 +1,127 @@
+"""Forces of a mechanism turned, moved, mirrored, scaled or sped up are those of before, carried.
+
+With them goes what acts on it: loads of every law, over time, angle and displacement, on one stroke
+or on both.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from analytic.check import moved_scene
+from analytic.forces import kinetostatics
+from models.array import Array
+from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.files import load_scene, shipped
+from models.forces import Forces
+from models.friction import ConstantFriction, CoulombFriction
+from models.scene import Scene
+from tests.analytic.forces.beside import apart, turn
+from tests.worlds.loading import loaded
+from tests.worlds.other_way import sped_up
+
+CLOSE = 1e-11
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change of scenes, and what it does: the plane is mirrored in the x-axis, turned, and grows;
+    all goes ``fast`` times as fast."""
+
+    of: Callable[[Scene], Scene]
+    turn_rad: float = 0.0
+    grow: float = 1.0
+    fast: float = 1.0
+    flip: bool = False
+
+    def expected(self, old: Forces) -> Forces:
+        """The forces of the changed scene, from those of the scene."""
+        force, hand = self.grow**2 * self.fast**2, -1.0 if self.flip else 1.0
+        c, s = np.cos(self.turn_rad), np.sin(self.turn_rad)
+
+        def carried(series: Array) -> Array:
+            if series.ndim == 1:
+                return series
+            x, y = series[:, 0], hand * series[:, 1]
+            return force * np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+        turned = old.each_series(carried)
+        sliders = {
+            name: replace(
+                one, normal=hand * force * one.normal, moment=hand * self.grow * force * one.moment
+            )
+            for name, one in old.sliders.items()
+        }
+        return replace(turned, sliders=sliders, torque=hand * self.grow * force * old.torque)
+
+
+CHANGES = {
+    "turned": Change(lambda s: moved_scene.rotated(s, 0.7), turn_rad=0.7),
+    "moved": Change(lambda s: moved_scene.moved(s, (3.0, -2.0))),
+    "mirrored": Change(moved_scene.mirrored, flip=True),
+    "larger": Change(lambda s: moved_scene.scaled(s, 10.0), grow=10.0),
+    "smaller": Change(lambda s: moved_scene.scaled(s, 0.1), grow=0.1),
+    "faster": Change(lambda s: sped_up(s, 50.0), fast=50.0),
+    "the other way": Change(lambda s: sped_up(s, -1.0), fast=-1.0),
+}
+LOADED = ("shaper", "sixbar-watt", "tangent", "whitworth", "scotch-yoke")
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("name", shipped("forces"))
+def test_forces_go_with_the_scene(name: str, change: str) -> None:
+    _goes_with(load_scene(name), CHANGES[change])
+
+
+@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("name", LOADED)
+def test_forces_of_any_loads_go_with_the_scene(name: str, change: str) -> None:
+    for seed in range(8):
+        _goes_with(loaded(load_scene(name), random.Random(seed)), CHANGES[change])
+
+
+def _goes_with(scene: Scene, change: Change) -> None:
+    time_s = turn(scene)
+    found = kinetostatics.forces(change.of(scene), time_s / change.fast)
+    assert apart(change.expected(kinetostatics.forces(scene, time_s)), found) <= CLOSE
+
+
+CHARACTERISTICS = (
+    Constant(3.0),
+    Sine(2.0, 1.5, 0.4),
+    Polynomial((1.0, -0.5, 0.25, 2.0)),
+    Tabulated((-2.0, -0.5, 1.0, 2.0), (1.0, -1.0, 4.0, 3.0), "linear"),
+    Tabulated((-2.0, -0.5, 1.0, 2.0), (1.0, -1.0, 4.0, 3.0), "pchip"),
+    Tabulated((0.1, 0.5, 1.0), (1.0, -1.0, 4.0), "pchip", 1.3),
+)
+
+
+@pytest.mark.parametrize("own", CHARACTERISTICS, ids=lambda own: type(own).__name__)
+@pytest.mark.parametrize(("stretch", "shift"), [(1.0, 0.7), (-1.0, 0.0), (0.1, 0.0), (-3.0, 0.2)])
+def test_a_characteristic_is_carried(own: Characteristic, stretch: float, shift: float) -> None:
+    x = np.linspace(-2.0, 2.0, 41)
+    found = own.carried(-2.0, stretch=stretch, shift=shift).at(stretch * x + shift)
+    np.testing.assert_allclose(found, -2.0 * own.at(x), rtol=1e-12, atol=1e-12)
+
+
+def test_friction_grows_with_the_scene() -> None:
+    """As forces and lengths do; what is over nothing stays."""
+    scene = load_scene("slider-crank-central")
+    own = {
+        "A": CoulombFriction("A", 0.1, 0.02),
+        "B": ConstantFriction("B", 3.0),
+        "C": ConstantFriction("C", 5.0),
+    }
+    scene = replace(scene, friction=own)
+    larger, faster = moved_scene.scaled(scene, 10.0).friction, sped_up(scene, 3.0).friction
+    assert larger["A"] == CoulombFriction("A", 0.1, 0.2)
+    assert larger["B"] == ConstantFriction("B", 3000.0)
+    assert larger["C"] == ConstantFriction("C", 500.0)
+    assert faster["A"] == own["A"]
+    assert faster["B"] == ConstantFriction("B", 27.0)
+    assert moved_scene.mirrored(scene).friction == moved_scene.moved(scene, (1.0, 0.0)).friction

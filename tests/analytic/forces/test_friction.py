@@ -1,0 +1,316 @@
+"""Driving torque and reactions with friction: textbooks, other computations, fifty digits."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.check import multipliers, power
+from analytic.forces import kinetostatics
+from analytic.forces.efficiency import friction_power
+from analytic.kinematics import reach, solve, solve_driven
+from models.errors import CrankcheckError
+from models.files import load_scene, parse_scene, shipped
+from models.forces import Forces
+from models.friction import ConstantFriction, CoulombFriction
+from models.scene import Scene
+from tests.analytic.chain import Chain, coordinates
+from tests.analytic.dyads.test_redundant import parallelogram, with_strut
+from tests.analytic.forces.beside import AGREED, apart, out_of_balance, series, turn
+from tests.analytic.forces.exact_friction import exact_rubbed
+from tests.worlds.loading import loaded
+from tests.worlds.rubbing import rubbed, rubbed_mechanism
+
+PRESS = """
+name = "press"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
+rod = { bar = ["B", "C"], length_m = 0.3, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
+[sliders.piston]
+point = "C"
+on = "ground"
+mass_kg = 1e-9
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+[loads.work]
+block = "piston"
+direction_deg = 0.0
+force_n = 1000.0
+"""
+"""While the crank turns from 0 to 180 deg the piston comes back against the load."""
+
+
+def press(**friction: CoulombFriction | ConstantFriction) -> Scene:
+    return replace(parse_scene(PRESS, "press"), friction=friction)
+
+
+def at(scene: Scene, phi_deg: float) -> Forces:
+    theta = np.radians([phi_deg])
+    return kinetostatics.forces(scene, solve_driven(scene, theta, np.array(1.0), np.array(0.0)))
+
+
+def lean(phi_deg: float) -> float:
+    return math.asin(0.1 * math.sin(math.radians(phi_deg)) / 0.3)
+
+
+@pytest.mark.parametrize("phi_deg", [20.0, 75.0, 90.0, 140.0])
+@pytest.mark.parametrize("mu", [0.0, 0.1, 0.4])
+def test_a_slider_rubs_as_the_textbook_has_it(phi_deg: float, mu: float) -> None:
+    """With the rod's lean psi and its force S along it: S cos psi = F + mu S sin psi, so
+    S = F / (cos psi - mu sin psi), and the torque is S r sin(phi + psi)."""
+    psi, phi = lean(phi_deg), math.radians(phi_deg)
+    rod = 1000.0 / (math.cos(psi) - mu * math.sin(psi))
+    found = at(press(piston=CoulombFriction("piston", mu)), phi_deg)
+    assert found.torque[0] == pytest.approx(rod * 0.1 * math.sin(phi + psi), rel=1e-12)
+    assert abs(found.sliders["piston"].normal[0]) == pytest.approx(rod * math.sin(psi), rel=1e-12)
+    assert found.friction["piston"][0] == pytest.approx(mu * rod * math.sin(psi), rel=1e-12)
+
+
+@pytest.mark.parametrize("phi_deg", [20.0, 75.0, 140.0])
+def test_the_rod_is_pulled_along_the_tangent_of_two_friction_circles(phi_deg: float) -> None:
+    """Both pins of a massless rod rub: its force keeps its line, which leans from that of the pins
+    by asin((c_B +- c_C)/l), c the radii of the friction circles; from the moments about B, of the
+    rod, and about C, in the figure. Here the couples are laid out by hand."""
+    mu, radius = 0.2, 0.02
+    circle = radius * math.sin(math.atan(mu))
+    scene = press(B=CoulombFriction("B", mu, radius), C=CoulombFriction("C", mu, radius))
+    found = at(scene, phi_deg)
+    force = math.hypot(*found.pins["C"]["rod"][0])
+    # crank 1 rad/s, rod slower than it: rod turns against the crank, block against the rod
+    motion = solve_driven(scene, np.radians([phi_deg]), np.array(1.0), np.array(0.0))
+    turning = motion.links["rod"].omega[0]
+    at_b, at_c = -math.copysign(circle, turning - 1.0), math.copysign(circle, 0.0 - turning)
+    # Moments on the rod about B: l x S + couple at B + couple at C = 0.
+    span = motion.points["C"].position[0] - motion.points["B"].position[0]
+    held = found.pins["C"]["rod"][0]
+    moment = span[0] * held[1] - span[1] * held[0]
+    assert moment == pytest.approx(-(at_b + at_c) * force, rel=1e-11)
+    distance = moment / force
+    assert abs(distance) == pytest.approx(abs(at_b + at_c), rel=1e-11)
+    assert found.friction["B"][0] == pytest.approx(at_b * force, rel=1e-11)
+    assert found.friction["C"][0] * (0.0 - turning) < 0.0
+
+
+def test_constant_friction_of_the_drive_adds_to_its_torque() -> None:
+    scene = press(A=ConstantFriction("A", 2.0))
+    for rate in (1.0, -1.0):
+        motion = solve_driven(scene, np.radians([40.0]), np.array(rate), np.array(0.0))
+        found = kinetostatics.forces(scene, motion)
+        bare = kinetostatics.forces(replace(scene, friction={}), motion)
+        assert found.torque[0] - bare.torque[0] == pytest.approx(2.0 * rate, rel=1e-12)
+        assert found.friction["A"] == pytest.approx([-2.0 * rate])
+
+
+def test_the_radius_of_the_friction_circle_is_r_sin_of_the_angle_of_friction() -> None:
+    law = CoulombFriction("B", 0.75, 0.1)
+    assert law.arm_m == pytest.approx(0.1 * 0.6)
+    assert CoulombFriction("B", math.tan(math.asin(0.3)), 0.1).arm_m == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_three_computations_agree_with_friction(name: str) -> None:
+    scene = rubbed(loaded(load_scene(name), random.Random(name)), random.Random(name), 0.1)
+    time_s = turn(scene)
+    found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+    kept = found.bound is not None and np.isfinite(found.bound.torque)
+    some = time_s[kept][::5]
+    found = kinetostatics.forces(scene, some)
+    motion = solve(scene, some)
+    assert len(some) >= 5
+    assert apart(found, multipliers.forces(scene, motion)) <= AGREED
+    assert out_of_balance(scene, some, found) <= AGREED
+    for joint, watts in friction_power(scene, motion, found.friction).items():
+        assert np.all(watts <= 0.0), joint
+    assert any(np.any(np.abs(each) > 0.0) for each in found.friction.values())
+
+
+def test_random_mechanisms_agree_with_the_multipliers() -> None:
+    """Where friction has one solution; blocks on moving guides among them, and their pins."""
+    told = 0
+    for number in range(0, 60, 4):
+        scene, _ = rubbed_mechanism(number)
+        time_s = np.linspace(0.01, 1.0, 5) * scene.driver.law.period_s
+        found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+        assert found.bound is not None
+        some = time_s[found.bound.torque < 1e-6 * np.abs(found.torque).max()]
+        if len(some):
+            found, motion = kinetostatics.forces(scene, some), solve(scene, some)
+            assert apart(found, multipliers.forces(scene, motion)) <= AGREED, number
+            assert out_of_balance(scene, some, found) <= AGREED, number
+            lost = sum(friction_power(scene, motion, found.friction).values())
+            bare = replace(scene, friction={})
+            without = power.power_balance(bare, motion, found.torque)
+            off = np.abs(without.put_in - without.used + lost)
+            assert np.max(off) <= AGREED * np.max(without.scale), number
+            told += len(some)
+    assert told > 40
+
+
+def test_a_fault_in_friction_makes_them_disagree() -> None:
+    scene = press(piston=CoulombFriction("piston", 0.2))
+    scene = replace(scene, gravity_m_s2=(0.0, -9.81))
+    time_s = np.linspace(0.2, 2.9, 7)
+    found = kinetostatics.forces(scene, time_s)
+    more = replace(scene, friction={"piston": CoulombFriction("piston", 0.2 + 1e-9)})
+    assert apart(found, multipliers.forces(scene, solve(scene, time_s))) <= AGREED
+    assert apart(found, multipliers.forces(more, solve(scene, time_s))) > AGREED
+    spoilt = replace(found, friction={"piston": found.friction["piston"] * (1.0 + 1e-9)})
+    assert out_of_balance(scene, time_s, spoilt) > AGREED
+    with pytest.raises(CrankcheckError, match=r"friction.piston is not given"):
+        power.power_balance(scene, solve(scene, time_s), found.torque)
+
+
+def test_without_a_coefficient_the_forces_are_those_without_friction() -> None:
+    """And with a small one they are near it, by as much."""
+    for number in range(0, 40, 4):
+        scene, _ = rubbed_mechanism(number)
+        time_s = np.linspace(0.01, 1.0, 7) * scene.driver.law.period_s
+        bare = kinetostatics.forces(replace(scene, friction={}), time_s)
+        for mu, off in ((0.0, 1e-13), (1e-9, 1e-6)):
+            laws = {j: CoulombFriction(j, mu, 0.0 if j in scene.sliders else 0.05)
+                    for j in scene.friction}  # fmt: skip
+            found = kinetostatics.forces(replace(scene, friction=laws), time_s)
+            assert apart(bare, replace(found, friction={})) < off, (number, mu)
+
+
+COUNT = 12
+
+
+def hold(number: int) -> tuple[int, int, float]:
+    """How many forces of a mechanism have a finite bound, of how many; no bound is broken."""
+    scene, near = rubbed_mechanism(number)
+    far = random.Random(number).uniform(-1.0, 1.0) * scene.driver.law.period_s
+    time_s = np.array([0.0 if near else far])
+    found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+    assert found.bound is not None
+    if not np.isfinite(found.bound.torque[0]):
+        return 0, 1, 1.0
+    motion = solve(scene, time_s)
+    solved = Chain(scene).solve(float(time_s[0]), coordinates(scene, motion, 0))
+    told = exact_rubbed(scene, float(time_s[0]), solved)
+    assert told is not None, f"mechanism {number}: a bound where nothing settles"
+    exact, friction = told
+    pairs = [(abs(found.torque[0] - exact.torque), found.bound.torque[0])]
+    for joint, size in friction.items():
+        pairs.append((abs(found.friction[joint][0] - size), found.bound.friction[joint][0]))
+    for point, held in exact.pins.items():
+        for body, (x, y) in held.items():
+            one = found.pins[point][body][0]
+            pairs.append((math.hypot(one[0] - x, one[1] - y), found.bound.pins[point][body][0]))
+    for name, (normal, moment) in exact.sliders.items():
+        one, most = found.sliders[name], found.bound.sliders[name]
+        pairs.append((abs(one.normal[0] - normal), most.normal[0]))
+        pairs.append((abs(one.moment[0] - moment), most.moment[0]))
+    broken = [(float(e), float(b)) for e, b in pairs if not e <= b + 1e-38 * exact.largest]
+    assert not broken, f"mechanism {number}: {broken[:3]}"
+    tight = [float(b / e) for e, b in pairs if e > 1e-30 * exact.largest and np.isfinite(b)]
+    return sum(bool(np.isfinite(b)) for _, b in pairs), len(pairs), float(np.median(tight or [1.0]))
+
+
+def test_no_bound_is_broken_against_fifty_digits() -> None:
+    rows = [hold(number) for number in range(COUNT)]
+    finite, total, tight = (np.array(column) for column in zip(*rows, strict=True))
+    assert finite.sum() > 0.7 * total.sum(), "bounds that are not finite say nothing"
+    assert np.median(tight) < 4e4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(4))
+def test_no_bound_is_broken_in_a_thousand_mechanisms(part: int) -> None:
+    for number in range(250 * part, 250 * (part + 1)):
+        hold(number)
+
+
+def test_bounds_change_no_number() -> None:
+    for number in (2, 4, 8):
+        scene, _ = rubbed_mechanism(number)
+        time_s = np.linspace(0.01, 1.0, 9) * scene.driver.law.period_s
+        with_ = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+        bare = kinetostatics.forces(scene, time_s, bound=False, skip_dead_points=True)
+        for (name, a), (_, b) in zip(series(with_), series(bare), strict=True):
+            np.testing.assert_array_equal(a, b, err_msg=name)
+
+
+def test_a_joint_that_does_not_move_may_rub_either_way() -> None:
+    """At the inner dead centre the piston stands: its friction is taken as 0, bounded by mu N."""
+    scene = press(piston=ConstantFriction("piston", 50.0))
+    motion = solve_driven(scene, np.array([0.0, 1.0]), np.array(1.0), np.array(0.0))
+    found = kinetostatics.forces(scene, motion)
+    assert found.bound is not None
+    assert found.friction["piston"].tolist() == [0.0, 50.0]
+    assert found.bound.friction["piston"][0] >= 50.0
+    assert found.bound.friction["piston"][1] < 1e-9
+    assert found.bound.pins["B"]["rod"][0] >= 50.0
+
+
+def test_rounding_is_no_motion() -> None:
+    """In the outer dead centre the piston moves at 1e-17 m/s, because pi is no float."""
+    scene = replace(press(piston=CoulombFriction("piston", 0.2)), gravity_m_s2=(0.0, -9.81))
+    heavy = replace(scene.sliders["piston"], mass_kg=10.0)
+    motion = solve_driven(scene, np.array([math.pi]), np.array(1.0), np.array(0.0))
+    assert 0.0 < abs(motion.sliders["piston"].speed[0]) < 1e-15
+    found = kinetostatics.forces(replace(scene, sliders={"piston": heavy}), motion)
+    assert found.bound is not None
+    assert found.friction["piston"][0] == 0.0
+    assert found.bound.friction["piston"][0] == pytest.approx(0.2 * 98.1)
+
+
+def test_friction_alone_asks_for_a_torque() -> None:
+    scene = press(A=ConstantFriction("A", 2.0))
+    sliders = {"piston": replace(scene.sliders["piston"], mass_kg=0.0)}
+    links = {n: replace(k, mass_kg=0.0, inertia_kg_m2=0.0) for n, k in scene.links.items()}
+    scene = replace(scene, links=links, sliders=sliders, loads={})
+    assert kinetostatics.forces(scene, [0.3]).torque == pytest.approx([2.0])
+
+
+def test_in_a_dead_point_friction_is_no_number() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    scene = replace(scene, friction={"C": ConstantFriction("C", 1.0)})
+    end = solve_driven(scene, np.array([reach(scene)[0][0]]), np.array(1.0), np.array(0.0))
+    found = kinetostatics.forces(scene, end, skip_dead_points=True)
+    assert found.bound is not None
+    assert np.isnan(found.friction["C"]).all()
+    assert np.isinf(found.bound.friction["C"]).all()
+
+
+def test_redundant_links_take_constant_friction_alone() -> None:
+    scene = replace(with_strut(parallelogram(1), "B0", "B1"), gravity_m_s2=(0.0, -9.81))
+    pivot = scene.driver_pivot
+    held = replace(scene, friction={pivot: ConstantFriction(pivot, 3.0)})
+    bare = kinetostatics.forces(scene, [0.1, 0.2])
+    found = kinetostatics.forces(held, [0.1, 0.2])
+    speed = scene.driver.law.at(np.zeros(1))[1][0]
+    assert found.torque - bare.torque == pytest.approx(3.0 * np.sign(speed))
+    assert not found.pins
+    rubbing = replace(scene, friction={pivot: CoulombFriction(pivot, 0.1, 0.01)})
+    with pytest.raises(CrankcheckError, match=r"redundant links .* so it can not be worked out"):
+        kinetostatics.forces(rubbing, [0.1])
+
+
+@pytest.mark.parametrize(
+    ("joint", "words"),
+    [("Q", "friction.Q: 0 bodies meet there, and two rub .* use one of A, B, C, piston")],
+)
+def test_friction_that_is_not_there_is_refused(joint: str, words: str) -> None:
+    with pytest.raises(CrankcheckError, match=words):
+        kinetostatics.forces(press(**{joint: ConstantFriction(joint, 1.0)}), [0.1])
+
+
+def test_stretches_joined_are_the_whole_friction_too() -> None:
+    scene = press(A=ConstantFriction("A", 2.0), piston=CoulombFriction("piston", 0.2))
+    whole = kinetostatics.forces(scene, np.linspace(0.1, 3.0, 9))
+    parts = [whole.stretch(slice(0, 4)), whole.stretch(slice(4, 9))]
+    joined = Forces.joined(parts)
+    for (name, a), (_, b) in zip(series(joined), series(whole), strict=True):
+        np.testing.assert_array_equal(a, b, err_msg=name)
+    assert len(parts[0].friction["A"]) == 4
+    doubled = whole.each_series(lambda each: 2.0 * each)
+    np.testing.assert_array_equal(doubled.friction["A"], 2.0 * whole.friction["A"])

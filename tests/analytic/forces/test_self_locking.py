@@ -1,0 +1,245 @@
+"""Where friction locks a mechanism, and what it costs where it does not."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.forces import kinetostatics
+from analytic.forces.efficiency import efficiency, friction_power
+from analytic.forces.self_locking import self_locking
+from analytic.kinematics import solve
+from models.errors import CrankcheckError
+from models.files import parse_scene
+from models.friction import ConstantFriction, CoulombFriction
+from models.laws import Accelerating, Oscillating
+from models.scene import Driver, Scene
+from tests.worlds.rubbing import rubbed_mechanism
+
+STEEP = """
+name = "slider-crank-self-locking"
+source = "a steep rod against a rubbing guide; closed form: rod's angle + friction angle = 90 deg"
+[ground]
+points = { A = [0.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+rod = { bar = ["B", "C"], length_m = 0.11, mass_kg = 0.0, inertia_kg_m2 = 0.0 }
+[sliders.piston]
+point = "C"
+on = "ground"
+mass_kg = 0.001
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+start_deg = 10.0
+[friction.piston]
+mu = 0.5
+[loads.out]
+block = "piston"
+direction_deg = 180.0
+force_n = 100.0
+slider = "piston"
+stroke = "forward"
+[loads.back]
+block = "piston"
+direction_deg = 0.0
+force_n = 100.0
+slider = "piston"
+stroke = "backward"
+"""
+"""The loads are against the motion on both strokes, and inertia is next to nothing."""
+
+
+HEAVY = STEEP.replace(", mass_kg = 0.0, inertia_kg_m2 = 0.0", "")
+for old, new in (("mass_kg = 0.001", "mass_kg = 0.5"), ("100.0", "500.0"), ("= 1.0", "= 10.0")):
+    HEAVY = HEAVY.replace(old, new)
+"""With masses as engines ask for."""
+
+
+def steep(mu: float = 0.5) -> Scene:
+    return parse_scene(STEEP.replace("mu = 0.5", f"mu = {mu}"), "steep")
+
+
+def limit(mu: float) -> float:
+    """The crank angle from the dead point at which psi = 90 deg - atan(mu), sin psi = r sin / l."""
+    return math.asin(0.11 / 0.1 * math.sin(math.pi / 2 - math.atan(mu)))
+
+
+@pytest.mark.parametrize("mu", [0.4591, 0.5, 1.0])
+def test_a_slider_crank_locks_where_the_rod_leans_by_the_complement(mu: float) -> None:
+    found = self_locking(steep(mu))
+    begin = limit(mu)
+    told = [(each.begin_rad, each.end_rad) for each in found]
+    wanted = [(begin, math.pi - begin), (math.pi + begin, math.tau - begin)]
+    assert all(each.locks for each in found)
+    assert np.ravel(told) == pytest.approx(np.ravel(wanted), abs=1e-13)
+    ends = math.degrees(begin), 180.0 - math.degrees(begin)
+    assert found[0].words == f"locks itself from {ends[0]:.6g} to {ends[1]:.6g} deg"
+
+
+@pytest.mark.parametrize(("at_b", "at_c"), [(0.0, 0.01), (0.01, 0.0), (0.02, 0.01)])
+def test_pins_that_rub_move_the_limit_by_the_lean_of_the_tangent(at_b: float, at_c: float) -> None:
+    """The rod's force runs along a tangent of both friction circles, which leans from the rod by
+    asin((c_B +- c_C)/l), and that counts in place of the rod's angle. Beyond 90 deg the rod turns
+    back, and rubs the other way in C."""
+    scene = steep()
+    circles = [radius * math.sin(math.atan(0.3)) for radius in (at_b, at_c)]
+    pins = {n: CoulombFriction(n, 0.3, r) for n, r in zip("BC", (at_b, at_c), strict=True) if r}
+    first = self_locking(replace(scene, friction={**scene.friction, **pins}), 180)[0]
+    before, after = (math.asin((circles[0] + sign * circles[1]) / 0.11) for sign in (1, -1))
+    steepest = math.pi / 2 - math.atan(0.5)
+    wanted = [math.asin(1.1 * math.sin(steepest - lean)) for lean in (before, after)]
+    assert first.locks
+    assert first.begin_rad == pytest.approx(wanted[0], abs=1e-8)
+    assert first.end_rad == pytest.approx(math.pi - wanted[1], abs=1e-8)
+
+
+def test_inertia_moves_no_limit() -> None:
+    """Which is the rod's angle as long as the load decides the sign of the normal force."""
+    scene = parse_scene(HEAVY, "heavy")
+    begin = limit(0.5)
+    found = self_locking(scene)
+    assert [each.locks for each in found] == [True, True]
+    assert found[0].begin_rad == pytest.approx(begin, abs=1e-12)
+    assert found[1].end_rad == pytest.approx(math.tau - begin, abs=1e-12)
+
+
+def test_with_less_friction_it_never_locks() -> None:
+    """psi reaches 65.4 deg, so below mu = tan(24.6 deg) = 0.4583 there is nothing to find."""
+    assert self_locking(steep(0.4582)) == ()
+    assert self_locking(replace(steep(), friction={})) == ()
+    constant = {"piston": ConstantFriction("piston", 1e6)}
+    assert self_locking(replace(steep(), friction=constant)) == ()
+
+
+def test_with_a_load_that_helps_it_may_jam() -> None:
+    scene = steep()
+    loads = {n: replace(one, direction_rad=one.direction_rad + math.pi)
+             for n, one in scene.loads.items()}  # fmt: skip
+    found = self_locking(replace(scene, loads=loads))
+    assert [each.locks for each in found] == [False, False]
+    assert found[0].begin_rad == pytest.approx(limit(0.5), abs=1e-13)
+    assert found[0].words.startswith("may jam from 79.69")
+
+
+def test_a_range_goes_on_over_the_start_of_the_cycle() -> None:
+    scene = steep()
+    law = replace(scene.driver.law, start_rad=math.radians(90.0))
+    found = self_locking(replace(scene, driver=Driver("crank", law)))
+    ends = sorted((each.begin_rad, each.end_rad) for each in found)
+    begin = limit(0.5)
+    assert ends[0] == pytest.approx((math.pi + begin, math.tau - begin), abs=1e-13)
+    assert ends[1] == pytest.approx((math.tau + begin, math.tau + math.pi - begin), abs=1e-13)
+
+
+def test_what_locks_everywhere_is_one_range() -> None:
+    scene = steep(5.0)
+    law = Oscillating(math.radians(90.0), math.radians(20.0), 2.0)
+    found = self_locking(replace(scene, driver=Driver("crank", law)))
+    assert found
+    assert all(each.locks for each in found)
+
+
+def test_locked_instants_are_refused_by_their_angle_or_left_out() -> None:
+    scene = steep()
+    with pytest.raises(CrankcheckError, match=r"crank at 85 deg .* locks itself: friction in pist"):
+        kinetostatics.forces(scene, [math.radians(75.0)])
+    time_s = np.radians([0.0, 75.0])
+    found = kinetostatics.forces(scene, time_s, skip_dead_points=True)
+    assert found.bound is not None
+    assert np.isnan(found.torque).tolist() == [False, True]
+    assert np.isnan(found.friction["piston"]).tolist() == [False, True]
+    assert np.isinf(found.bound.torque).tolist() == [False, True]
+    assert np.isinf(found.bound.friction["piston"]).tolist() == [False, True]
+    assert found.friction_solution is not None
+    assert found.friction_solution.solutions.tolist() == [1, 0]
+
+
+def test_beside_locking_the_torque_grows_past_all_bounds_and_so_does_its_own() -> None:
+    scene = steep()
+    time_s = limit(0.5) - math.radians(10.0) - np.array([1e-2, 1e-5, 1e-8])
+    found = kinetostatics.forces(scene, time_s)
+    assert found.bound is not None
+    assert np.all(np.diff(np.abs(found.torque)) > 0.0)
+    assert np.all(np.diff(found.bound.torque) > 0.0)
+    assert np.all(found.bound.torque < 1e-3 * np.abs(found.torque))
+    psi = np.arcsin(np.sin(time_s + math.radians(10.0)) / 1.1)
+    rod = 100.0 / (np.cos(psi) - 0.5 * np.sin(psi))
+    turned = rod * 0.1 * np.sin(time_s + math.radians(10.0) + psi)
+    assert np.abs(found.torque) == pytest.approx(turned, rel=1e-4)
+
+
+def test_efficiency_of_a_press_lies_between_0_and_1() -> None:
+    scene = steep(0.1)
+    rubs = {"A": 0.02, "B": 0.015, "C": 0.01}
+    pins = {joint: CoulombFriction(joint, 0.1, radius) for joint, radius in rubs.items()}
+    scene = replace(scene, friction={**scene.friction, **pins})
+    found = efficiency(scene)
+    assert found.locked == ()
+    assert 0.5 < found.cycle < 1.0
+    assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
+    assert found.useful == pytest.approx(2 * 100.0 * 0.2, rel=1e-4)  # the force over two strokes
+    known = found.instantaneous[~np.isnan(found.instantaneous)]
+    assert known.min() >= 0.0
+    assert known.max() <= 1.0
+    assert len(known) > 300
+
+
+def test_without_friction_nothing_is_lost() -> None:
+    found = efficiency(replace(steep(), friction={}))
+    assert found.cycle == pytest.approx(1.0, abs=1e-12)
+    assert found.wasted == 0.0
+    assert np.nanmin(found.instantaneous) == 1.0
+
+
+def test_an_instantaneous_efficiency_is_that_of_the_textbook() -> None:
+    """Torque without friction over that with it: 1 - mu tan psi, psi the rod's lean."""
+    scene = steep(0.1)
+    found = efficiency(scene, 90)
+    psi = np.arcsin(np.sin(found.theta) / 1.1)
+    wanted = 1.0 - 0.1 * np.abs(np.tan(psi))
+    assert found.instantaneous == pytest.approx(wanted, abs=2e-4)
+
+
+def test_where_its_loads_drive_it_a_machine_has_no_efficiency() -> None:
+    scene = steep(0.1)
+    loads = {n: replace(one, direction_rad=one.direction_rad + math.pi)
+             for n, one in scene.loads.items()}  # fmt: skip
+    found = efficiency(replace(scene, loads=loads))
+    assert math.isnan(found.cycle)
+    assert found.useful < 0.0
+    assert found.put_in == pytest.approx(found.useful + found.wasted, rel=1e-12)
+    idle = efficiency(replace(scene, loads={}))
+    assert math.isnan(idle.cycle)
+
+
+def test_of_a_machine_that_locks_no_work_is_told() -> None:
+    found = efficiency(steep())
+    assert math.isnan(found.cycle)
+    assert len(found.locked) == 2
+    assert np.isnan(found.power).sum() > 50
+
+
+def test_a_driver_that_speeds_up_has_no_cycle() -> None:
+    scene = replace(steep(), driver=Driver("crank", Accelerating(0.0, 1.0, 0.3)))
+    with pytest.raises(CrankcheckError, match="speeds up, so no cycle is like the next"):
+        efficiency(scene)
+
+
+def test_friction_never_puts_power_in() -> None:
+    """In any mechanism, in any joint."""
+    told = 0
+    for number in range(0, 40, 2):
+        scene, _ = rubbed_mechanism(number)
+        time_s = random.Random(number).uniform(0.0, 1.0) + np.linspace(0.0, 1.0, 9)
+        time_s = time_s * scene.driver.law.period_s
+        found = kinetostatics.forces(scene, time_s, bound=False, skip_dead_points=True)
+        watts = friction_power(scene, solve(scene, time_s, bound=False), found.friction)
+        for joint, each in watts.items():
+            assert not np.any(each > 0.0), (number, joint)
+            told += int(np.sum(each < 0.0))
+    assert told > 100

@@ -1,0 +1,96 @@
+"""The recipes run as they are pasted, and print the forces of the reference."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analytic.forces import kinetostatics
+from analytic.kinematics import solve
+from models.characteristics import Constant, Sine
+from models.errors import EngineError
+from models.files import load_scene
+from models.friction import ConstantFriction
+from models.loads import Load
+from models.scene import Scene
+from sim.force_recipes import force_recipe
+from sim.registry import engine, offering
+from sim.settings import resolved
+
+FOURBAR = load_scene("fourbar-lecture-1")
+WITHIN = {"mujoco": 1e-4}
+"""Of the largest reaction and of the largest torque, at 720 steps a turn; 1e-3 for others."""
+
+
+def recipe(name: str, scene: Scene) -> str:
+    settings = resolved(engine(name).profiles["tuned"], None)
+    return force_recipe(name, scene, solve(scene, np.zeros(1)).state(), settings, 720.0)
+
+
+def printed(text: str, folder: Path) -> dict[str, np.ndarray]:
+    """The columns that a program prints, in a Python to which nothing of ours is shown."""
+    program = folder / "recipe.py"
+    program.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-I", program.name],
+        check=False,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    head = done.stdout.splitlines()[0].split(",")
+    rows = np.loadtxt(io.StringIO(done.stdout), delimiter=",", skiprows=1)
+    return dict(zip(head, rows.T, strict=True))
+
+
+def off(scene: Scene, columns: dict[str, np.ndarray]) -> float:
+    """The largest error of what was printed, as shares of the largest reaction and torque."""
+    true = kinetostatics.forces(scene, columns["time_s"], bound=False)
+    largest = max(np.abs(force).max() for by in true.pins.values() for force in by.values())
+    errors = [np.abs(columns["torque_n_m"] - true.torque).max() / np.abs(true.torque).max()]
+    for name in columns:
+        if name.endswith(("x_n", "y_n")):
+            point, body, axis = name.rsplit(".", 2)
+            exact = true.pins[point][body][:, "xy".index(axis[0])]
+            errors.append(np.abs(columns[name] - exact).max() / largest)
+    assert len(errors) >= 3
+    return float(max(errors))
+
+
+@pytest.mark.parametrize("name", offering("force_recipe"))
+def test_a_recipe_runs_without_us_and_has_the_forces_of_the_reference(
+    name: str, tmp_path: Path
+) -> None:
+    text = recipe(name, FOURBAR)
+    for ours in ("crankcheck", "models", "analytic", "sim.", "reports"):
+        assert f"import {ours}" not in text
+        assert f"from {ours}" not in text
+    columns = printed(text, tmp_path)
+    turn = columns["time_s"][-1] - columns["time_s"][0]
+    assert turn == pytest.approx(FOURBAR.driver.law.period_s, rel=0.01)
+    assert off(FOURBAR, columns) < WITHIN.get(name, 1e-3)
+
+
+def test_that_of_mujoco_reads_past_loads_friction_and_sliders(tmp_path: Path) -> None:
+    weight = Load("weight", "rocker", "C", Constant(5.0), direction_rad=-0.5 * np.pi)
+    rubbing = {"A": ConstantFriction("A", 0.05)}
+    loaded = replace(FOURBAR, loads={"weight": weight}, friction=rubbing)
+    assert off(loaded, printed(recipe("mujoco", loaded), tmp_path)) < 1e-4
+    engine_like = load_scene("slider-crank-excel-210")
+    assert off(engine_like, printed(recipe("mujoco", engine_like), tmp_path)) < 1e-4
+
+
+def test_that_of_mujoco_is_refused_where_a_file_does_not_hold_what_drives_or_loads() -> None:
+    pulse = replace(FOURBAR, loads={"pulse": Load("pulse", "rocker", None, Sine(1.0, 1.0))})
+    with pytest.raises(EngineError, match=r"loads.pulse comes as a control of each step"):
+        recipe("mujoco", pulse)
+    with pytest.raises(EngineError, match=r"tangent: driver comes as a control"):
+        recipe("mujoco", load_scene("tangent"))
