@@ -3,6 +3,12 @@
 Chipmunk tells of a constraint the magnitude of its impulse in the last step, and no direction. A
 step moves the positions first and solves for the velocities there, so its impulses belong to its
 end, where the arms are: over the step they are the forces at the logged sample, to second order.
+
+A run starts with closed joints, and goes on with ones that are open by what the curvature of paths
+makes of a step. The first two steps make up for that, and their forces are wrong by 0.1 to 0.5 of
+the largest whatever the step (every shipped scene but one that starts at rest); the third is of
+first order, the fourth as all after it. Where iterations do not come to an end it dies off by and
+by: with 150 on the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
 """
 
 from __future__ import annotations
@@ -59,6 +65,7 @@ class Reactions:
         self._on_blocks.append(on_blocks)
         self._rubbed.append(rubbed)
 
+    @np.errstate(all="ignore")  # what comes apart may overflow; it is judged, not warned of
     def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
         """The forces at logged steps, and what speaks against them.
 
