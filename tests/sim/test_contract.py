@@ -25,6 +25,8 @@ NOT_OF_FAKES = {"EC52": "placing is solved", "EC55": "told to refuse drive free"
 """What the fake engines do not promise."""
 OF_FORCES = {"EC81", "EC82", "EC83", "EC84", "EC85", "EC86"}
 """Clauses of what an engine need not declare."""
+REFUSED = {("mujoco", "EC86"): "slotted-lever"}
+"""A scene that an engine refuses in one clause alone: friction in the pin that closes its loop."""
 SOLVERS, NOT_OF_SOLVERS = ("exudyn",), {"EC52": "placing is solved"}
 """Engines that solve for their joints, and what that leaves nothing to try of."""
 
@@ -51,7 +53,8 @@ def test_every_engine_holds_the_contract(adapter: Engine, clause: str) -> None:
     elif clause in untried:
         assert untried[clause] in ruling.untried[0]
     else:
-        assert ruling.scenes == (scenes if CLAUSES[clause].of_scenes else scenes[:1])
+        wanted = [name for name in scenes if name != REFUSED.get((adapter.name, clause))]
+        assert list(ruling.scenes) == (wanted if CLAUSES[clause].of_scenes else wanted[:1])
 
 
 def declares(adapter: Engine, clause: str) -> bool:
