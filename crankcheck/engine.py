@@ -10,13 +10,15 @@ An adapter opens a session at a state, steps it, and says what it holds and what
 `Poses`; everything after that is crankcheck's. docs/own-engine.md shows one from top to bottom;
 ``crankcheck engines check package.module:ENGINE`` says what one still does wrong.
 
-What stands here is public. ``drive`` says what the crank is to be told at each step, and ``tree``
-lays out a mechanism for an engine with joint coordinates, whose motion `body_poses` turns into
-poses.
+What stands here is public. ``drive`` says what the crank is to be told at each step,
+``load_magnitudes`` how large the loads of a scene are meanwhile, and ``tree`` lays out a mechanism
+for an engine with joint coordinates, whose motion `body_poses` turns into poses.
 """
 
 from models import tree
 from models.errors import EngineError
+from models.forces import Forces, SliderForces
+from models.friction import ConstantFriction
 from models.joints import (
     Joints,
     Pin,
@@ -26,19 +28,23 @@ from models.joints import (
     blocks,
     bodies,
     carriers,
+    joined_at,
     joints,
     local_point,
     sliding_angle,
 )
+from models.loads import Load
 from models.motion import State
 from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider
-from sim import drive
+from sim import drive, load_magnitudes
 from sim.engine import (
     BodyPose,
     Drive,
     Engine,
     Facts,
+    ForceSession,
+    ForcesOf,
     Log,
     Placing,
     Poses,
@@ -54,12 +60,17 @@ from sim.tree_poses import body_poses
 __all__ = [
     "GROUND",
     "BodyPose",
+    "ConstantFriction",
     "Drive",
     "Engine",
     "EngineError",
     "Facts",
+    "ForceSession",
+    "Forces",
+    "ForcesOf",
     "Frame",
     "Joints",
+    "Load",
     "Log",
     "Pin",
     "Placing",
@@ -74,6 +85,7 @@ __all__ = [
     "SettingValue",
     "Settings",
     "Slider",
+    "SliderForces",
     "Slot",
     "State",
     "block_name",
@@ -86,7 +98,9 @@ __all__ = [
     "check_ranges",
     "drive",
     "frames",
+    "joined_at",
     "joints",
+    "load_magnitudes",
     "local_point",
     "mass_of",
     "sliding_angle",

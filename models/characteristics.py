@@ -28,6 +28,10 @@ class Characteristic(ABC):
     def at(self, x: Array) -> Array:
         """The magnitude, shape of ``x``. Raises ValueError where there is none."""
 
+    def nearest(self, x: float) -> float:
+        """The place next to ``x`` that has a magnitude."""
+        return x
+
     @abstractmethod
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         """A bound on its slope within ``by`` of ``x``."""
@@ -150,6 +154,14 @@ class Tabulated(Characteristic):
                 f"found {self.places[k + 1]:g} after {self.places[k]:g}; the places of a table "
                 "have to increase from row to row"
             )
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+            steep = ~np.isfinite(np.diff(self.values) / steps)
+        if steep.any():
+            k = int(np.argmax(steep))
+            raise ValueError(
+                f"found {self.values[k]:g} and {self.values[k + 1]:g} in rows {steps[k]:.3g} "
+                "apart, a rise beyond all numbers; set the rows further apart"
+            )
         if self.period is not None:
             self._check_period(self.period)
 
@@ -187,6 +199,9 @@ class Tabulated(Characteristic):
         if self.period is None:
             return x
         return np.asarray(self.places[0] + np.mod(x - self.places[0], self.period))
+
+    def nearest(self, x: float) -> float:
+        return x if self.period is not None else min(max(x, self.places[0]), self.places[-1])
 
     def _check_within(self, x: Array) -> None:
         first, last = self.places[0], self.places[-1]

@@ -40,8 +40,8 @@ class FrictionSolution:
 
     ``solutions`` is 1 where there is one, 2 where there are two or more, of which the one with the
     least friction is given, and 0 where there is none: no finite torque keeps the mechanism moving.
-    ``iterations`` were taken, and ``change`` is what the last of them changed, over the largest
-    friction.
+    ``iterations`` were taken; ``change`` is what the last of them changed or, where there may be
+    several solutions, what the one that is given leaves open, over the largest friction.
     """
 
     solutions: Array

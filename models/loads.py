@@ -72,9 +72,16 @@ class Load:
         self, time_s: float, driver_rad: float, sliders: Mapping[str, tuple[float, float]]
     ) -> float:
         """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
-        with speeds [m/s]. Raises CrankcheckError as `magnitude`."""
+        with speeds [m/s].
+
+        Past its end a table over the displacement keeps its last value: an engine whose slider goes
+        further than the mechanism can is to be judged by where it goes.
+
+        Raises CrankcheckError as `magnitude`, but for that.
+        """
         displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
-        x = {"time": time_s, "angle": driver_rad, "displacement": displacement}[self.over]
+        near = self.characteristic.nearest(displacement)
+        x = {"time": time_s, "angle": driver_rad, "displacement": near}[self.over]
         return float(self.magnitude(np.array([x]), np.array([speed]))[0])
 
     def uncertain(

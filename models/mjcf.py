@@ -9,7 +9,8 @@ The assembled state is the keyframe ``assembled``.
 A massless slider block needs no body: the body that it would be pinned to carries a slide and a
 hinge. The crank is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism
 cannot change its speed. A law other than constant speed comes as a control stream: the motor's
-control is the angular acceleration of the crank.
+control is the angular acceleration of the crank. Loads are actuators too (`models.mjcf_loads`),
+constant friction is in the joints (`models.mjcf_friction`).
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ def build(
     Raises
     ------
     EngineError
-        A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop.
+        A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop; a
+        load or friction that MuJoCo can not have there.
     """
     _check_masses(scene)
     writing = exact(scene) if writing is None else writing

@@ -155,12 +155,15 @@ class _System:
         rows = [np.column_stack([gain.force, gain.moment]) for gain in self._gains.values()]
         right = np.concatenate(rows, axis=1)[:, :, None]
         matrix = np.stack(self._columns, axis=2)
+        lost = ~np.isfinite(matrix).all(axis=(1, 2))
+        matrix[lost] = 0.0
         if matrix.shape[1] != matrix.shape[2]:
-            return np.asarray((np.linalg.pinv(matrix) @ right)[:, :, 0])
-        singular = np.linalg.slogdet(matrix)[0] == 0.0
-        matrix[singular] = np.eye(matrix.shape[1])
-        found = np.asarray(np.linalg.solve(matrix, right)[:, :, 0])
-        found[singular] = np.nan
+            found = np.asarray((np.linalg.pinv(matrix) @ right)[:, :, 0])
+        else:
+            lost |= np.linalg.slogdet(matrix)[0] == 0.0
+            matrix[lost] = np.eye(matrix.shape[1])
+            found = np.asarray(np.linalg.solve(matrix, right)[:, :, 0])
+        found[lost] = np.nan
         return found
 
     def _column(self) -> Array:

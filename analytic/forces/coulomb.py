@@ -56,7 +56,7 @@ class CoulombSystem:
         """Newton's step: the solution where the reactions have these directions, (T, m, 2)."""
         slope = self.mu[:, None] * np.einsum("tjx,tjkx->tjk", direction, self.influence)
         right = self.mu * np.einsum("tjx,tjx->tj", direction, self.alone)
-        return solved(np.eye(len(self.mu)) - slope, right)
+        return solve_small(np.eye(len(self.mu)) - slope, right)
 
     def at(self, samples: Mask) -> CoulombSystem:
         return CoulombSystem(self.alone[samples], self.influence[samples], self.mu)
@@ -103,10 +103,10 @@ def weights(gains: Array) -> Array:
     """w with (1 - gains) w = 1, (T, m): all above 0 where, and only where, the spectral radius of
     the gains is below 1 (A. Berman, R. J. Plemmons, Nonnegative Matrices, chapter 6)."""
     ones = np.ones(gains.shape[:2])
-    return np.nan_to_num(solved(np.eye(gains.shape[1]) - gains, ones), nan=-1.0)
+    return np.nan_to_num(solve_small(np.eye(gains.shape[1]) - gains, ones), nan=-1.0)
 
 
-def solved(matrices: Array, right: Array) -> Array:
+def solve_small(matrices: Array, right: Array) -> Array:
     """The solutions of small systems (T, m, m) x = (T, m); NaN where one is singular."""
     if right.shape[1] == 1:
         return np.where(matrices[:, :, 0] == 0.0, np.nan, right / matrices[:, :, 0])
@@ -207,6 +207,6 @@ def coulomb_bound(system: CoulombSystem, errors: CoulombErrors, g: Array, sizes:
     rounded = 8 * EPS * (_length(system.alone) + np.einsum("tjk,tk->tj", sizes, g))
     left = np.abs(system.friction(g) - g)
     b = 1.001 * (system.mu * (moved + rounded) + left) + 1e-300
-    error = 1.001 * solved(np.eye(g.shape[1]) - gains, b)
+    error = 1.001 * solve_small(np.eye(g.shape[1]) - gains, b)
     holds = (error > 0.0) & (error - np.einsum("tjk,tk->tj", gains, error) >= b)
     return np.where(np.all(holds, axis=1)[:, None], error, np.inf)

@@ -27,7 +27,7 @@ from models.scene import Scene
 
 
 @dataclass(frozen=True)
-class Standing:
+class LoadedBodies:
     """A chunk whose bodies are loaded, to be solved for what else acts on them."""
 
     scene: Scene
@@ -35,16 +35,18 @@ class Standing:
     displaced: Displaced
     free: Mapping[str, FreeBody]
 
-    def solved(self, friction: Iterable[tuple[Rubbing, Bounded]] = ()) -> tuple[Balance, Bounded]:
+    def equilibrium(
+        self, friction: Iterable[tuple[Rubbing, Bounded]] = ()
+    ) -> tuple[Balance, Bounded]:
         """The equilibrium of the loads and of friction, and the driving torque."""
-        return self._solved({name: copy(body) for name, body in self.free.items()}, friction)
+        return self._balance({name: copy(body) for name, body in self.free.items()}, friction)
 
     def influence(self, rubbing: Rubbing) -> Balance:
         """The equilibrium of friction of size 1 in one joint, and of nothing else."""
         bare = {name: FreeBody(body.body, body.centre) for name, body in self.free.items()}
-        return self._solved(bare, [(rubbing, Bounded(1.0))])[0]
+        return self._balance(bare, [(rubbing, Bounded(1.0))])[0]
 
-    def _solved(
+    def _balance(
         self, free: dict[str, FreeBody], friction: Iterable[tuple[Rubbing, Bounded]]
     ) -> tuple[Balance, Bounded]:
         for rubbing, size in friction:
@@ -54,12 +56,12 @@ class Standing:
 
 
 def coulomb_friction(
-    standing: Standing, joints: Sequence[Rubbing], count: int, *, certified: bool
+    bodies: LoadedBodies, joints: Sequence[Rubbing], count: int, *, certified: bool
 ) -> tuple[list[Bounded], CoulombSolution]:
     """Coulomb's friction in all of its joints, with signs, at the samples of a chunk."""
-    alone, _ = standing.solved()
+    alone, _ = bodies.equilibrium()
     base = [_joined(rubbing.reaction(alone), count) for rubbing in joints]
-    by_joint = [standing.influence(rubbing) for rubbing in joints]
+    by_joint = [bodies.influence(rubbing) for rubbing in joints]
     rows = [[_joined(one.reaction(of), count) for of in by_joint] for one in joints]
     signs = np.stack([rubbing.against.value for rubbing in joints], axis=1)
     unsigned = np.stack([np.stack([v for v, _ in row], axis=1) for row in rows], axis=1)

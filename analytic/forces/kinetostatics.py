@@ -19,7 +19,7 @@ from analytic.forces.balance import Balance
 from analytic.forces.bounded import Bounded
 from analytic.forces.force_arrays import ForceArrays
 from analytic.forces.free_body import free_bodies
-from analytic.forces.friction import Standing, coulomb_friction
+from analytic.forces.friction import LoadedBodies, coulomb_friction
 from analytic.forces.given_motion import chunks_of
 from analytic.forces.rubbing import Rubbing, put_constant_friction, rubbing_joints
 from analytic.forces.virtual_power import torque_by_power
@@ -125,11 +125,11 @@ def _write(
         balance = Balance(scene, structure, free, displaced)
         result.write(span, balance.torque(), balance.pins, balance.sliders, friction)
     else:
-        standing = Standing(scene, structure, displaced, free)
+        bodies = LoadedBodies(scene, structure, displaced, free)
         sizes, solution = coulomb_friction(
-            standing, left, chunk.theta.size, certified=chunk.certified
+            bodies, left, chunk.theta.size, certified=chunk.certified
         )
-        balance, torque = standing.solved(zip(left, sizes, strict=True))
+        balance, torque = bodies.equilibrium(zip(left, sizes, strict=True))
         friction |= {each.law.joint: size for each, size in zip(left, sizes, strict=True)}
         result.write(span, torque, balance.pins, balance.sliders, friction)
         result.write_solution(span, solution)
@@ -172,6 +172,11 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     """Where the torque is not determined, by which dyad, and what would work."""
     theta = math.degrees(_at(chunk.theta, index))
     where = f"{scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s)"
+    if all(abs(_at(sine, index)) > 0.0 for sine in chunk.sines.values()):
+        return (
+            f"{scene.name}: {where}: forces are larger than numbers go; take smaller loads, masses "
+            "or lengths"
+        )
     worst = min(
         chunk.sines,
         key=lambda key: np.nan_to_num(abs(_at(chunk.sines[key], index)), nan=0.0),

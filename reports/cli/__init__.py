@@ -7,6 +7,19 @@ from reports.cli import changes, measuring
 
 # isort: split
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
+
+# isort: split
+from reports.cli import recipes
 from reports.cli.application import app, guarded, main
 
-__all__ = ["app", "changes", "checking", "guarded", "judging", "main", "measuring", "showing"]
+__all__ = [
+    "app",
+    "changes",
+    "checking",
+    "guarded",
+    "judging",
+    "main",
+    "measuring",
+    "recipes",
+    "showing",
+]

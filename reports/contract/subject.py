@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
 from models.errors import EngineError
+from models.forces import Forces
 from models.laws import Law
 from models.motion import State
 from models.scene import Same, Scene
 from reports.compare.beside import Beside, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
-from sim.engine import Drive, Engine, Poses, Run, Session, Settings
+from sim.engine import Drive, Engine, ForceSession, Poses, Run, Session, Settings
 from sim.own_engine.watched import BrokenContractError
 from sim.run import run
 from sim.settings import SettingError, profile_of, resolved
@@ -80,6 +82,23 @@ class Subject:
             raise
         except EngineError as error:
             raise NotTriedError(str(error)) from None
+
+    def reports_forces(self) -> None:
+        """Raises NotTriedError where the engine says that it reports no forces."""
+        if self.engine.forces_of == "nothing":
+            raise NotTriedError("forces_of says that it reports no forces")
+
+    def force_session(self, profile: str = "tuned", steps: int = STEPS) -> ForceSession:
+        """As `opened`, of an engine that reports forces. Raises NotTriedError."""
+        self.reports_forces()
+        return cast(ForceSession, self.opened(profile, steps=steps))
+
+    def acting(self, steps: int) -> Forces:
+        """The forces of a period, in so many steps, each logged. Raises NotTriedError."""
+        forces = self.force_session(steps=steps).record_forces(steps, 1).forces
+        if forces is None:
+            raise EngineError("record_forces gave a log without forces")
+        return forces
 
     def ran(self, steps_per_turn: int, turns: float, profile: str = "tuned", every: int = 1) -> Run:
         """A run from time 0. Raises NotTriedError."""

@@ -24,6 +24,7 @@ from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.forces import refuse_forceless
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.verify.advised import advised
@@ -112,6 +113,7 @@ def check(
     refuse_singular(scene, dt_s * steps)
     if is_true(forces, "forces"):
         refuse_forceless(scene, dt_s * steps)
+    refuse_short_tables(scene, dt_s * steps)
     cell = Cell(
         scene=scene,
         engine=name,

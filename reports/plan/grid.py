@@ -13,6 +13,7 @@ from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines, chosen_scenes
 from reports.plan.forces import gives_forces, refuse_forceless
 from reports.plan.key import cell_key, digest, line_key
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
 from reports.plan.study import Study, Variant
@@ -75,6 +76,7 @@ def grid(study: Study) -> Grid:
         refuse_singular(scene, longest_s)
         if study.forces:
             refuse_forceless(scene, longest_s)
+        refuse_short_tables(scene, longest_s)
         for variant, settings in complete:
             for dt_s, count in steps:
                 cell = Cell(

@@ -2,4 +2,6 @@
 
 from sim.registry import Declaration
 
-DECLARATION = Declaration("exudyn", "'crankcheck[exudyn]'", ("snippet", "knobs", "remedies"), True)
+DECLARATION = Declaration(
+    "exudyn", "'crankcheck[exudyn]'", ("snippet", "knobs", "remedies", "force_recipe"), True
+)

@@ -10,10 +10,10 @@ import numpy as np
 
 from models.laws import Law
 from models.mjcf import build
+from models.mjcf_friction import planned
 from models.mjcf_options import exact, has_control
 from models.motion import State
 from models.scene import Scene
-from models.tree import plan
 from sim.mujoco.loading import Loading
 from sim.viewing import Viewer
 
@@ -25,7 +25,7 @@ def show(scene: Scene, start: State) -> None:
     step, and the loads their sizes.
     """
     writing = exact(scene)
-    tree = plan(scene, start)
+    tree = planned(scene, start, writing)
     model = mujoco.MjModel.from_xml_string(build(scene, start, writing, tree))
     state = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, state, 0)

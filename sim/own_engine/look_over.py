@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields
 from typing import Any, get_args
 
 from models.errors import EngineError, shown
-from sim.engine import Engine, Placing, Profile, Setting
+from sim.engine import Engine, ForcesOf, Placing, Profile, Setting
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 """What is safe as the name of a file, in a table and in `--set NAME.setting=value`."""
@@ -75,8 +75,11 @@ def _faults(given: Mapping[str, Any]) -> Iterator[str]:
             yield f"{name} is {_kind(given[name])}; give a function"
     if type(given.get("order", 1)) is not int or given.get("order", 1) < 1:
         yield f"order is {shown(given['order'])}; give a whole number above 0"
-    if not isinstance(said := given.get("reports_accelerations", True), bool):
-        yield f"reports_accelerations is {shown(said)}; give True or False"
+    for name in ("reports_accelerations", "applies_loads", "applies_constant_friction"):
+        if not isinstance(said := given.get(name, True), bool):
+            yield f"{name} is {shown(said)}; give True or False"
+    if (said := given.get("forces_of", "nothing")) not in get_args(ForcesOf):
+        yield f"forces_of is {shown(said)}; give {' or '.join(get_args(ForcesOf))}"
 
 
 def _profiles(profiles: object) -> Iterator[str]:

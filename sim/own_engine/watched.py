@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -18,7 +18,18 @@ from models.errors import CrankcheckError, EngineError, shown
 from models.joints import bodies
 from models.motion import State
 from models.scene import Scene
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Session, Settings
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Engine,
+    Facts,
+    ForceSession,
+    Log,
+    Poses,
+    Session,
+    Settings,
+)
+from sim.own_engine.reported_forces import wrong_forces
 from sim.own_engine.spelling import failure
 
 PAIRS = ("origin", "velocity", "origin_acceleration")
@@ -57,12 +68,12 @@ def watched(spelling: str, engine: Engine) -> Engine:
     ) -> WatchedSession:
         with place.told("open"):
             session = engine.open(scene, state, settings, dt_s, drive)
-        lacking = [
-            name for name in ("facts", "step", "record", "read") if not hasattr(session, name)
-        ]
+        wanted = ["facts", "step", "record", "read"]
+        wanted += ["record_forces"] * (engine.forces_of != "nothing")
+        lacking = [name for name in wanted if not hasattr(session, name)]
         if lacking:
             raise place.fault("open", f"gave a session that lacks {', '.join(lacking)}")
-        return WatchedSession(session, place, bodies(scene))
+        return WatchedSession(session, place, scene)
 
     return replace(
         engine,
@@ -105,8 +116,9 @@ class _Place:
 class WatchedSession:
     """A session whose answers are looked at."""
 
-    def __init__(self, session: Session, place: _Place, names: tuple[str, ...]) -> None:
-        self._session, self._place, self._names = session, place, names
+    def __init__(self, session: Session, place: _Place, scene: Scene) -> None:
+        self._session, self._place, self._scene = session, place, scene
+        self._names = bodies(scene)
         self.step = session.step
 
     def facts(self) -> Facts:
@@ -128,14 +140,25 @@ class WatchedSession:
 
     def record(self, steps: int, every: int) -> Log:
         """Advance and log. What is raised in it ends the run, as of any engine."""
+        return self._logged("record", self._session.record, steps, every)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        """As `record`, with forces."""
+        record = cast(ForceSession, self._session).record_forces
+        log = self._logged("record_forces", record, steps, every)
+        if text := wrong_forces(self._scene, log.forces, log.poses.time_s.size):
+            raise self._place.fault("record_forces", text)
+        return log
+
+    def _logged(self, what: str, record: Callable[[int, int], Log], steps: int, every: int) -> Log:
         try:
-            log = self._session.record(steps, every)
+            log = record(steps, every)
         except SystemExit as error:
             raise RuntimeError(f"it asked to end the process: {failure(error)}") from error
-        self._place.as_kind("record", log, Log)
+        self._place.as_kind(what, log, Log)
         count = None if log.diverged else steps // every + 1
         if text := self._wrong(log.poses, count):
-            raise self._place.fault("record", text)
+            raise self._place.fault(what, text)
         return log
 
     def _wrong(self, poses: object, count: int | None) -> str:

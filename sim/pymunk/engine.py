@@ -14,20 +14,13 @@ from models.laws import ConstantSpeed
 from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
-from sim.engine import BodyPose, Drive, Engine, Facts, Log, Poses, Settings
+from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
+from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.load_steps import LoadSteps
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
 from sim.pymunk.space import SpaceModel, build
 
-FIELDS = (
-    pymunk.batch.BodyFields.POSITION
-    | pymunk.batch.BodyFields.ANGLE
-    | pymunk.batch.BodyFields.VELOCITY
-    | pymunk.batch.BodyFields.ANGULAR_VELOCITY
-)
-WIDTH = 6
-"""Numbers per body: x, y, angle, vx, vy, omega."""
 ROOM = 64
 """Numbers of memory to spare: the buffer may not grow memory that is not its own."""
 VERSION = str(pymunk.version)
@@ -64,7 +57,7 @@ class PymunkSession:
             self._model.crank.angular_velocity = first
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
-        self._rows = _rows(self._model)
+        self._rows = rows_of(self._model)
         self._loads = LoadSteps(scene, self._model, state, dt_s, drive)
 
     def facts(self) -> Facts:
@@ -108,7 +101,7 @@ class PymunkSession:
         rows = np.frombuffer(self._buffer.float_buf(), dtype=np.float64).copy()
         wall = time.perf_counter() - began
         rows = rows.reshape(len(at), -1, WIDTH)
-        count = _finite(rows)
+        count = finite(rows)
         poses = self._poses(rows[:count], at[:count])
         return Log(poses, (count - 1) * every, count < len(at), (), wall)
 
@@ -125,7 +118,7 @@ class PymunkSession:
         wall = time.perf_counter() - began
         rows = rows.reshape(2 * len(at) - 1, -1, WIDTH)
         before, after = rows[1::2], rows[0::2]
-        count = _finite(after)
+        count = finite(after)
         poses = self._poses(after[:count], at[:count])
         forces, doubts = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
         return Log(poses, (count - 1) * every, count < len(at), doubts, wall, forces=forces)
@@ -232,7 +225,7 @@ class PymunkSession:
         """Poses of the links' own frames from the bodies' centres of gravity."""
         lag = VELOCITY_SHIFT * self._dt
         poses = {
-            name: _pose(rows[:, row], self._model.centre[name], lag)
+            name: pose(rows[:, row], self._model.centre[name], lag)
             for name, row in self._rows.items()
         }
         return Poses(self._start_s + self._dt * at, poses, lag)
@@ -241,42 +234,6 @@ class PymunkSession:
 def _sum(a: Point, b: Point) -> Point:
     """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
-
-
-def _finite(rows: Array) -> int:
-    """How many samples (T, bodies, numbers) are finite, up to the first that is not."""
-    good = np.isfinite(rows).all(axis=(1, 2))
-    return len(rows) if good.all() else int(np.argmin(good))
-
-
-def _rows(model: SpaceModel) -> dict[str, int]:
-    """Which row of a batch belongs to which body; the static body of the space has one too."""
-    buffer = pymunk.batch.Buffer()
-    pymunk.batch.get_space_bodies(model.space, pymunk.batch.BodyFields.BODY_ID, buffer)
-    order = np.frombuffer(buffer.int_buf(), dtype=np.uintp).tolist()
-    return {name: order.index(body.id) for name, body in model.bodies.items()}
-
-
-def _pose(row: Array, centre: Point, lag_s: float) -> BodyPose:
-    """The frame whose point ``centre`` is the origin of the pymunk body; no accelerations."""
-    theta, omega = row[:, 2], row[:, 5]
-    later = _arm(theta + lag_s * omega, centre)
-    across = np.stack([-later[:, 1], later[:, 0]], axis=-1)
-    none = np.full(len(theta), np.nan)
-    return BodyPose(
-        origin=row[:, 0:2] - _arm(theta, centre),
-        theta=theta,
-        velocity=row[:, 3:5] - omega[:, None] * across,
-        omega=omega,
-        origin_acceleration=np.full((len(theta), 2), np.nan),
-        alpha=none,
-    )
-
-
-def _arm(theta: Array, local: Point) -> Array:
-    """A vector of a body's frame in the plane (T, 2)."""
-    c, s = np.cos(theta), np.sin(theta)
-    return np.stack([c * local[0] - s * local[1], s * local[0] + c * local[1]], axis=-1)
 
 
 ENGINE = Engine(

@@ -22,6 +22,7 @@ import numpy as np
 import pymunk
 
 DT, STEPS, START = <DT>, <STEPS>, <START>  # of <NAME>: <STEPS_PER_TURN> steps a turn
+UNTOLD = 3  # steps in which joints make up for the half step that velocities are away from them
 # pymunk has no mass of a kinematic crank: its own, and the way from its pivot to its centre.
 CRANK, CRANK_MASS, CRANK_CENTRE = <CRANK>
 
@@ -85,11 +86,12 @@ def gain(name, velocity, turning):
 
 names = [f"{PINS[k][0]}.{PINS[k][2]}" for k in READ]
 print("time_s", *(f"{name}.{axis}_n" for name in names for axis in "xy"), "torque_n_m", sep=",")
-for step in range(1, STEPS + 1):
+for step in range(1, UNTOLD + STEPS + 1):
     before = {name: (bodies[name].velocity, bodies[name].angular_velocity) for name in moving}
     space.step(DT)
+    if step <= UNTOLD:
+        continue
     # The step found its impulses where the bodies are now: arms, and forces, belong to its end.
-    # In the first two the joints make up for the half step that velocities are away from them.
     columns = []
     for _, first, second, in_first, in_second in PINS:
         here = bodies[first].local_to_world(in_first)

@@ -3,6 +3,12 @@
 Chipmunk tells of a constraint the magnitude of its impulse in the last step, and no direction. A
 step moves the positions first and solves for the velocities there, so its impulses belong to its
 end, where the arms are: over the step they are the forces at the logged sample, to second order.
+
+A run starts with closed joints, and goes on with ones that are open by what the curvature of paths
+makes of a step. The first two steps make up for that, and their forces are wrong by 0.1 to 0.5 of
+the largest whatever the step (every shipped scene but one that starts at rest); the third is of
+first order, the fourth as all after it. Where iterations do not come to an end it dies off by and
+by: with 150 on the shaper, whose ram is heavy, within ten samples, with 1000 in the second.
 """
 
 from __future__ import annotations
@@ -59,6 +65,7 @@ class Reactions:
         self._on_blocks.append(on_blocks)
         self._rubbed.append(rubbed)
 
+    @np.errstate(all="ignore")  # what comes apart may overflow; it is judged, not warned of
     def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
         """The forces at logged steps, and what speaks against them.
 
@@ -134,7 +141,10 @@ class Reactions:
     def _doubts(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
         """Joints whose impulse is not what momentum says of them."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
-        found = {f"pin {hinge.point}": np.hypot(*pushes.hinges[hinge].T) for hinge in held}
+        found = {
+            f"pin {each.point} of {each.first} and {each.other}": np.hypot(*pushes.hinges[each].T)
+            for each in held
+        }
         found |= {f"line of {name}": np.abs(pushes.normals[name]) for name in self._model.lines}
         moments = {f"gear of {name}": np.abs(pushes.moments[name]) for name in self._model.gears}
         if self._model.motor is not None:

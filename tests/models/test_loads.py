@@ -142,6 +142,15 @@ FAULTS = {
         "[0.15, 0.2, 0.45]\nforce_n = [900.0, 300.0, 0.0]", "[0.15]\nforce_n = [900.0]",
         "loads.gas: found 1 rows; a table needs two or more",
     ),
+    "a rise beyond numbers": (
+        "0.15, 0.2, 0.45]", "0.0, 5e-324, 0.45]", "in rows 4.94e-324 apart, a rise beyond all",
+    ),
+    "not a number": ("force_n = 500.0", "force_n = nan", "loads.work.force_n: found nan"),
+    "the ground": ('link = "rod"\npoint = "C"', 'link = "ground"\npoint = "A"', "found ground;"),
+    "a row too many": (
+        "[0.15, 0.2, 0.45]", f"[{', '.join(f'{k}.0' for k in range(10_001))}]", "at most 10000",
+    ),
+    "an odd name": ("[loads.hum]", '[loads."hum \\u202e"]', "loads.hum \\u202e: found 'hum "),
     "a row too few": ("300.0, 0.0]", "300.0]", "loads.gas: found 3 places and 2 values"),
     "longer than the period": ("720.0", "180.0", "loads.valve: found rows over 4.71239, more than"),
     "a period that does not close": (

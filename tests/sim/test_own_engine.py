@@ -119,6 +119,8 @@ def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words:
         ),
         ("reports_accelerations=False", "order=0", "order is 0; give a whole number above 0"),
         ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
+        ("reports_accelerations=False", "applies_loads=1", "applies_loads is 1; give True or"),
+        ("reports_accelerations=False", "forces_of='all'", "forces_of is 'all'; give nothing or s"),
     ],
 )
 def test_an_object_that_is_no_engine_is_told_all_that_is_wrong(
@@ -207,6 +209,47 @@ def test_what_is_raised_while_it_runs_is_a_row(folder: Path) -> None:
     done = ran(spelled)
     assert done.status == "crashed"
     assert "it asked to end the process" in done.reason
+
+
+FORCES = """
+    def record_forces(self, steps, every):
+        import dataclasses
+        log = self.record(steps, every)
+        none = np.full((len(log.poses.time_s), 2), np.nan)
+        pins = {p: {b: none for b in names} for p, names in cc.joined_at(self.scene).items()}
+        forces = cc.Forces(log.poses.time_s, pins, {}, none[:, 0])
+        return dataclasses.replace(log, forces=forces)
+
+    def read(self):"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("record_forces", "record_force", "open gave a session that lacks record_forces"),
+        ("forces=forces)", "forces=None)", "record_forces gave None for forces, and has to give F"),
+        ("pins, {}, none", "{}, {}, none", r"gave \[\] for pins, and the scene has A, D, B, C, in"),
+        ("for b in names}", "for b in names[::-1]}", "its bodies are ground, crank, in this order"),
+        (
+            "b: none for",
+            "b: none[:, 0] for",
+            r"pin A on ground as float64 of shape \(21,\), and has",
+        ),
+        ("none[:, 0])", "[0.0])", r"gave torque as \[0.0\], and has to give float64 of shape"),
+    ],
+)
+def test_forces_of_a_wrong_kind_are_told_with_what_they_have_to_be(
+    folder: Path, old: str, new: str, words: str
+) -> None:
+    declared = {"reports_accelerations=False": "reports_accelerations=False, forces_of='steps'"}
+    sound = with_faults({"\n    def read(self):": FORCES, **declared})
+    (folder / "sound_penalty.py").write_text(sound.replace('*("penalty"', '*("sound"'))
+    given = run(FOURBAR, START, "sound_penalty:ENGINE", dt_s=1e-3, steps=20, with_forces=True)
+    assert given.motion is not None
+    assert given.motion.forces is not None
+    (folder / "faulty_penalty.py").write_text(sound.replace(old, new))
+    with pytest.raises(BrokenContractError, match=words):
+        run(FOURBAR, START, "faulty_penalty:ENGINE", dt_s=1e-3, steps=20, with_forces=True)
 
 
 def test_stepping_is_not_watched(folder: Path) -> None:

@@ -6,10 +6,15 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
+from models.array import Array
+from models.characteristics import Sine
+from models.forces import Forces
+from models.friction import ConstantFriction
+from models.loads import Load
 from models.motion import State
 from models.scene import Scene
 from sim.engine import (
@@ -17,6 +22,7 @@ from sim.engine import (
     Drive,
     Engine,
     Facts,
+    ForceSession,
     Log,
     Placing,
     Poses,
@@ -24,6 +30,7 @@ from sim.engine import (
     Setting,
     Settings,
 )
+from sim.registry import engine
 from sim.settings import SettingError
 from tests.worlds.fake.engine import FakeEngine
 
@@ -39,6 +46,7 @@ class Meddled:
     record_: Callable[[Meddled, Log, int], Log] = lambda self, log, every: log
     read_: Callable[[Meddled, Poses], Poses] = lambda self, poses: poses
     step_: Callable[[Meddled, int], int] = lambda self, steps: steps
+    forces_: Callable[[Meddled, Log], Log] = lambda self, log: log
     notes: dict[str, Any] = field(default_factory=dict)
     last: ClassVar[Meddled | None] = None
 
@@ -50,6 +58,9 @@ class Meddled:
 
     def record(self, steps: int, every: int) -> Log:
         return self.record_(self, self.session.record(steps, every), every)
+
+    def record_forces(self, steps: int, every: int) -> Log:
+        return self.forces_(self, cast(ForceSession, self.session).record_forces(steps, every))
 
     def read(self) -> Poses:
         return self.read_(self, self.session.read())
@@ -331,6 +342,109 @@ def _exact(_: Engine) -> Any:
     return _Integrated(drives=("prescribed", "servo"))
 
 
+def of_forces(change: Callable[[Forces], Forces]) -> Callable[[Engine], Engine]:
+    """An engine that reports forces, with a change of them."""
+
+    def meddle(_: Engine) -> Engine:
+        def changed(_: Meddled, log: Log) -> Log:
+            assert log.forces is not None
+            return replace(log, forces=change(log.forces))
+
+        return meddled(engine("exudyn"), forces_=changed)
+
+    return meddle
+
+
+def _last_pin(change: Callable[[Array], Array]) -> Callable[[Forces], Forces]:
+    """The forces of one pin changed."""
+
+    def changed(forces: Forces) -> Forces:
+        point = list(forces.pins)[-1]
+        by_body = {body: change(force) for body, force in forces.pins[point].items()}
+        return replace(forces, pins={**forces.pins, point: by_body})
+
+    return changed
+
+
+def _one_sided(forces: Forces) -> Forces:
+    """What a pin exerts on its second body is told of the first as well."""
+    point, by_body = list(forces.pins.items())[-1]
+    first, second = by_body
+    doubled = {first: by_body[second], second: by_body[second]}
+    return replace(forces, pins={**forces.pins, point: doubled})
+
+
+def _gap(forces: Forces) -> Forces:
+    torque = forces.torque.copy()
+    torque[7] = np.nan
+    return replace(forces, torque=torque)
+
+
+def _a_step_late(forces: Forces) -> Forces:
+    """The forces of the step before, as if an impulse were of the wrong end of its step."""
+    times, late = (
+        forces.time_s,
+        forces.each_series(lambda each: np.concatenate([each[:1], each[:-1]])),
+    )
+    return replace(late, time_s=times)
+
+
+def _shaken(_: Engine) -> Engine:
+    """To read forces it steps once more, from which it does not come back."""
+
+    def changed(self: Meddled, log: Log) -> Log:
+        return replace(log, poses=of_log(_late_rates)(self, log, 1).poses)
+
+    return meddled(engine("exudyn"), forces_=changed)
+
+
+def of_scene(change: Callable[[Scene], Scene]) -> Callable[[Engine], Engine]:
+    """An engine that has another scene, without saying so."""
+
+    def meddle(_: Engine) -> Engine:
+        return opening(engine("exudyn"), lambda scene, *asked: (change(scene), *asked))
+
+    return meddle
+
+
+def _each_load(**changes: Callable[[Load], Any]) -> Callable[[Scene], Scene]:
+    """The loads of a scene changed."""
+
+    def changed(scene: Scene) -> Scene:
+        loads = {
+            name: replace(load, **{what: change(load) for what, change in changes.items()})
+            for name, load in scene.loads.items()
+        }
+        return replace(scene, loads=loads)
+
+    return changed
+
+
+def _late_load(load: Load) -> Any:
+    """A load as it was a step before."""
+    wave = load.characteristic
+    if not isinstance(wave, Sine):
+        return wave
+    return replace(wave, phase_rad=wave.phase_rad - 2 * 2 * np.pi / 800)
+
+
+def _rubbing_less(scene: Scene) -> Scene:
+    """Friction that is a tenth too small."""
+    friction = {
+        name: replace(one, size=0.9 * one.size)
+        for name, one in scene.friction.items()
+        if isinstance(one, ConstantFriction)
+    }
+    return replace(scene, friction=friction)
+
+
+def _weightless_loads(_: Engine) -> Engine:
+    """It reports no forces, says that it takes loads, and leaves them out."""
+    own = engine("pymunk")
+    plain = opening(own, lambda scene, *asked: (replace(scene, loads={}), *asked))
+    return replace(plain, applies_loads=True, forces_of="nothing", applies_constant_friction=False)
+
+
 FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
     # name: clause, words, fault; other clauses that can not but break too
     "no reason": ("EC11", "iterations has no reason", _without_reason, set()),
@@ -451,6 +565,70 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         set(),
     ),
     "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
+    "another motion": ("EC81", "logs another motion", _shaken, set()),
+    "one-sided": ("EC82", "the forces of pin C add up to", of_forces(_one_sided), {"EC83"}),
+    "a gap": ("EC82", "the driving torque is not finite at sample 7", of_forces(_gap), set()),
+    "none after all": (
+        "EC82",
+        "all forces are NaN",
+        of_forces(lambda forces: forces.each_series(lambda each: np.full_like(each, np.nan))),
+        {"EC85", "EC86"},
+    ),
+    "no pins": (
+        "EC82",
+        "pins are {}",
+        of_forces(lambda forces: replace(forces, pins={})),
+        {"EC83", "EC84"},
+    ),
+    "torque's sign": (
+        "EC83",
+        "crank: a moment of",
+        of_forces(lambda forces: replace(forces, torque=-forces.torque)),
+        {"EC85", "EC86"},
+    ),
+    "a pin's sign": (
+        "EC83",
+        "coupler: ",
+        of_forces(_last_pin(lambda force: -force)),
+        {"EC84", "EC85", "EC86"},
+    ),
+    "a body's frame": (
+        "EC83",
+        "rocker: ",
+        of_forces(_last_pin(lambda force: force @ np.array([[0.8, 0.6], [-0.6, 0.8]]))),
+        {"EC84", "EC85", "EC86"},
+    ),
+    "a step late": ("EC84", "is that of +1.00 steps", of_forces(_a_step_late), {"EC85"}),
+    "half a step late": (
+        "EC84",
+        "is that of -0.50 steps",
+        of_forces(
+            lambda forces: replace(
+                forces, time_s=forces.time_s - 0.5 * (forces.time_s[1] - forces.time_s[0])
+            )
+        ),
+        {"EC85"},
+    ),
+    "without loads": (
+        "EC85",
+        "a force over time in the ground's frame on rocker",
+        of_scene(lambda scene: replace(scene, loads={})),
+        set(),
+    ),
+    "load's frame": (
+        "EC85",
+        "a constant force in the body's frame on rocker",
+        of_scene(_each_load(frame=lambda _: "ground")),
+        set(),
+    ),
+    "load late": (
+        "EC85",
+        "steps after its time",
+        of_scene(_each_load(characteristic=_late_load)),
+        set(),
+    ),
+    "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads, set()),
+    "rubs less": ("EC86", "friction in C", of_scene(_rubbing_less), set()),
     "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
 }
 

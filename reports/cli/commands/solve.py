@@ -20,7 +20,6 @@ from reports.cli.showing import SolveRequest
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
-from reports.face.scene_report import page_of
 from reports.face.solution_text import (
     show_heading,
     show_largest,
@@ -28,7 +27,6 @@ from reports.face.solution_text import (
     show_notes,
     show_position,
 )
-from reports.figures.forces.writing import figure_files, written_figures
 from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
 from reports.output.write import check_file, check_folder, write
 
@@ -66,6 +64,8 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     if request.forces:
         motion = with_forces(scene, motion, by_law=request.at_deg is None)
     if request.figures is not None:
+        from reports.figures.forces.writing import written_figures
+
         told = harmless(written_figures(scene, request.figures))
         console.print(told, highlight=False, markup=False, soft_wrap=True)
         if request.output is None:
@@ -109,6 +109,8 @@ def _check_figures(request: SolveRequest) -> None:
         raise CrankcheckError(
             f"--figures with --at-deg {request.at_deg:g}: they are of a turn; leave one of them out"
         )
+    from reports.figures.forces.writing import figure_files
+
     check_folder(request.figures, "--figures", figure_files())
 
 
@@ -172,6 +174,8 @@ def _write(path: Path, scene: Scene, motion: Motion) -> str:
     """The motion as a file of the kind that the ending says; returns what was written, in a
     line."""
     if path.suffix.lower() == PAGE:
+        from reports.face.scene_report import page_of
+
         write(path, page_of(scene, with_forces=motion.forces is not None))
         return f"{path}: {scene.name} over one turn"
     origin = {"scene": scene.name, "source": scene.source}

@@ -20,6 +20,7 @@ from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes
 from reports.plan.key import MEASURE, digest
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import LEAST_STEPS_PER_TURN, MOST_SEARCHED, positive
 from reports.tune.attempt import Attempt, Bench, Goal, LostError, Row
@@ -120,7 +121,9 @@ def _goal(request: TuneRequest) -> Goal:
             f"{MOST_SEARCHED / (2 * LEAST_STEPS_PER_TURN):g} turns or less"
         )
     for scene in goal.scenes:
-        refuse_singular(scene, goal.turns * scene.driver.law.period_s)
+        duration_s = goal.turns * scene.driver.law.period_s
+        refuse_singular(scene, duration_s)
+        refuse_short_tables(scene, duration_s)
     return goal
 
 

@@ -28,6 +28,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
+from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
 from reports.results.changes.changes import Diff, compare
@@ -116,6 +117,7 @@ def plan(request: VerifyRequest) -> list[Cell]:
         refuse_singular(scene, dt_s * count)
         if request.forces:
             refuse_forceless(scene, dt_s * count)
+        refuse_short_tables(scene, dt_s * count)
     return [
         Cell(
             scene=scene,

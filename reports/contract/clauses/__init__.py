@@ -3,11 +3,31 @@
 from __future__ import annotations
 
 from reports.contract.clause import Clause
-from reports.contract.clauses import declared, elsewhere, physics, rates, refusals, sessions, start
+from reports.contract.clauses import (
+    declared,
+    elsewhere,
+    felt,
+    physics,
+    rates,
+    reactions,
+    refusals,
+    sessions,
+    start,
+)
 
 CLAUSES: dict[str, Clause] = {
     clause.id: clause
-    for room in (declared, start, sessions, rates, physics, elsewhere, refusals)
+    for room in (
+        declared,
+        start,
+        sessions,
+        rates,
+        physics,
+        elsewhere,
+        refusals,
+        reactions,
+        felt,
+    )
     for clause in room.CLAUSES
 }
 """The clauses by their ids."""

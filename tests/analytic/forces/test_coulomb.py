@@ -13,7 +13,7 @@ from analytic.forces.coulomb import (
     CoulombSystem,
     coulomb_bound,
     solve_coulomb,
-    solved,
+    solve_small,
     weights,
 )
 from models.array import Array
@@ -124,7 +124,7 @@ def test_a_dead_point_is_no_locking() -> None:
 
 def test_a_singular_system_spoils_no_other() -> None:
     matrices = np.array([np.eye(2), np.ones((2, 2)), 2.0 * np.eye(2)])
-    x = solved(matrices, np.ones((3, 2)))
+    x = solve_small(matrices, np.ones((3, 2)))
     np.testing.assert_array_equal(x[[0, 2]], [[1.0, 1.0], [0.5, 0.5]])
     assert np.isnan(x[1]).all()
 

@@ -9,8 +9,10 @@ import pytest
 
 from analytic.forces import kinetostatics
 from analytic.kinematics import reach, solve, solve_driven
+from models.characteristics import Polynomial
 from models.errors import CrankcheckError
 from models.files import load_scene
+from models.loads import Load
 from tests.analytic.dyads.test_redundant import parallelogram
 from tests.analytic.forces.beside import series
 
@@ -68,3 +70,10 @@ def test_a_motion_that_lacks_something_is_refused(spoil: object, words: str) -> 
     motion = solve(scene, np.array([0.1, 0.2]))
     with pytest.raises(CrankcheckError, match=words):
         kinetostatics.forces(scene, spoil(motion))  # type: ignore[operator]
+
+
+def test_forces_beyond_all_numbers_are_no_dead_point() -> None:
+    scene = load_scene("slider-crank-central")
+    pull = Load("pull", "rod", "B", Polynomial((0.0,) * 19 + (1e15,)))
+    with pytest.raises(CrankcheckError, match=r"t = 1e\+20 s\): forces are larger than numbers go"):
+        kinetostatics.forces(replace(scene, loads={"pull": pull}), np.array([1e20]))

@@ -11,7 +11,7 @@ import pytest
 from analytic.forces.kinetostatics import forces
 from analytic.forces.reduced_machine import reduced_machine
 from models.characteristics import Constant
-from models.files import load_scene, shipped
+from models.files import load_scene, parse_scene, shipped
 from models.laws import Accelerating, ConstantSpeed
 from models.loads import Load
 from models.scene import Driver
@@ -50,3 +50,35 @@ def test_a_scotch_yoke_worked_by_hand() -> None:
     assert machine.inertia == pytest.approx(own + yoke.mass_kg * r**2 * np.sin(phi) ** 2)
     assert machine.slope == pytest.approx(yoke.mass_kg * r**2 * np.sin(2 * phi), abs=1e-15)
     assert machine.torque == pytest.approx(-40.0 * r * np.sin(phi), abs=1e-13)
+
+
+def test_a_slider_crank_worked_by_hand() -> None:
+    """Crank 0.3 m without mass at 90 deg, rod 0.5 m: the rod is in translation there, all of it at
+    0.3 m/rad against x. Rod 2 kg, block 4 kg: J = 6 0.3^2 = 0.54 kg m^2. 100 N along x on the block
+    and weights: M = 100 (-0.3) = -30 N m, as a level motion lifts nothing. The rod's slope is
+    -0.3 / 0.5, x' = -0.3, theta'_rod = -0.3 cos 90 / 0.4 = 0, theta''_rod = 0.3 / 0.4 = 0.75;
+    x_C'' = -0.3 cos 90 - (0.5 (0.8) 0^2 + 0.5 (-0.6) 0.75) = 0.225; x_S'' half of that. So
+    J' = 2 (4 (-0.3) 0.225 + 2 (-0.3) 0.1125) = -0.675 kg m^2/rad."""
+    text = """
+name = "worked"
+source = "a test"
+ground = { points = { A = [0.0, 0.0] } }
+gravity_m_s2 = [0.0, -9.81]
+[links]
+crank = { bar = ["A", "B"], length_m = 0.3, mass_kg = 0.0 }
+rod = { bar = ["B", "C"], length_m = 0.5, mass_kg = 2.0 }
+[sliders.C]
+on = "ground"
+mass_kg = 4.0
+[driver]
+link = "crank"
+speed_rad_s = 1.0
+start_deg = 90.0
+[loads.push]
+block = "C"
+force_n = 100.0
+"""
+    machine = reduced_machine(parse_scene(text, "worked"), np.zeros(1))
+    assert machine.inertia == pytest.approx([0.54])
+    assert machine.torque == pytest.approx([-30.0])
+    assert machine.slope == pytest.approx([-0.675])

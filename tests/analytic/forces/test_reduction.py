@@ -54,6 +54,34 @@ def test_a_link_in_plane_motion_worked_by_hand() -> None:
     assert found.place == pytest.approx(np.array([[0.3, 0.05]]))
 
 
+def test_a_link_in_translation_has_its_inertia_in_the_centre() -> None:
+    """3 kg, a_A = a_S = (2, -1) and no turning: P = -3 (2, -1) = (-6, 3) through S."""
+    found = plane_motion(
+        3.0, 0.06, np.array([[0.3, 0.2]]), np.array([[2.0, -1.0]]), np.zeros(1), np.zeros(1)
+    )
+    assert found.force == pytest.approx(np.array([[-6.0, 3.0]]))
+    assert found.place == pytest.approx(np.array([[0.3, 0.2]]))
+
+
+def test_from_the_other_pin_the_inertia_has_the_same_line_of_action() -> None:
+    """The link above from B = (0.5, 0): S at -0.2 m, K at 0.2 + 0.06 / (2 0.2) = 0.35 m from B, so
+    at 0.15; a_B = (0, 10) + 50 (0, 0.5) - 100 (0.5, 0) = (-50, 35), a_SB = (-30, 25) - a_B = (20,
+    -10). S + u a_B = K + w a_SB: 0.3 - 50 u = 0.15 + 20 w, 35 u = -10 w give u = -0.0075, so
+    T' = (0.675, -0.2625); from T = (0.3, 0.05) that is (0.375, -0.3125) = P / 160, along P."""
+    one = plane_motion(
+        2.0, 0.06, np.array([[0.3, 0.0]]), np.array([[0.0, 10.0]]), np.array([10.0]),
+        np.array([50.0]),
+    )  # fmt: skip
+    other = plane_motion(
+        2.0, 0.06, np.array([[-0.2, 0.0]]), np.array([[-50.0, 35.0]]), np.array([10.0]),
+        np.array([50.0]),
+    )  # fmt: skip
+    assert other.force == pytest.approx(one.force)
+    place = other.place + np.array([[0.5, 0.0]])
+    assert place == pytest.approx(np.array([[0.675, -0.2625]]))
+    assert place - one.place == pytest.approx(one.force / 160.0)
+
+
 @pytest.mark.parametrize("parallel", [False, True])
 def test_one_force_has_the_force_and_moment_of_the_link(parallel: bool) -> None:
     """About A: -m a_S, and r x (-m a_S) - J alpha; where a_A is parallel to a_SA too."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from models.files import load_scene, scene_texts
+from models.files import load_scene, parse_scene, scene_texts
 from models.scene import Scene
 from reports.advise.choices import Choice, choices
 from reports.advise.demand import Demand, demanded
@@ -141,6 +141,15 @@ def test_with_gravity_it_serves_its_own_speed_alone(
     known = told(weighed, every, at(20.0, heavy), texts)
     assert known.measured == {}
     assert any("has gravity, and turns at 10 rad/s there" in each for each in known.refusals)
+
+
+def test_with_loads_it_serves_its_own_speed_alone(stored: Stored, every: tuple[Line, ...]) -> None:
+    text = f'{TEXTS[FOURBAR.name]}\n[loads.pull]\nlink = "crank"\ntorque_n_m = 1.0\n'
+    texts = {**TEXTS, FOURBAR.name: text}
+    pulled = replace(stored, manifest=replace(stored.manifest, scenes=texts))
+    known = told(pulled, every, at(20.0, parse_scene(text, "pulled")), texts)
+    assert known.measured == {}
+    assert any("has loads, and turns at 10 rad/s there" in each for each in known.refusals)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,18 @@ from models.joints import blocks, bodies, sliding_angle
 from models.motion import Motion, State
 from models.poses import centre_of, mass_of
 from models.scene import GROUND, Scene
-from sim.engine import BodyPose, Drive, Facts, Log, Placing, Poses, Profile, Setting, Settings
+from sim.engine import (
+    BodyPose,
+    Drive,
+    Facts,
+    ForcesOf,
+    Log,
+    Placing,
+    Poses,
+    Profile,
+    Setting,
+    Settings,
+)
 from sim.settings import check_ranges
 from sim.spoil import rounded
 
@@ -48,6 +59,9 @@ class FakeEngine:
     name: str = "fake"
     reports_accelerations: bool = True
     order: int = 2
+    forces_of: ForcesOf = "nothing"
+    applies_loads: bool = False
+    applies_constant_friction: bool = False
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )

@@ -1,0 +1,178 @@
+"""Loads and friction that an engine says it applies: that they are felt, in full and in time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from analytic.forces import kinetostatics
+from models.array import Array
+from models.characteristics import Constant, Sine
+from models.forces import Forces
+from models.friction import ConstantFriction
+from models.joints import blocks, bodies, joined_at
+from models.loads import Load
+from models.poses import centre_of, mass_of
+from models.scene import Scene
+from reports.contract.clause import Clause
+from reports.contract.clauses.reactions import LATE, OFF, START, STEPS, largest, late_by, named
+from reports.contract.subject import NotTriedError, Subject, numbers
+
+SHARE = 0.98
+"""Of all samples that have to be within `OFF`: where a joint turns back friction jumps, and what is
+felt there hangs on a rounding."""
+FALL_STEPS = 60
+CENTRE = "centre of mass"
+"""A point that no scene has, as names hold no space."""
+
+
+def _loads(subject: Subject) -> Iterator[str]:
+    engine, scene = subject.engine, subject.scene
+    if not engine.applies_loads:
+        raise NotTriedError("applies_loads says that it takes no loads")
+    if engine.forces_of == "nothing":
+        yield from _as_weight(subject)
+        return
+    moving = [
+        (n, p) for n, each in scene.links.items() for p in each.points if p not in scene.ground
+    ]
+    (link, point), size = moving[-1], _size(scene)
+    wave = Sine(size, 0.5 * scene.driver.law.period_s, 0.4)
+    couple = Sine(size * scene.longest_m, math.pi, 0.7)
+    for words, load in {
+        "a force over time in the ground's frame": Load("load", link, point, wave),
+        "a constant force in the body's frame": Load(
+            "load", link, point, Constant(size), direction_rad=2.0, frame="body"
+        ),
+        "a torque over the driver's angle": Load("load", link, None, couple, "angle"),
+    }.items():
+        for text in _unfelt(subject, replace(scene, loads={"load": load}), 1.0):
+            yield f"{words} on {link}: {text}"
+
+
+def _as_weight(subject: Subject) -> Iterator[str]:
+    """Free, a load of its weight at its centre of mass moves a body as gravity does."""
+    scene, fall_s = subject.scene, FALL_STEPS * subject.dt_s()
+    pull = 0.4 * scene.longest_m / fall_s**2
+    heavy = replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
+    light = replace(scene, gravity_m_s2=(0.0, 0.0))
+    ways = [heavy, _weighed(light, pull, math.atan2(-0.8, 0.6)), light]
+    fallen = [
+        numbers(
+            subject.in_scene(way)
+            .opened(drive="free", start=subject.start)
+            .record(FALL_STEPS, 1)
+            .poses,
+            bodies(scene),
+        )[-1]
+        for way in ways
+    ]
+    off, whole = (float(np.abs(fallen[0] - other).max()) for other in fallen[1:])
+    if not off <= OFF * whole:
+        yield f"free, loads like its weight move it otherwise than gravity: {off / whole:.2g} apart"
+
+
+def _weighed(scene: Scene, pull: float, down_rad: float) -> Scene:
+    """The scene with the weight of each body as a load at a point of its own."""
+    links = {
+        name: replace(link, points={**link.points, f"{CENTRE} {name}": centre_of(scene, name)})
+        for name, link in scene.links.items()
+    }
+    at = {name: f"{CENTRE} {name}" for name in links}
+    at |= {name: slider.point for name, slider in blocks(scene).items()}
+    loads = {
+        name: Load(
+            name, name, point, Constant(pull * mass_of(scene, name)[0]), direction_rad=down_rad
+        )
+        for name, point in at.items()
+    }
+    return replace(scene, links=links, loads=loads)
+
+
+def _friction(subject: Subject) -> Iterator[str]:
+    engine, scene = subject.engine, subject.scene
+    if not engine.applies_constant_friction:
+        raise NotTriedError("applies_constant_friction says that it takes no friction")
+    subject.reports_forces()
+    size = 0.2 * _size(scene)
+    pins = [point for point, names in joined_at(scene).items() if len(names) == 2]
+    pins = [point for point in pins if point not in scene.sliders]
+    rubbing = [(point, size * scene.longest_m) for point in pins[-1:]]
+    for joint, most in [*rubbing, *((name, size) for name in list(scene.sliders)[-1:])]:
+        changed = replace(scene, friction={joint: ConstantFriction(joint, most)})
+        for text in _unfelt(subject, changed, SHARE):
+            yield f"friction in {joint}: {text}"
+
+
+def _size(scene: Scene) -> float:
+    """The largest force that the motion itself asks for [N]."""
+    times = np.linspace(0.0, scene.driver.law.period_s, 50)
+    return largest(kinetostatics.forces(scene, times, bound=False, skip_dead_points=True))
+
+
+def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
+    """What of a change of the scene is not in the engine's forces as in the reference's."""
+    scenes = (changed, subject.scene)
+    own = [subject.in_scene(each).acting(STEPS).stretch(slice(START, None)) for each in scenes]
+    true = [
+        kinetostatics.forces(each, own[0].time_s, bound=False, skip_dead_points=True)
+        for each in scenes
+    ]
+    more, wanted = _change(*own), _change(*true)
+    longest = changed.longest_m
+    size = max(1e-300, _most(wanted, "force"), _most(wanted, "moment") / longest)
+    off = {
+        name: float(np.nanquantile(np.abs(each - wanted[name]), share))
+        / (size if _kind(name) == "force" else size * longest)
+        for name, each in more.items()
+        if np.isfinite(each).any()
+    }
+    worst = max(off, key=lambda name: off[name])
+    if not off[worst] <= OFF:
+        yield f"the {worst} changes otherwise than it has to, by {off[worst]:.2g} of the largest"
+        return
+    if share < 1.0:
+        return  # it jumps, which has no time to tell
+    late = late_by(more, wanted, subject.dt_s(STEPS))
+    worst = max(late, key=lambda name: abs(late[name]), default="")
+    if worst and not abs(late[worst]) <= LATE:
+        yield f"the {worst} feels it {late[worst]:+.2f} steps after its time"
+
+
+def _change(one: Forces, other: Forces) -> dict[str, Array]:
+    """What all series differ by."""
+    before = dict(named(other))
+    return {name: each - before[name] for name, each in named(one)}
+
+
+def _kind(name: str) -> str:
+    return "force" if "force" in name else "moment"
+
+
+def _most(series: dict[str, Array], kind: str) -> float:
+    """The largest number in the series of a kind."""
+    each = [np.nanmax(np.abs(values)) for name, values in series.items() if _kind(name) == kind]
+    return max(map(float, each), default=0.0)
+
+
+CLAUSES = (
+    Clause(
+        "EC85",
+        "loads are felt as the scene has them, where they are said to be applied",
+        "A load that is left out, or late, or in another frame, is another machine.",
+        "Apply each load of scene.loads at every step, at its point, in its frame, as large as "
+        "load_magnitudes says at the time that forces belong to; or leave applies_loads False.",
+        _loads,
+    ),
+    Clause(
+        "EC86",
+        "constant friction is felt as the scene has it, where it is said to be applied",
+        "Friction that pushes along, or on one body alone, is none.",
+        "Let it act on both bodies of the joint, against the speed that each has as seen from the "
+        "other; or leave applies_constant_friction False.",
+        _friction,
+    ),
+)

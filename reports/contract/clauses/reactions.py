@@ -1,0 +1,250 @@
+"""Forces that an engine reports: that nothing else changes for them, that they hold every body in
+its motion, and at which instants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.forces import kinetostatics
+from analytic.kinematics import solve
+from models.array import Array
+from models.forces import Forces
+from models.joints import block_name, joined_at, local_point
+from models.motion import Motion
+from models.poses import centre_of, mass_of
+from models.scene import GROUND, Scene
+from reports.contract.clause import Clause
+from reports.contract.subject import Subject, numbers
+
+STEPS = 800
+"""Of one turn."""
+START = STEPS // 8
+"""Samples in which an engine may settle."""
+OFF = 0.05
+"""How much of the largest force may be left on a body that ought to be in equilibrium, and of that
+force over the longest link of a moment: far above what steps cost, below any wrong sign."""
+LATE = 0.25
+"""Steps that forces may be from the instant that they say."""
+STEADY = 0.01
+"""What changes less over a turn, over its size or that of another's change, does not tell when."""
+CLOSED = 1e-9
+"""What all forces of a pin may add up to, over the largest."""
+PULL = 0.5
+"""Gravity in which forces are looked at, over the acceleration of the longest link's end."""
+
+
+def _same_motion(subject: Subject) -> Iterator[str]:
+    subject.reports_forces()
+    for profile in subject.engine.profiles:
+        plain = subject.opened(profile).record(100, 4)
+        beside = subject.force_session(profile).record_forces(100, 4)
+        if not np.array_equal(numbers(plain.poses), numbers(beside.poses), equal_nan=True):
+            yield f"profile {profile}: record_forces logs another motion than record"
+
+
+def _declared(subject: Subject) -> Iterator[str]:
+    scene = subject.scene
+    forces = subject.acting(STEPS)
+    wanted = {point: list(names) for point, names in joined_at(scene).items()}
+    if (found := {point: list(by) for point, by in forces.pins.items()}) != wanted:
+        yield f"pins are {found}, and the scene has {wanted}"
+        return
+    if list(forces.sliders) != list(scene.sliders):
+        yield f"sliders are {list(forces.sliders)}, and the scene has {list(scene.sliders)}"
+        return
+    given = {name: _all(np.isfinite(each)) for name, each in named(forces)}
+    if not any(there.any() for there in given.values()):
+        yield f"forces_of is {subject.engine.forces_of}, and all forces are NaN"
+    first = 0 if subject.engine.forces_of == "states" else 1
+    for name, there in given.items():
+        if there.any() and not there[first:].all():
+            yield f"the {name} is not finite at sample {first + int(np.argmin(there[first:]))}"
+        elif there[:first].any():
+            yield f"forces_of is steps, and the {name} is told before the first of them"
+    for point, by_body in forces.pins.items():
+        total = np.abs(sum(by_body.values(), np.zeros(2))).max(axis=1)[first:]
+        size = largest(forces)
+        if np.isfinite(total).all() and not total.max() <= CLOSED * size:
+            yield f"the forces of pin {point} add up to {total.max():.2g} N, of {size:.2g} N"
+
+
+def _all(there: Array) -> Array:
+    """Whether all numbers of a sample are there, (T,)."""
+    return np.asarray(there.reshape(len(there), -1).all(axis=1))
+
+
+def named(forces: Forces) -> Iterator[tuple[str, Array]]:
+    """All series in words."""
+    for point, by_body in forces.pins.items():
+        for body, force in by_body.items():
+            yield f"force of pin {point} on {body}", force
+    for name, slider in forces.sliders.items():
+        yield f"normal force of slider {name}", slider.normal
+        yield f"moment of slider {name}", slider.moment
+    yield "driving torque", forces.torque
+
+
+def largest(forces: Forces) -> float:
+    """The largest of all forces [N]."""
+    each = [force for by_body in forces.pins.values() for force in by_body.values()]
+    each += [slider.normal for slider in forces.sliders.values()]
+    return max(float(np.nan_to_num(np.abs(force)).max(initial=0.0)) for force in each)
+
+
+def _equilibrium(subject: Subject) -> Iterator[str]:
+    scene = pulled(subject.scene)
+    forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
+    size = largest(forces)
+    motion = solve(scene, forces.time_s, bound=False)
+    for body in (*scene.links, *(block_name(s) for s in scene.sliders.values() if not s.link)):
+        held = _Held(scene, motion, body)
+        force, moment = held.left_over(forces)
+        off = float(np.abs(force).max()) / size
+        if off > OFF:
+            yield f"{body}: {off:.2g} of the largest force ({size:.3g} N) is left over"
+        off = float(np.abs(moment).max()) / (size * scene.longest_m)
+        if off > OFF:
+            yield f"{body}: a moment of {off:.2g} of the largest force times a length is left over"
+
+
+def pulled(scene: Scene) -> Scene:
+    """The scene in a gravity that shows beside its inertia forces."""
+    pull = PULL * scene.longest_m * scene.driver.law.peak_speed_rad_s**2
+    return replace(scene, gravity_m_s2=(0.6 * pull, -0.8 * pull))
+
+
+@dataclass(frozen=True)
+class _Held:
+    """A body in the reference's motion, vectors of the plane as complex numbers."""
+
+    scene: Scene
+    motion: Motion
+    body: str
+
+    @property
+    def _slider(self) -> str:
+        """The slider whose block it is; empty for a link."""
+        sliders = self.scene.sliders.values()
+        return next((s.name for s in sliders if block_name(s) == self.body), "")
+
+    def _turning(self, name: str) -> tuple[Array, Array, Array]:
+        """Angle, rate and its rate of a link, of the ground, or of the guide of a block."""
+        if name == GROUND:
+            zero = np.zeros(len(self.motion.time_s))
+            return zero, zero, zero
+        link = self.motion.links[name]
+        return link.theta, link.omega, link.alpha
+
+    def left_over(self, forces: Forces) -> tuple[Array, Array]:
+        """The force, and the moment about the centre of mass; 0 where some of it is not told."""
+        slider = self.scene.sliders[self._slider] if self._slider else None
+        theta, omega, alpha = self._turning(slider.on if slider else self.body)
+        point = slider.point if slider else next(iter(self.scene.links[self.body].points))
+        track, turn = self.motion.points[point], np.exp(1j * theta)
+        arm = 0.0 * turn
+        if slider is None:
+            local = local_point(self.scene, self.body, point)
+            arm = turn * complex(*np.subtract(centre_of(self.scene, self.body), local))
+        centre = track.position @ _AXES + arm
+        mass, inertia = _matter(self.scene, self.body)
+        push = track.acceleration @ _AXES + (1j * alpha - omega**2) * arm
+        force = mass * (complex(*self.scene.gravity_m_s2) - push)
+        moment = -inertia * alpha
+        for place, each, couple in self._from_joints(forces):
+            force = force + each
+            moment = moment + couple + ((place - centre).conjugate() * each).imag
+        if self.body == self.scene.driver.link:
+            moment = moment + forces.torque
+        told = np.isfinite(force) & np.isfinite(moment)
+        return np.where(told, force, 0.0), np.where(told, moment, 0.0)
+
+    def _from_joints(self, forces: Forces) -> Iterator[tuple[Array, Array, Array]]:
+        """Where each joint acts on it, its force and its couple."""
+        none = np.zeros(len(self.motion.time_s))
+        for point, by_body in forces.pins.items():
+            if self.body in by_body:
+                yield self.motion.points[point].position @ _AXES, by_body[self.body] @ _AXES, none
+        for name, one in forces.sliders.items():
+            slider = self.scene.sliders[name]
+            sign = 1.0 * (self.body == (slider.link or block_name(slider)))
+            sign -= 1.0 * (self.body == slider.on)
+            if sign:
+                line = self._turning(slider.on)[0] + slider.direction_rad + 0.5 * math.pi
+                place = self.motion.points[slider.point].position @ _AXES
+                yield place, sign * one.normal * np.exp(1j * line), sign * one.moment
+
+
+_AXES = np.array([1.0, 1j])
+
+
+def _matter(scene: Scene, body: str) -> tuple[float, float]:
+    """Mass and inertia; a block may be without."""
+    massless = [block_name(s) for s in scene.sliders.values() if s.mass_kg == 0.0]
+    return (0.0, 0.0) if body in massless else mass_of(scene, body)
+
+
+def _instants(subject: Subject) -> Iterator[str]:
+    scene = pulled(subject.scene)
+    forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
+    true = kinetostatics.forces(scene, forces.time_s, bound=False)
+    late = late_by(dict(named(forces)), dict(named(true)), subject.dt_s(STEPS))
+    if late and abs(late[worst := max(late, key=lambda name: abs(late[name]))]) > LATE:
+        yield f"the {worst} is that of {late[worst]:+.2f} steps after the time that it has"
+
+
+def late_by(own: Mapping[str, Array], true: Mapping[str, Array], dt_s: float) -> dict[str, float]:
+    """How many steps later than they say forces are, as far as they change enough to tell."""
+    rates = {name: np.gradient(true[name], dt_s, axis=0) for name in own if "force" in name}
+    most = max(float(np.sqrt(np.nanmean(rate**2))) for rate in rates.values())
+    size = max(float(np.nanmax(np.abs(true[name]))) for name in rates)
+    late: dict[str, float] = {}
+    if not most * dt_s * STEPS > STEADY * size:
+        return late
+    for name, rate in rates.items():
+        told = np.isfinite(own[name]) & np.isfinite(rate)
+        square = float((rate[told] ** 2).sum())
+        if square > (STEADY * most) ** 2 * told.sum():
+            shift = float(((own[name] - true[name])[told] * rate[told]).sum()) / square
+            late[name] = -shift / dt_s
+    return late
+
+
+CLAUSES = (
+    Clause(
+        "EC81",
+        "with forces the motion is the same, to the last bit",
+        "Errors of places are of runs without forces, and have to be those of runs with them.",
+        "Let record_forces step as record does, and read the forces beside it.",
+        _same_motion,
+    ),
+    Clause(
+        "EC82",
+        "every pin and slider has its forces, as declared, and those of a pin add up to nothing",
+        "What is missing or doubled is taken for a force of 0, or for another joint's.",
+        "Give Forces.pins as joined_at(scene) names them, each force that of the pin on the body, "
+        "in the ground's frame; NaN for what is not known, and at the start where forces_of is "
+        "steps.",
+        _declared,
+    ),
+    Clause(
+        "EC83",
+        "forces, inertia and gravity hold each body in equilibrium",
+        "A force with a wrong sign, frame or body is as large as a true one.",
+        "Turn forces into the ground's frame, and give that of the pin ON the body; normal along "
+        "the line turned by +90 deg and moment about the slider's point, both of the guide on what "
+        "slides; torque of the drive on the driver, without what turns a flywheel.",
+        _equilibrium,
+    ),
+    Clause(
+        "EC84",
+        "forces belong to the instants that they say",
+        "Half a step is most of the error of a force.",
+        "Set Forces.time_s to when they act: an impulse over a step to its middle or, where "
+        "velocities are stepped with new places, its end.",
+        _instants,
+    ),
+)

@@ -1,0 +1,237 @@
+"""How to read forces out of exudyn: a program that holds a scene, as a user would write it."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+from models.errors import EngineError
+from models.joints import (
+    Prism,
+    bodies,
+    joints,
+    less,
+    local_point,
+    riding_body,
+    sliding_angle,
+    turned,
+)
+from models.laws import ConstantSpeed
+from models.motion import State
+from models.poses import centre_of, frames, mass_of
+from models.scene import GROUND, Point, Scene
+from sim.engine import Settings
+from sim.exudyn.settings import BY_NEED
+from sim.force_recipes import ForceRecipe
+
+PROGRAM = '''"""{title}"""
+
+import exudyn as exu
+import exudyn.itemInterface as items
+import numpy as np
+
+SPEED, DT, STEPS = {speed!r}, {dt!r}, {steps}  # rad/s, s, a turn of the driver
+GRAVITY = {gravity!r}
+# mass, inertia about the centre of mass, its place and the angle, and the rates of both
+BODIES = {bodies}
+# point, the two bodies, and where it is on each, from their centres of mass
+PINS = {pins}
+# what slides and where on it, its guide and a place on the line, their directions, whether it turns
+LINES = {lines}
+
+container = exu.SystemContainer()
+mbs = container.AddSystem()
+ground = mbs.AddObject(items.ObjectGround())
+body, node = {{"{ground}": ground}}, {{}}
+for name, (mass, inertia, place, rates) in BODIES.items():
+    # A node's coordinates count from its reference, so the angle of the sensor below does too.
+    node[name] = mbs.AddNode(
+        items.NodeRigidBody2D(referenceCoordinates=place, initialVelocities=rates)
+    )
+    body[name] = mbs.AddObject(
+        items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node[name])
+    )
+    weight = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=body[name]))
+    mbs.AddLoad(items.LoadMassProportional(markerNumber=weight, loadVector=GRAVITY))
+
+
+def marker(name, place):
+    return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body[name], localPosition=[*place, 0]))
+
+
+# The force of a hinge is its multiplier, in the ground's frame: what the hinge exerts on the body
+# of its FIRST marker; on that of its second it is the opposite.
+forces = []
+for point, first, at_first, second, at_second in PINS:
+    hinge = mbs.AddObject(
+        items.ObjectJointRevolute2D(
+            markerNumbers=[marker(first, at_first), marker(second, at_second)]
+        )
+    )
+    forces.append(
+        mbs.AddSensor(
+            items.SensorObject(
+                objectNumber=hinge,
+                outputVariableType=exu.OutputVariableType.Force,
+                storeInternal=True,
+                writeToFile=False,
+            )
+        )
+    )
+for rider, tip, guide, through, axis, normal, keeps_angle in LINES:
+    mbs.AddObject(
+        items.ObjectJointPrismatic2D(
+            markerNumbers=[marker(rider, tip), marker(guide, through)],
+            axisMarker0=axis,
+            normalMarker1=normal,
+            constrainRotation=keeps_angle,
+        )
+    )
+# The drive prescribes the speed of the driver's angle; its force is the torque with which it holds
+# against that: the torque on the driver is the opposite.
+still = mbs.AddMarker(
+    items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0)
+)
+angle = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node[{driver!r}], coordinate=2))
+drive = mbs.AddObject(
+    items.ObjectConnectorCoordinate(
+        markerNumbers=[still, angle], velocityLevel=True, offset=SPEED
+    )
+)
+torque = mbs.AddSensor(
+    items.SensorObject(
+        objectNumber=drive,
+        outputVariableType=exu.OutputVariableType.Force,
+        storeInternal=True,
+        writeToFile=False,
+    )
+)
+mbs.Assemble()
+
+simulationSettings = exu.SimulationSettings()
+simulationSettings.solution.file.write = False
+simulationSettings.solution.sensors.writePeriod = 0.0  # sensors keep every step, not one in 10 ms
+stepping = simulationSettings.timeIntegration
+stepping.numberOfSteps, stepping.endTime = STEPS, STEPS * DT
+{settings}
+mbs.SolveDynamic(simulationSettings, solverType=exu.DynamicSolverType.{integrator})
+
+# Sensors hold time and three components, the start among them; all of it acts at these times.
+at_pins = [mbs.GetSensorStoredData(sensor) for sensor in forces]
+driving = mbs.GetSensorStoredData(torque)
+# Places are exact after the first step, forces are not: what a start shakes shows in them for a
+# few steps (more of them where spectralRadius is near 1). Leave these out, or halve the step.
+columns = [f"{{point}}.{{name}}.{{x}}" for point, _, _, name, _ in PINS for x in ("x_n", "y_n")]
+print("time_s", *columns, "torque_n_m", sep=",")
+for k, (time_s, against) in enumerate(driving[:, :2]):
+    on_second = [-component for each in at_pins for component in each[k, 1:3]]
+    print(*map(repr, map(float, (time_s, *on_second, -against))), sep=",")
+'''
+
+
+def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
+    """The program; of scenes without loads and friction, at constant speed. See `ForceRecipe`."""
+    law = scene.driver.law
+    lacking = [
+        what
+        for what, there in (
+            ("loads", scene.loads),
+            ("friction", scene.friction),
+            ("a driver whose speed changes", not isinstance(law, ConstantSpeed)),
+        )
+        if there
+    ]
+    if lacking or not isinstance(law, ConstantSpeed):
+        raise EngineError(
+            f"{scene.name}: the recipe of exudyn does not cover {' and '.join(lacking)}; take that "
+            "out, or use another scene"
+        )
+    return PROGRAM.format(
+        title=f"Reactions in the pins, and driving torque, of {scene.name} in exudyn.",
+        speed=law.speed_rad_s,
+        dt=dt_s,
+        steps=round(law.period_s / dt_s),
+        gravity=[*scene.gravity_m_s2, 0.0],
+        bodies=_table(_bodies(scene, state)),
+        pins=_rows(_pins(scene)),
+        lines=_rows(_lines(scene)),
+        ground=GROUND,
+        driver=scene.driver.link,
+        settings="\n".join(_settings(settings)),
+        integrator=settings["integrator"],
+    )
+
+
+def _bodies(scene: Scene, state: State) -> dict[str, tuple[object, ...]]:
+    rows: dict[str, tuple[object, ...]] = {}
+    for name, frame in frames(scene, state).items():
+        if name in bodies(scene):
+            place = frame.at(centre_of(scene, name))
+            rates = [*frame.velocity_at(place), frame.omega]
+            rows[name] = (*mass_of(scene, name), [*place, frame.theta], rates)
+    return rows
+
+
+def _pins(scene: Scene) -> list[tuple[object, ...]]:
+    """A hinge of the first body of a pin with each of the others."""
+    rows: list[tuple[object, ...]] = []
+    for pin in joints(scene).pins:
+        first, *others = sorted(pin.bodies, key=lambda name: name != GROUND)
+        start = _from_centre(scene, first, local_point(scene, first, pin.point))
+        for other in others:
+            end = _from_centre(scene, other, local_point(scene, other, pin.point))
+            rows.append((pin.point, first, start, other, end))
+    return rows
+
+
+def _lines(scene: Scene) -> list[tuple[object, ...]]:
+    """What runs on a line; a block without mass is a point on it, which may turn."""
+    rows: list[tuple[object, ...]] = []
+    for slide in joints(scene).slides:
+        slider, rider, keeps = slide.slider, riding_body(slide), isinstance(slide, Prism)
+        tip = _from_centre(scene, rider, local_point(scene, rider, slider.point))
+        through = _from_centre(scene, slider.on, slider.through_m)
+        own = slider.direction_rad - (sliding_angle(slider) if keeps else 0.0)
+        axis = [*turned((1.0, 0.0), own), 0.0]
+        normal = [*turned((0.0, 1.0), slider.direction_rad), 0.0]
+        rows.append((rider, tip, slider.on, through, axis, normal, keeps))
+    return rows
+
+
+def _from_centre(scene: Scene, body: str, place: Point) -> Point:
+    return place if body == GROUND else less(place, centre_of(scene, body))
+
+
+def _settings(settings: Settings) -> list[str]:
+    """The profile in exudyn's own words."""
+    lines = [f"stepping.adaptiveStep = {settings['adaptive_step'] == 'enable'}"]
+    if settings["integrator"] == "GeneralizedAlpha":
+        radius = float(settings["spectral_radius"])
+        lines.append(f"stepping.generalizedAlpha.spectralRadius = {radius!r}")
+    jacobian, linear = settings["jacobian"], str(settings["linear_solver"])
+    redundant = linear == BY_NEED or settings["ignore_singular"] == "enable"
+    solver = "EigenDense" if linear == BY_NEED else linear
+    return [
+        *lines,
+        f"stepping.newton.relativeTolerance = {float(settings['relative_tolerance'])!r}",
+        f"stepping.newton.absoluteTolerance = {float(settings['absolute_tolerance'])!r}",
+        f"stepping.newton.maxIterations = {int(settings['iterations'])}",
+        f"stepping.newton.useModifiedNewton = {jacobian != 'each-iteration'}",
+        f"stepping.newton.modifiedNewtonJacUpdatePerStep = {jacobian == 'each-step'}",
+        f"simulationSettings.linearSolver.solverType = exu.LinearSolverType.{solver}",
+        f"simulationSettings.linearSolver.ignoreSingularJacobian = {redundant}",
+    ]
+
+
+def _table(rows: dict[str, Any]) -> str:
+    """A dict with a line for each row."""
+    lines = "\n".join(f"{name!r}: {row!r}," for name, row in rows.items())
+    return "{\n" + textwrap.indent(lines, "    ") + "\n}"
+
+
+def _rows(rows: list[tuple[object, ...]]) -> str:
+    """A list with a line for each row."""
+    return "[\n" + "".join(f"    {row!r},\n" for row in rows) + "]" if rows else "[]"
+
+
+FORCE_RECIPE: ForceRecipe = exudyn_force_recipe
