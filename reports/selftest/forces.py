@@ -33,6 +33,7 @@ from reports.selftest.force_changes import (
     weighed,
     without_last_pin,
 )
+from reports.selftest.load_changes import load_in_body, load_late, of_load
 from reports.selftest.logs import WHEN, noisy
 
 SLIDING = (SLIDER, SHAPER)
@@ -85,6 +86,21 @@ FAULTS = (
         9.81,
         "m/s^2",
     ),
+    _fault(
+        "load-late",
+        "a load over time is felt late",
+        "CC120",
+        in_forces(of_load(load_late)),
+        1.0,
+        "steps",
+    ),
+    _fault(
+        "load-in-body",
+        "a load of the ground's frame felt in the body's",
+        "CC120",
+        in_forces(of_load(load_in_body)),
+    ),
+    _fault("load-left-out", "a load is not felt", "CC120", in_forces(of_load(lambda *_: None))),
     _fault(
         "other-scene-forces",
         "forces of a larger scene",
