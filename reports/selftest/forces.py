@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from analytic.check.moved_scene import scaled
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log, integrates
 from reports.selftest.force_changes import (
     about_another_point,
     dropped,
@@ -44,7 +44,7 @@ FAULTS = (
     _fault("force-sign", "all forces have the other sign", "CC120", each_force(lambda x, _: -x)),
     _fault(
         "force-giver",
-        "a pin's force on one body is said of the other",
+        "a pin's force said of the other body",
         "CC120",
         in_forces(of_the_giver),
     ),
@@ -72,7 +72,7 @@ FAULTS = (
     ),
     _fault(
         "no-turning-inertia",
-        "inertia of a link against turning left out",
+        "a link's inertia left out",
         "CC123",
         in_forces(of_another(turning_lighter)),
         1.0,
@@ -96,7 +96,7 @@ FAULTS = (
     ),
     _fault(
         "load-in-body",
-        "a load of the ground's frame felt in the body's",
+        "a load felt in the body's frame",
         "CC120",
         in_forces(of_load(load_in_body)),
     ),
@@ -188,7 +188,7 @@ FAULTS = (
     ),
     _fault(
         "force-floor",
-        "a reaction off, within this step's limit",
+        "a reaction off, within the limit",
         "CC125",
         in_forces(spoilt_pin(slice(None))),
         1e-3,
@@ -196,7 +196,13 @@ FAULTS = (
         scenes=(FOURBAR,),
         finer=True,
     ),
-    _fault("forces-copied", "forces of the reference", "CC111", in_forces(of_reference)),
+    _fault(
+        "forces-copied",
+        "forces of the reference",
+        "CC111",
+        in_forces(of_reference),
+        needs=lambda name: gives(name) and integrates(name),
+    ),
     _fault("force-nan", "a reaction not a number at the end", "CC109", in_forces(nan_at_end)),
     _fault("pin-missing", "a pin is not in the log", "CC109", in_forces(without_last_pin)),
     _fault("forces-missing", "no force is in the log", "CC109", in_log(dropped)),
