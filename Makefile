@@ -19,6 +19,9 @@ PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 verify: $(VENV)/crankcheck
 	$(BIN)/crankcheck verify
 
+# Compiled code is kept: the tests start hundreds of processes, and each would compile all of it anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 test: $(VENV)/test browser
 	$(MAKE) --no-print-directory --jobs 2 lint pytest
 

@@ -31,7 +31,7 @@ def fake_engine() -> ModuleType:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest test first, as at the end one process would wait for the other."""
+    """The longest tests first, as at the end one process would wait for the other."""
     items.sort(key=lambda item: "readme" not in item.nodeid)
 
 

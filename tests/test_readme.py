@@ -11,30 +11,68 @@ from pathlib import Path
 
 import pytest
 
+from reports.selftest.all_faults import FAULTS
 from tests.worlds.command import PYTHON
-from tests.worlds.documents import blocks, commands, follows, ran, same, words
+from tests.worlds.documents import blocks, commands, follows, ran, same, threads, words
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SCRIPTS = blocks(README, "python")
+THREADS = threads([command for command, _, _ in commands(README)], SCRIPTS)
+TABLE_OF_FAULTS = "crankcheck selftest"
+"""Takes 26 s of processor time, most of them for the smallest sizes that are caught. That every
+fault is caught, `tests/reports/selftest/test_faults.py` says in half the time."""
 
 
-def test_readme_is_true_from_top_to_bottom(tmp_path: Path) -> None:
+def _thread(steps: list[str]) -> object:
+    """Commands and scripts that use what earlier ones of them leave."""
+    long = [pytest.mark.slow] if steps == [TABLE_OF_FAULTS] else []
+    return pytest.param(steps, marks=long, id=re.sub(r"\s+", " ", steps[0])[:60])
+
+
+@pytest.mark.parametrize("steps", [_thread(steps) for steps in THREADS])
+def test_readme_is_true(steps: list[str], tmp_path: Path) -> None:
     """One after the other in one folder, as a reader would: later commands use what earlier ones
-    left."""
+    left. What uses nothing of the others is tried by itself, beside them."""
+    shown = {command: (lines, code) for command, lines, code in commands(README)}
     faults = []
-    for command, shown, code in commands(README):
-        done = ran(words(command), tmp_path)
+    for step in steps:
+        if step in SCRIPTS:
+            done = ran([PYTHON, "-c", step], tmp_path)
+            if done.returncode != 0:
+                faults.append(f"{step}\n{done.stderr}")
+            continue
+        lines, code = shown[step]
+        done = ran(words(step), tmp_path)
         if done.returncode != code:
-            faults.append(f"$ {command}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
+            faults.append(f"$ {step}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
         printed = [line.rstrip() for line in done.stdout.splitlines()]
-        if fault := follows([line.rstrip() for line in shown], printed):
-            faults.append(f"$ {command}\n{fault}")
-    for script in SCRIPTS:
-        done = ran([PYTHON, "-c", script], tmp_path)
-        if done.returncode != 0:
-            faults.append(f"{script}\n{done.stderr}")
+        if fault := follows([line.rstrip() for line in lines], printed):
+            faults.append(f"$ {step}\n{fault}")
     assert not faults, "\n\n".join(faults)
+
+
+def test_every_command_of_the_readme_is_tried_once() -> None:
+    tried = sorted(step for steps in THREADS for step in steps)
+    assert tried == sorted([*(command for command, _, _ in commands(README)), *SCRIPTS])
+    assert len(set(tried)) == len(tried)
+    assert [TABLE_OF_FAULTS] in THREADS
+
+
+def test_the_readme_counts_all_faults_that_are_planted() -> None:
+    assert f"plants {len(FAULTS)} faults" in README
+    assert f"\n{len(FAULTS)} of {len(FAULTS)} faults caught by the named rule\n" in README
+
+
+def test_what_uses_a_file_comes_after_what_writes_it() -> None:
+    told = ["run a -o log.csv", "solve", "judge a log.csv", "sweep b -o out", "diff out out"]
+    scripts = ["read('log.csv')", "read('out/cells')", "print('about')"]
+    assert threads(told, scripts) == [
+        ["run a -o log.csv", "judge a log.csv", "read('log.csv')"],
+        ["solve"],
+        ["sweep b -o out", "diff out out", "read('out/cells')"],
+        ["print('about')"],
+    ]
 
 
 def test_readme_shows_commands() -> None:

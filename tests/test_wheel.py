@@ -175,6 +175,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow  # ten seconds of mypy; that types are right in the checkout, `make lint` says
 def test_a_type_checker_sees_through_the_wheel(installed: Path, mine: Path) -> None:
     lines = [*(f"reveal_type(cc.{call})" for call in TYPED), *(f"cc.{call}" for call in REFUSED)]
     head = "from pathlib import Path\nimport numpy as np, crankcheck as cc\n"

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from models.motion import BodyMotion, Motion
 from reports.describe.force_frame import force_columns
 from sim.engine import Run
 
+if TYPE_CHECKING:
+    import pandas as pd  # a third of a second: not for what is only shown
+
 
 def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
     """One row per sample: each link, point and slider with its rates, vectors also by length; and
     the forces, where there are any (`reports.describe.force_frame`)."""
+    import pandas as pd
+
     columns: dict[str, object] = {"time_s": motion.time_s}
     for name, link in motion.links.items():
         columns[f"{name}_theta_rad"] = link.theta
@@ -47,6 +52,8 @@ def run_frame(run: Run) -> pd.DataFrame:
     are others. What the engine does not report is left out.
     """
     if run.motion is None:
+        import pandas as pd
+
         return pd.DataFrame({"time_s": np.zeros(0)})
     frame = motion_frame(run.motion, lengths=False)
     for name, gap_m in run.gaps.items():

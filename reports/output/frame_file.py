@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from reports.output.provenance import crankcheck_version
 from reports.output.write import clean, write
+
+if TYPE_CHECKING:
+    import pandas as pd  # a third of a second: not for what is only shown
 
 ENDINGS = (".csv", ".parquet", ".xlsx")
 SHEET_ROWS = 1_048_575
@@ -47,6 +49,8 @@ def workbook(frame: pd.DataFrame, sheet: str, origin: Mapping[str, str]) -> byte
     """The content of a workbook: the frame, and where it comes from."""
     facts = {**origin, "crankcheck": crankcheck_version()}
     buffer = io.BytesIO()
+    import pandas as pd
+
     with pd.ExcelWriter(buffer, engine="openpyxl") as book:
         shown = frame.rename(columns=clean)
         shown.to_excel(book, sheet_name=sheet, index=False, freeze_panes=(1, 1))

@@ -46,6 +46,30 @@ def scripts(page: str) -> list[tuple[str, list[str] | None]]:
     return [(code, text.rstrip("\n").split("\n") if text else None) for code, text in found]
 
 
+def threads(told: Sequence[str], code: Sequence[str]) -> list[list[str]]:
+    """Commands, then scripts, in the order of the page; those together that share a file, which
+    stands behind ``-o`` of a command and in others too. Each thread runs without the others."""
+    steps = (*told, *code)
+    found: list[set[int]] = []
+    for at, step in enumerate(steps):
+        shared = [
+            one for one in found if any(_uses(step, file) for i in one for file in _made(steps[i]))
+        ]
+        found = [one for one in found if one not in shared]
+        found.append({at}.union(*shared))
+    return [[steps[i] for i in sorted(one)] for one in sorted(found, key=min)]
+
+
+def _made(step: str) -> list[str]:
+    """The files and folders that a command writes."""
+    return re.findall(r"-o (\S+)", step)
+
+
+def _uses(step: str, file: str) -> bool:
+    """Whether a command names a file, or a script does between quotes."""
+    return re.search(rf"(?<![\w.]){re.escape(file)}(?=$|[ /\"'])(?! =)", step) is not None
+
+
 def words(command: str) -> list[str]:
     """The command, with the programs of this environment."""
     name, *rest = shlex.split(command)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 from rich.console import Console
 from rich.progress import Progress
@@ -13,9 +14,6 @@ from rich.progress import Progress
 from models.errors import CrankcheckError
 from models.files import find_scenes
 from reports.cli.checking import VerifyRequest
-from reports.cli.commands.stored_files import stored_files
-from reports.diff.junit import suite as diff_suite
-from reports.diff.terminal import show as show_diff
 from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame
 from reports.judge.rows import cell_row
@@ -31,14 +29,17 @@ from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import counted
-from reports.results.changes.changes import Diff, compare
-from reports.results.changes.reading import read_run, scene_digests
-from reports.results.changes.runs import StoredRun, planned_run, run_of
 from reports.verify.all_cells import check_all
 from reports.verify.junit import suite
 from reports.verify.table import show
 from sim.engine import Drive
 from sim.registry import engine
+
+if (
+    TYPE_CHECKING
+):  # what reads stored runs takes half a second to import: where there is one to read
+    from reports.results.changes.changes import Diff
+    from reports.results.changes.runs import StoredRun
 
 IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
 
@@ -61,9 +62,9 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
     read = find_scenes(request.scenes)
     check_outputs(files, request.folder, IN_FOLDER, inputs=read)
-    check_outputs(files, inputs=stored_files(request.baseline))  # which -o may go on from
-    kept = request.baseline or request.folder or request.json
-    digests = scene_digests(request.scenes) if kept else {}
+    if request.baseline is not None:
+        _spare_baseline(files, request.baseline)
+    digests = _digests(request)
     silent = silent_note(chosen_engines(())) if request.forces and not request.engines else ""
     for note in filter(None, (*passages(cells), silent)):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
@@ -73,12 +74,14 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
         checked = check_all(cells, request.jobs, lambda _: bar.advance(task))
     engines = dict.fromkeys(cell.engine for cell in cells)
     facts = provenance({name: engine(name).version() for name in engines})
-    diff = compare(base, run_of(checked, facts, digests), request.factor) if base else None
+    diff = _changes(base, checked, facts, digests, request.factor) if base else None
     try:
         _write(request, Results(checked, facts, digests, diff))
     finally:  # a full disk costs the file, and not the verdict with it
         show(console, checked, facts)
         if diff:
+            from reports.diff.terminal import show as show_diff
+
             console.print()
             show_diff(console, diff)
     return _code(checked, diff, progress)
@@ -152,11 +155,46 @@ def _baseline(
     Raises CrankcheckError for no stored run, and for nothing to compare with."""
     if request.baseline is None:
         return None
+    from reports.results.changes.changes import compare
+    from reports.results.changes.reading import read_run
+    from reports.results.changes.runs import planned_run
+
     base = read_run(request.baseline)
     tell(base.notice)
     planned = planned_run(cells, digests)
     compare(base, planned, request.factor)  # raises, where nothing is to be compared
     return base.only(planned.cells)
+
+
+def _spare_baseline(files: Mapping[str, Path | None], baseline: Path) -> None:
+    """Raises CrankcheckError for an output that is a file of the baseline, which ``-o`` may go on
+    from."""
+    from reports.cli.commands.stored_files import stored_files
+
+    check_outputs(files, inputs=stored_files(baseline))
+
+
+def _digests(request: VerifyRequest) -> dict[str, str]:
+    """The digests of the texts of the scenes, where they are kept or compared."""
+    if not (request.baseline or request.folder or request.json):
+        return {}
+    from reports.results.changes.reading import scene_digests
+
+    return scene_digests(request.scenes)
+
+
+def _changes(
+    base: StoredRun,
+    checked: Sequence[Checked],
+    facts: Mapping[str, str],
+    digests: Mapping[str, str],
+    factor: float,
+) -> Diff:
+    """What changed since the baseline."""
+    from reports.results.changes.changes import compare
+    from reports.results.changes.runs import run_of
+
+    return compare(base, run_of(checked, facts, digests), factor)
 
 
 def _write(request: VerifyRequest, results: Results) -> None:
@@ -176,7 +214,11 @@ def _content(name: str, results: Results) -> str:
         return csv(cell_frame(results.checked))
     if name.endswith(".xml"):
         verification = suite(results.checked, results.facts)
-        return junit(verification, *([diff_suite(results.diff)] if results.diff else []))
+        if results.diff is None:
+            return junit(verification)
+        from reports.diff.junit import suite as diff_suite
+
+        return junit(verification, diff_suite(results.diff))
     return _json(results)
 
 
