@@ -28,11 +28,12 @@ from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
+from reports.compare.loading import load_slopes, loading
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track
 from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import QUANTITIES, named
-from reports.quantities.forces import acting_at, largest_reaction, silent
+from reports.quantities.forces import acting_at, largest_reaction, largest_torque, silent
 from reports.quantities.quantity import Role, Source
 
 UNSURE = 1e-5
@@ -122,12 +123,14 @@ def compare(beside: Beside | None) -> Errors | None:
         uneven_rates=unevenly_turned(scene, far),
         unbalanced=borne.unbalanced,
         start_load=borne.start_load,
+        loading=loading(scene, beside.whole),
+        load_slopes=borne.load_slopes,
     )
 
 
 def force_rows(beside: Beside) -> ForceErrors:
     """The errors of forces, at the instants that they act at; none where none were asked for."""
-    run = beside.run
+    scene, run = beside.scene, beside.run
     if not run.with_forces:
         return ForceErrors()
     known = acting_at(run)
@@ -147,12 +150,14 @@ def force_rows(beside: Beside) -> ForceErrors:
             continue
         kept = replace(track, error=track.error[alive], bound=track.bound[alive])
         rows += _rate_rows(kept, at, "reported")
+    torque = largest_torque(scene, reference)
     return ForceErrors(
         tuple(rows),
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(~alive)), int(np.sum(at.passed))),
-        unbalanced(run, largest_reaction(beside.scene, reference)),
+        unbalanced(run, largest_reaction(scene, reference)),
         start if run.forces_of == "steps" else 0.0,
+        load_slopes(scene, reference, largest_reaction(scene, reference), torque),
         off_stamps(run),
     )
 

@@ -96,6 +96,8 @@ class Errors:
     rates do too (`reports.compare.uneven`). ``unbalanced`` is the pin whose forces add up to most,
     None where there are none; ``start_load`` the largest force at the start, as a share of the
     largest of its kind, where the engine's forces are those of steps, which start with half a step.
+    ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
+    change over a displacement, in reactions and in the torque (`reports.compare.loading`).
     """
 
     rows: tuple[Error, ...]
@@ -117,6 +119,8 @@ class Errors:
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
     unbalanced: Unbalanced | None = None
     start_load: float = 0.0
+    loading: float = 0.0
+    load_slopes: Mapping[str, float] = field(default_factory=dict)
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

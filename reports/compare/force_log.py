@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -25,6 +26,7 @@ class ForceErrors:
     notes: tuple[str, ...] = ()
     unbalanced: Unbalanced | None = None
     start_load: float = 0.0
+    load_slopes: Mapping[str, float] = field(default_factory=dict)
     incomplete: str = ""
 
 

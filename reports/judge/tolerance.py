@@ -4,7 +4,8 @@ A default is a budget that follows from the step and from the scene, as the theo
 says::
 
     min(cap, (coefficient * step^order + summed) * curvature^power / conditioning
-             + share * curvature * step^s)  +  floor  +  rounding / step^k
+             + (share * curvature + load_share * loading) * step^s
+             + slope * place / conditioning)  +  floor  +  rounding / step^k
 
 ``step`` is the driver's turn in one time step [rad], ``curvature`` the largest pure acceleration of
 the reference (at least 1), ``conditioning`` its smallest sine of a transmission angle, and
@@ -24,6 +25,12 @@ own (`in_passage`): what it takes to make good an error of place, within its lim
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
+
+Loads add two parts, and none where there are none (`reports.compare.loading`). A soft constraint
+gives way by ``share`` of the acceleration that a load would give its body, times the square of its
+time constant, some steps; where that bends, by ``loading`` from step to step, accelerations are
+off. And a load that rises over a displacement by ``slope`` is another where its slider is off by
+``place``: by what it was seen to be, and by no more than its limit.
 
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
@@ -65,9 +72,21 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.closes:
         bend = max(bend, 2.0 * errors.worst_jolt)
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
-    budget += tolerance.share * curvature * step**tolerance.share_order
+    shaken = tolerance.share * curvature + tolerance.load_share * errors.loading
+    budget += shaken * step**tolerance.share_order
+    budget += _felt(tolerance, errors)
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
+
+
+def _felt(tolerance: Tolerance, errors: Errors) -> float:
+    """What loads are off by where their sliders are off, as a share of the largest force."""
+    slope = errors.load_slopes.get(tolerance.slope, 0.0)
+    if not slope:
+        return 0.0
+    worst, most = errors.worst("displacement"), default(WITHIN_A_STEP, errors)
+    off = worst.pure if worst is not None and worst.pure <= most else most
+    return slope * off / max(errors.conditioning, 1e-12)
 
 
 def passing(tolerance: Tolerance, errors: Errors) -> float:

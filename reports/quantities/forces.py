@@ -31,12 +31,14 @@ largest of them no ratio of masses makes it more (0.001 to 1000 times the mass o
 TAKEN_UP = Tolerance(
     "Second order: forces go with accelerations, at places that are off by what a step leaves "
     "out, and a dyad passes them on enlarged by 1/sine of its transmission angle. Besides the "
-    "share of a force that soft constraints leave open.",
+    "share of a force that soft constraints leave open, and of what a load is off by where its "
+    "slider is off.",
     cap=0.2,  # a fifth of the largest force; twice the worst at 90 steps a turn
     coefficient=12.0,
     power=1.0,
     conditioned=True,
     share=OPEN_SHARE,
+    slope="reaction",
     rate=2,
     parts=True,
     makes_up=True,
@@ -243,6 +245,7 @@ TORQUE = _force(
         replace(
             TAKEN_UP,
             reason="As of reactions, of which it takes what their arms make of them.",
+            slope="torque",
         ),
         diagram="driving torque",
     ),

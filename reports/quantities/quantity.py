@@ -57,6 +57,8 @@ class Tolerance:
     closes: bool = False
     share: float = 0.0
     share_order: int = 0
+    load_share: float = 0.0
+    slope: Literal["", "reaction", "torque"] = ""
     floor: float = 0.0
     differenced: int = 0
     rate: int = 0

@@ -1,0 +1,94 @@
+"""How hard the loads of a scene are on an engine, as pure numbers.
+
+Driven exactly, a mechanism moves as it does whatever loads it; but a constraint that is soft gives
+way under them, and what a load over a displacement weighs hangs on where its slider is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from analytic.forces.load_pushes import load_pushes
+from models.array import Array
+from models.errors import CrankcheckError
+from models.joints import block_name, blocks
+from models.loads import Load
+from models.motion import Motion
+from models.scene import Scene
+
+
+def loading(scene: Scene, motion: Motion) -> float:
+    """The largest second difference, from sample to sample, of the acceleration that its loads
+    would give a body by itself, over those of the driver's speed on the longest link.
+
+    The springs of soft constraints give way by a share of that acceleration, and where it grows
+    evenly they do so evenly: what they make of the bodies' accelerations is its second difference.
+    A body on a guide is not turned. 0 without loads, or where these are not known over the motion.
+    """
+    if not scene.loads or motion.time_s.size < 3:
+        return 0.0
+    try:
+        pushes = load_pushes(scene, motion)
+    except CrankcheckError:
+        return 0.0
+    square, largest = scene.driver.law.peak_speed_rad_s**2, 0.0
+    guided = {slider.link for slider in scene.sliders.values()}
+    for name, (force, moment) in pushes.items():
+        mass = _mass(scene, name) * scene.longest_m * square
+        largest = max(largest, _bend(np.hypot(*np.diff(force, 2, axis=0).T)) / mass)
+        if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
+            inertia = scene.links[name].inertia_kg_m2 * square
+            largest = max(largest, _bend(np.abs(np.diff(moment, 2))) / inertia)
+    return largest
+
+
+def _bend(series: Array) -> float:
+    return float(np.max(series, where=np.isfinite(series), initial=0.0))
+
+
+def _mass(scene: Scene, body: str) -> float:
+    """The mass of a body; of one that has none, the least there is, of what it is pinned to [kg]."""
+    own = {name: link.mass_kg for name, link in scene.links.items()}
+    own |= {name: slider.mass_kg for name, slider in blocks(scene).items()}
+    heavy = [mass for mass in own.values() if mass > 0.0]
+    return own.get(body) or min(heavy, default=1.0)
+
+
+def load_slopes(scene: Scene, motion: Motion, force_n: float, torque_n_m: float) -> dict[str, float]:
+    """How much the loads over displacements change with these, over the longest link: the
+    ``reaction``, as a share of the largest, and the ``torque``, by their power.
+
+    The slope at a sample is the steepest as far as the samples before and after it.
+    """
+    bears, turns = np.zeros_like(motion.time_s), np.zeros_like(motion.time_s)
+    for load in scene.loads.values():
+        if load.over != "displacement" or load.slider is None:
+            continue
+        slope = _slope(load, motion)
+        at_point = load.point is not None
+        bears += slope * (scene.longest_m if at_point else 1.0) / force_n
+        moved = scene.longest_m / scene.driver.law.peak_speed_rad_s / torque_n_m
+        turns += slope * _speed(scene, load, motion) * moved
+    return {"reaction": _bend(bears), "torque": _bend(turns)}
+
+
+def _slope(load: Load, motion: Motion) -> Array:
+    """The slope of a load at every sample [N/m or N], 0 where it does not act."""
+    assert load.slider is not None
+    slid = motion.sliders[load.slider]
+    apart = np.abs(np.diff(slid.displacement))
+    near = np.maximum(np.append(apart, 0.0), np.insert(apart, 0, 0.0))
+    slope = load.characteristic.steepest(slid.displacement, near) * np.ones_like(near)
+    acts: Mapping[str, Array] = {"forward": slid.speed > 0.0, "backward": slid.speed < 0.0}
+    return np.where(acts.get(load.stroke, True), slope, 0.0)
+
+
+def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
+    """How fast what is loaded moves [m/s or rad/s]."""
+    if load.point is not None:
+        return np.hypot(*motion.points[load.point].velocity.T)
+    guides = {block_name(slider): slider.on for slider in scene.sliders.values()}
+    turns = motion.links.get(guides.get(load.body, load.body))  # a block turns with its guide
+    return np.zeros_like(motion.time_s) if turns is None else np.abs(turns.omega)
