@@ -28,7 +28,7 @@ from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
-from reports.compare.loading import load_slopes, loading
+from reports.compare.loading import inertia_share, load_slopes, loading
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track
 from reports.compare.uneven import uneven, unevenly_turned
@@ -39,6 +39,10 @@ from reports.quantities.quantity import Role, Source
 UNSURE = 1e-5
 """The most that a force of the reference may be wrong by, of its scale: where a load jumps between
 two samples that rounding can not tell apart, it is known to the jump."""
+OF_STEPS = 12
+"""Samples in which forces of steps come to their steady error. What half a step has left undone is
+over with the next; where iterations leave up to half of it from step to step, 2^-12 are left, under
+what soft constraints leave open."""
 EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -125,6 +129,7 @@ def compare(beside: Beside | None) -> Errors | None:
         start_load=borne.start_load,
         loading=loading(scene, beside.whole),
         load_slopes=borne.load_slopes,
+        inertia_share=borne.inertia_share,
     )
 
 
@@ -142,6 +147,8 @@ def force_rows(beside: Beside) -> ForceErrors:
     for track in tracks:
         alive = alive & (track.bound <= UNSURE * track.scale)
     at = _instants(beside, time_s, reference)[alive]
+    if run.forces_of == "steps":
+        at = replace(at, settling=min(at.settling, OF_STEPS))
     rows, missing, start = list[Error](), list[str](), 0.0
     for track in tracks if np.any(alive) else ():
         start = max(start, float(length(track.truth)[alive][0]) / track.scale)
@@ -150,14 +157,15 @@ def force_rows(beside: Beside) -> ForceErrors:
             continue
         kept = replace(track, error=track.error[alive], bound=track.bound[alive])
         rows += _rate_rows(kept, at, "reported")
-    torque = largest_torque(scene, reference)
+    force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)
     return ForceErrors(
         tuple(rows),
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(~alive)), int(np.sum(at.passed))),
-        unbalanced(run, largest_reaction(scene, reference)),
+        unbalanced(run, force),
         start if run.forces_of == "steps" else 0.0,
-        load_slopes(scene, reference, largest_reaction(scene, reference), torque),
+        load_slopes(scene, reference, force, torque),
+        inertia_share(scene, force),
         off_stamps(run),
     )
 

@@ -97,7 +97,8 @@ class Errors:
     None where there are none; ``start_load`` the largest force at the start, as a share of the
     largest of its kind, where the engine's forces are those of steps, which start with half a step.
     ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
-    change over a displacement, in reactions and in the torque (`reports.compare.loading`).
+    change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
+    may have of the largest reaction (`reports.compare.loading`).
     """
 
     rows: tuple[Error, ...]
@@ -121,6 +122,7 @@ class Errors:
     start_load: float = 0.0
     loading: float = 0.0
     load_slopes: Mapping[str, float] = field(default_factory=dict)
+    inertia_share: float = 1.0
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -27,6 +27,7 @@ class ForceErrors:
     unbalanced: Unbalanced | None = None
     start_load: float = 0.0
     load_slopes: Mapping[str, float] = field(default_factory=dict)
+    inertia_share: float = 1.0
     incomplete: str = ""
 
 

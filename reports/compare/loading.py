@@ -44,19 +44,30 @@ def loading(scene: Scene, motion: Motion) -> float:
     return largest
 
 
+def inertia_share(scene: Scene, force_n: float) -> float:
+    """What all masses take at the driver's speed on the longest link, as a share of a force, 1 at
+    most."""
+    masses = [link.mass_kg for link in scene.links.values()]
+    masses += [slider.mass_kg for slider in scene.sliders.values()]
+    push = sum(masses) * scene.longest_m * scene.driver.law.peak_speed_rad_s**2
+    return min(push / force_n, 1.0)
+
+
 def _bend(series: Array) -> float:
     return float(np.max(series, where=np.isfinite(series), initial=0.0))
 
 
 def _mass(scene: Scene, body: str) -> float:
-    """The mass of a body; of one that has none, the least there is, of what it is pinned to [kg]."""
+    """The mass of a body [kg]; of one that has none, the least there is."""
     own = {name: link.mass_kg for name, link in scene.links.items()}
     own |= {name: slider.mass_kg for name, slider in blocks(scene).items()}
     heavy = [mass for mass in own.values() if mass > 0.0]
     return own.get(body) or min(heavy, default=1.0)
 
 
-def load_slopes(scene: Scene, motion: Motion, force_n: float, torque_n_m: float) -> dict[str, float]:
+def load_slopes(
+    scene: Scene, motion: Motion, force_n: float, torque_n_m: float
+) -> dict[str, float]:
     """How much the loads over displacements change with these, over the longest link: the
     ``reaction``, as a share of the largest, and the ``torque``, by their power.
 

@@ -8,7 +8,9 @@ body moves. What was taken from the reference, however it was rounded afterwards
 or by no more than the crank is.
 
 An engine that solves its joints in each step may have places that are exact. Its rates are numbers
-of their own nevertheless: over a whole run some of them are rounded in another way.
+of their own nevertheless: over a whole run some of them are rounded in another way. Its
+forces go with its accelerations: where these are off, so are those, by at least 0.1 of what all
+masses make of that, at 90 to 720 steps a turn on every shipped scene.
 """
 
 from __future__ import annotations
@@ -28,6 +30,10 @@ WHOLE = ("total", "geometric")
 """Errors of the run, but for its start and change points, where an engine may have hardly moved."""
 ROUNDING = sys.float_info.epsilon
 """A rate that is off by this share of its scale, at most, is the next number or the same."""
+
+
+UNROUNDED = 1e-9
+"""An acceleration that is off by more is so by more than rounding."""
 
 
 def too_good(errors: Errors, placing: Placing, order: int) -> list[Error]:
@@ -60,7 +66,10 @@ def _nearer(errors: Errors, order: int) -> Iterator[Error]:
 def _the_same(errors: Errors) -> Iterator[Error]:
     """The largest error of the rates of each body that has them all from the reference."""
     borne = largest(row for row in errors.rows if row.quantity in FORCES)
-    if borne and errors.uneven and borne.pure <= ROUNDING:
+    moved = errors.worst("acceleration")
+    off = moved.pure if moved and moved.pure > UNROUNDED else 0.0
+    least = max(ROUNDING, LEAST * off * errors.inertia_share)
+    if borne and errors.uneven and borne.pure <= least:
         yield borne
     rates: dict[tuple[BodyKind, str], list[Error]] = {}
     for row in errors.rows:

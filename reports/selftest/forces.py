@@ -6,7 +6,8 @@ from dataclasses import replace
 from functools import partial
 
 from analytic.check.moved_scene import scaled
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log, integrates
+from reports.compare.compare import OF_STEPS
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
 from reports.selftest.force_changes import (
     about_another_point,
     dropped,
@@ -35,6 +36,7 @@ from reports.selftest.force_changes import (
 )
 from reports.selftest.load_changes import load_in_body, load_late, of_load
 from reports.selftest.logs import WHEN, noisy
+from sim.registry import engine
 
 SLIDING = (SLIDER, SHAPER)
 START = slice(5, 39)
@@ -184,7 +186,31 @@ FAULTS = (
         "force-spike", "a reaction off at a sample", "CC120", in_forces(spoilt_pin(WHEN)), 1e-2, "F"
     ),
     _fault(
-        "force-start", "reactions off at the start", "CC116", in_forces(spoilt_pin(START)), 2.0, "F"
+        "force-start",
+        "reactions off at the start",
+        "CC116",
+        in_forces(spoilt_pin(START)),
+        0.5,
+        "F",
+        needs=lambda name: engine(name).forces_of == "states",
+    ),
+    _fault(
+        "force-first-steps",
+        "reactions off in the first steps",
+        "CC116",
+        in_forces(spoilt_pin(slice(1, OF_STEPS))),
+        2.0,
+        "F",
+        needs=lambda name: engine(name).forces_of == "steps",
+    ),
+    _fault(
+        "force-rings",
+        "reactions off after the first steps",
+        "CC120",
+        in_forces(spoilt_pin(slice(OF_STEPS + 1, 39))),
+        1e-2,
+        "F",
+        needs=lambda name: engine(name).forces_of == "steps",
     ),
     _fault(
         "force-floor",
@@ -201,7 +227,6 @@ FAULTS = (
         "forces of the reference",
         "CC111",
         in_forces(of_reference),
-        needs=lambda name: gives(name) and integrates(name),
     ),
     _fault("force-nan", "a reaction not a number at the end", "CC109", in_forces(nan_at_end)),
     _fault("pin-missing", "a pin is not in the log", "CC109", in_forces(without_last_pin)),
