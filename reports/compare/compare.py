@@ -28,6 +28,7 @@ from reports.compare.change_points import WINDOW_RAD, conditioning, near
 from reports.compare.drive_rounding import summed
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
+from reports.compare.jumps import near_jumps
 from reports.compare.loading import inertia_share, load_slopes, loading
 from reports.compare.series import length, rate, second_rate, size
 from reports.compare.tracks import Track
@@ -143,7 +144,7 @@ def force_rows(beside: Beside) -> ForceErrors:
     reference = beside.truth.with_forces_at(time_s)
     assert reference.forces is not None
     tracks = beside.tracks(named("force"), reference)
-    alive = np.isfinite(reference.forces.torque)
+    alive = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
     for track in tracks:
         alive = alive & (track.bound <= UNSURE * track.scale)
     at = _instants(beside, time_s, reference)[alive]

@@ -69,7 +69,7 @@ def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[st
     if dead:
         notes.append(
             f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "
-            "or where a load jumps: there they are not determined"
+            "or beside jumps of a load or of friction: there they are not determined"
         )
     if passed:
         notes.append(

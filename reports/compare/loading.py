@@ -6,8 +6,6 @@ way under them, and what a load over a displacement weighs hangs on where its sl
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from analytic.forces.load_pushes import load_pushes
@@ -92,14 +90,14 @@ def _slope(load: Load, motion: Motion) -> Array:
     apart = np.abs(np.diff(slid.displacement))
     near = np.maximum(np.append(apart, 0.0), np.insert(apart, 0, 0.0))
     slope = load.characteristic.steepest(slid.displacement, near) * np.ones_like(near)
-    acts: Mapping[str, Array] = {"forward": slid.speed > 0.0, "backward": slid.speed < 0.0}
-    return np.where(acts.get(load.stroke, True), slope, 0.0)
+    acts = {"forward": slid.speed > 0.0, "backward": slid.speed < 0.0}
+    return np.where(acts[load.stroke], slope, 0.0) if load.stroke in acts else slope
 
 
 def _speed(scene: Scene, load: Load, motion: Motion) -> Array:
     """How fast what is loaded moves [m/s or rad/s]."""
     if load.point is not None:
-        return np.hypot(*motion.points[load.point].velocity.T)
+        return np.asarray(np.hypot(*motion.points[load.point].velocity.T))
     guides = {block_name(slider): slider.on for slider in scene.sliders.values()}
     turns = motion.links.get(guides.get(load.body, load.body))  # a block turns with its guide
     return np.zeros_like(motion.time_s) if turns is None else np.abs(turns.omega)

@@ -21,7 +21,14 @@ from sim.engine import Drive, Facts, Log, Poses, Settings, SettingValue
 from sim.mujoco.joint_forces import JointForces
 from sim.mujoco.loading import Loading
 from sim.mujoco.reactions import reactions
-from sim.mujoco.settings import INTEGRATORS, OF_DRIVES, holds, velocity_shift, writing
+from sim.mujoco.settings import (
+    INTEGRATORS,
+    OF_DRIVES,
+    held_iterations,
+    holds,
+    velocity_shift,
+    writing,
+)
 from sim.mujoco.stepped import VERSION, SteppedModel, compiled, heard
 from sim.settings import SettingError
 from sim.tree_poses import body_poses
@@ -66,7 +73,7 @@ class MujocoSession(SteppedModel):
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            "iterations": int(opt.iterations),
+            **held_iterations(self._scene, self._settings, int(opt.iterations)),
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:

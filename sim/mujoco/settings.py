@@ -145,6 +145,14 @@ def _iterations(scene: Scene, settings: Settings) -> int:
     return max(asked, ITERATIONS_OF_FRICTION) if scene.friction else asked
 
 
+def held_iterations(scene: Scene, settings: Settings, found: int) -> dict[str, int]:
+    """The iterations that a model was ``found`` with, as settings: those asked for, and those of
+    friction beside them, where it needs more."""
+    if scene.friction and found == _iterations(scene, settings):
+        return {"iterations": int(settings["iterations"]), "iterations_of_friction": found}
+    return {"iterations": found}
+
+
 def holds(settings: Settings, dt_s: float, drive: Drive) -> Settings:
     """The settings as MuJoCo is given them: what depends on step and drive worked out; without the
     pins that close the loops, which depend on the scene."""
