@@ -7,11 +7,11 @@ way under them, and what a load over a displacement weighs hangs on where its sl
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from analytic.forces.load_pushes import load_pushes
 from models.array import Array
 from models.errors import CrankcheckError
-from models.joints import block_name, blocks
+from models.joints import block_name, blocks, local_point
 from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene
@@ -23,22 +23,21 @@ def loading(scene: Scene, motion: Motion) -> float:
 
     The springs of soft constraints give way by a share of that acceleration, and where it grows
     evenly they do so evenly: what they make of the bodies' accelerations is its second difference.
-    A body on a guide is not turned. 0 without loads, or where these are not known over the motion.
+    A body on a guide is not turned. 0 without loads, or where a table of one ends before the
+    motion, which then has no forces either.
     """
-    if not scene.loads or motion.time_s.size < 3:
-        return 0.0
-    try:
-        pushes = load_pushes(scene, motion)
-    except CrankcheckError:
-        return 0.0
     square, largest = scene.driver.law.peak_speed_rad_s**2, 0.0
     guided = {slider.link for slider in scene.sliders.values()}
-    for name, (force, moment) in pushes.items():
-        mass = _mass(scene, name) * scene.longest_m * square
-        largest = max(largest, _bend(np.hypot(*np.diff(force, 2, axis=0).T)) / mass)
-        if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
-            inertia = scene.links[name].inertia_kg_m2 * square
-            largest = max(largest, _bend(np.abs(np.diff(moment, 2))) / inertia)
+    try:
+        for name in dict.fromkeys(load.body for load in scene.loads.values()):
+            force, moment = _push(scene, motion, name)
+            mass = _mass(scene, name) * scene.longest_m * square
+            largest = max(largest, _largest(np.abs(np.diff(force, 2))) / mass)
+            if name in scene.links and name not in guided and scene.links[name].inertia_kg_m2:
+                inertia = scene.links[name].inertia_kg_m2 * square
+                largest = max(largest, _largest(np.abs(np.diff(moment, 2))) / inertia)
+    except CrankcheckError:
+        return 0.0
     return largest
 
 
@@ -51,7 +50,50 @@ def inertia_share(scene: Scene, force_n: float) -> float:
     return min(push / force_n, 1.0)
 
 
-def _bend(series: Array) -> float:
+def _push(scene: Scene, motion: Motion, body: str) -> tuple[NDArray[np.complex128], Array]:
+    """The force of all loads on a body [N], as x + iy, and their moment about its centre of mass
+    [N m], (T,). Raises CrankcheckError as `Load.magnitude`."""
+    force = np.zeros(motion.time_s.shape, dtype=np.complex128)
+    moment = np.zeros(motion.time_s.shape)
+    turned = np.exp(1j * _angle(scene, motion, body))
+    for load in scene.loads.values():
+        if load.body != body:
+            continue
+        size = _magnitude(scene, load, motion)
+        if load.point is None:
+            moment += size
+            continue
+        turn = turned if load.frame == "body" else 1.0
+        push = size * turn * np.exp(1j * load.direction_rad)
+        force += push
+        if body in scene.links:
+            place, centre = local_point(scene, body, load.point), scene.links[body].centre_m
+            arm = turned * complex(place[0] - centre[0], place[1] - centre[1])
+            moment += (arm.conj() * push).imag
+    return force, moment
+
+
+def _angle(scene: Scene, motion: Motion, body: str) -> Array | float:
+    """The angle of a link or of a block, which is turned with its guide [rad]."""
+    for slider in scene.sliders.values():
+        if block_name(slider) == body:
+            guide = motion.links.get(slider.on)
+            return slider.direction_rad + (0.0 if guide is None else guide.theta)
+    return motion.links[body].theta
+
+
+def _magnitude(scene: Scene, load: Load, motion: Motion) -> Array:
+    """The size of a load over a motion [N or N m]."""
+    slid = None if load.slider is None else motion.sliders[load.slider]
+    x = motion.time_s
+    if load.over == "angle":
+        x = motion.links[scene.driver.link].theta
+    elif load.over == "displacement" and slid is not None:
+        x = slid.displacement
+    return load.magnitude(x, None if slid is None else slid.speed)
+
+
+def _largest(series: Array) -> float:
     return float(np.max(series, where=np.isfinite(series), initial=0.0))
 
 
@@ -80,7 +122,7 @@ def load_slopes(
         bears += slope * (scene.longest_m if at_point else 1.0) / force_n
         moved = scene.longest_m / scene.driver.law.peak_speed_rad_s / torque_n_m
         turns += slope * _speed(scene, load, motion) * moved
-    return {"reaction": _bend(bears), "torque": _bend(turns)}
+    return {"reaction": _largest(bears), "torque": _largest(turns)}
 
 
 def _slope(load: Load, motion: Motion) -> Array:

@@ -14,16 +14,18 @@ from models.scene import Scene
 from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
 from reports.compare.compare import compare
-from reports.compare.errors import Error, Errors
+from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
 from reports.own_log.log_limits import limits_by_column, log_limits
 from reports.own_log.no_cause import of_no_cause, seldom
 from reports.own_log.required import absent_names, required_name
+from sim.engine import Placing
 
 NO_FIT = (
     "no speed and start of the driver were found that explain the places: errors are those beside "
@@ -112,6 +114,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         stopped_at_s=float(log.time_s[-1]),
         errors=errors,
         limits=chosen,
+        placing=_placing(errors),
         absent=absent if required else None,
     )
     sound = fit is None or fit.explains
@@ -129,6 +132,14 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         not_judged=not_judged,
         notes=_notes(case, found, errors) if sound else (NO_FIT,),
     )
+
+
+def _placing(errors: Errors) -> Placing:
+    """How the places of a log came about, which its start goes by: those that are nearer than a
+    step leaves what is integrated were solved for."""
+    worst = largest(row for row in errors.rows if row.quantity in PLACES)
+    near = LEAST * errors.step_rad**2
+    return "integrated" if worst is not None and not worst.pure <= near else "solved"
 
 
 def _findings(evidence: Evidence, request: LogRequest) -> tuple[Finding, ...]:
