@@ -11,73 +11,29 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 
 from analytic.forces.jolts import jolts
-from models.array import Array, Mask
 from models.errors import ReachError
 from models.motion import Motion
 from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.branch import departure
-from reports.compare.change_points import WINDOW_RAD, conditioning, near
+from reports.compare.change_points import conditioning
 from reports.compare.drive_rounding import summed
-from reports.compare.errors import Error, ErrorKind, Errors
-from reports.compare.force_log import ForceErrors, force_notes, off_stamps, unbalanced
-from reports.compare.jumps import near_jumps
-from reports.compare.loading import inertia_share, load_slopes, loading
-from reports.compare.series import length, rate, second_rate, size
-from reports.compare.tracks import Track
+from reports.compare.error_rows import Instants, instants_of, rate_rows, whole_row
+from reports.compare.errors import Error, Errors
+from reports.compare.force_rows import force_rows
+from reports.compare.loading import loading
+from reports.compare.series import length, rate, second_rate
 from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import QUANTITIES, named
-from reports.quantities.forces import acting_at, largest_reaction, largest_torque, silent
-from reports.quantities.quantity import Role, Source
+from reports.quantities.quantity import Role
 
-UNSURE = 1e-5
-"""The most that a force of the reference may be wrong by, of its scale: where a load jumps between
-two samples that rounding can not tell apart, it is known to the jump."""
-OF_STEPS = 12
-"""Samples in which forces of steps come to their steady error. What half a step has left undone is
-over with the next; where iterations leave up to half of it from step to step, 2^-12 are left, under
-what soft constraints leave open."""
 EPSILON = float(np.finfo(np.float64).eps)
-
-
-@dataclass(frozen=True)
-class _Instants:
-    """The samples of a series: time [s], commanded driver angle [rad], and whether they are in the
-    window of a change point, each (T,); and how many may be the start."""
-
-    time_s: Array
-    driver_rad: Array
-    passed: Mask
-    settling: int
-
-    def __getitem__(self, part: slice | Mask) -> _Instants:
-        time_s, driver_rad, passed = self.time_s[part], self.driver_rad[part], self.passed[part]
-        return _Instants(time_s, driver_rad, passed, self.settling)
-
-    @property
-    def first(self) -> int:
-        """The number of samples that are the start."""
-        return min(self.settling, self.time_s.size // 4)
-
-    @cached_property
-    def parts(self) -> tuple[tuple[ErrorKind, slice | Mask, _Instants], ...]:
-        """The first samples, those at change points and the rest, by kind, without empty ones."""
-        first, size = self.first, self.time_s.size
-        later = np.arange(size) >= first
-        kinds: list[tuple[ErrorKind, slice | Mask]] = [("start", slice(first))] if first else []
-        if np.any(self.passed):
-            kinds += [("total", later & ~self.passed), ("passage", later & self.passed)]
-        else:
-            kinds += [("total", slice(first, size))]
-        cut = ((kind, part, self[part]) for kind, part in kinds)
-        return tuple(each for each in cut if each[2].time_s.size)
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -94,7 +50,7 @@ def compare(beside: Beside | None) -> Errors | None:
     if beside is None:
         return None
     scene, run, reference = beside.scene, beside.run, beside.reference
-    at = _instants(beside, beside.motion.time_s, reference)
+    at = instants_of(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
     reported, not_reported = _reported(beside)
     borne = force_rows(beside)
@@ -117,7 +73,7 @@ def compare(beside: Beside | None) -> Errors | None:
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
-        uncertain=_uncertain(beside),
+        uncertain=_uncertain(beside) | dict(borne.unsure),
         departure=departure(beside),
         summed_rad=summed(scene.driver.law, run.dt_s, run.steps),
         jolt=float(jolt[0]),
@@ -134,48 +90,11 @@ def compare(beside: Beside | None) -> Errors | None:
     )
 
 
-def force_rows(beside: Beside) -> ForceErrors:
-    """The errors of forces, at the instants that they act at; none where none were asked for."""
-    scene, run = beside.scene, beside.run
-    if not run.with_forces:
-        return ForceErrors()
-    known = acting_at(run)
-    time_s = beside.motion.time_s if known is None else known
-    reference = beside.truth.with_forces_at(time_s)
-    assert reference.forces is not None
-    tracks = beside.tracks(named("force"), reference)
-    alive = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
-    for track in tracks:
-        alive = alive & (track.bound <= UNSURE * track.scale)
-    at = _instants(beside, time_s, reference)[alive]
-    if run.forces_of == "steps":
-        at = replace(at, settling=min(at.settling, OF_STEPS))
-    rows, missing, start = list[Error](), list[str](), 0.0
-    for track in tracks if np.any(alive) else ():
-        start = max(start, float(length(track.truth)[alive][0]) / track.scale)
-        if silent(run) and np.all(np.isnan(track.error)):
-            missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
-            continue
-        kept = replace(track, error=track.error[alive], bound=track.bound[alive])
-        rows += _rate_rows(kept, at, "reported")
-    force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)
-    return ForceErrors(
-        tuple(rows),
-        tuple(missing),
-        force_notes(run, reference.forces, int(np.sum(~alive)), int(np.sum(at.passed))),
-        unbalanced(run, force),
-        start if run.forces_of == "steps" else 0.0,
-        load_slopes(scene, reference, force, torque),
-        inertia_share(scene, force),
-        off_stamps(run),
-    )
-
-
 def places(beside: Beside | None) -> list[Error]:
     """Drive error, total errors of place and gaps alone; none of a run that logged nothing."""
     if beside is None:
         return []
-    at = _instants(beside, beside.motion.time_s, beside.reference)
+    at = instants_of(beside, beside.motion.time_s, beside.reference)
     return [
         *_whole(beside, at, "drive"),
         *_whole(beside, at, "place"),
@@ -183,57 +102,14 @@ def places(beside: Beside | None) -> list[Error]:
     ]
 
 
-def _instants(beside: Beside, time_s: Array, reference: Motion) -> _Instants:
-    driver_rad = beside.scene.driver.law.at(time_s)[0]
-    passed = near(reference.crossings, driver_rad, WINDOW_RAD)
-    return _Instants(time_s, driver_rad, passed, beside.settling)
-
-
-def _row(
-    track: Track, at: _Instants, source: Source = "reported", kind: ErrorKind = "total"
-) -> Error:
-    """A track as numbers."""
-    return _numbers(track, length(track.error), track.bound, at, source, kind)
-
-
-def _numbers(
-    track: Track, error: Array, bound: Array, at: _Instants, source: Source, kind: ErrorKind
-) -> Error:
-    """A series of lengths (T,) of a track's error as numbers, with what they may be wrong by."""
-    measured = size(error)
-    return Error(
-        quantity=track.quantity,
-        body_kind=track.body_kind,
-        body=track.body,
-        source=source,
-        kind=kind,
-        unit=track.unit,
-        scale=track.scale,
-        maximum=measured.maximum,
-        rms=measured.rms,
-        final=measured.final,
-        time_of_maximum_s=float(at.time_s[measured.index]),
-        driver_at_maximum_rad=float(at.driver_rad[measured.index]),
-        bound=float(np.max(bound, initial=0.0)),
-        samples=int(error.shape[0]),
-    )
-
-
-def _rate_rows(track: Track, at: _Instants, source: Source) -> Iterable[Error]:
-    """A rate as rows of its parts: the first samples, those at change points, and the rest."""
-    error = length(track.error)
-    for kind, part, instants in at.parts:
-        yield _numbers(track, error[part], track.bound[part], instants, source, kind)
-
-
-def _whole(beside: Beside, at: _Instants, role: Role) -> list[Error]:
+def _whole(beside: Beside, at: Instants, role: Role) -> list[Error]:
     """The quantities that play a role, each over the whole run; one after the other, as the tracks
     of one take enough memory."""
     every = (beside.tracks((name,), beside.reference) for name in named(role))
-    return [_row(track, at) for tracks in every for track in tracks]
+    return [whole_row(track, at) for tracks in every for track in tracks]
 
 
-def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, ...]]:
+def _geometric(beside: Beside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
     """Errors against the reference at the logged crank angle, or a note that says why not."""
     if not beside.has_crank:
         return [], ()
@@ -243,7 +119,7 @@ def _geometric(beside: Beside, at: _Instants) -> tuple[list[Error], tuple[str, .
         tracks = beside.tracks(named("place"), beside.at_crank)
     except ReachError as error:
         return [], (f"no geometric error: the logged crank left its range ({error})",)
-    return [_row(track, at, kind="geometric") for track in tracks], ()
+    return [whole_row(track, at, kind="geometric") for track in tracks], ()
 
 
 def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
@@ -254,18 +130,18 @@ def _reported(beside: Beside) -> tuple[list[Error], tuple[str, ...]]:
         instants = entry.instants(beside.run)
         time_s = beside.motion.time_s if instants is None else instants
         reference = beside.truth.at(time_s)
-        at = _instants(beside, time_s, reference)
+        at = instants_of(beside, time_s, reference)
         tracks = beside.tracks((name,), reference)
         # Silence is no fault of an engine that does not report it, if it is silent of all.
         if entry.silent(beside.run) and all(np.all(np.isnan(track.error)) for track in tracks):
             missing += [f"{name} of {track.body_kind} {track.body}" for track in tracks]
             continue
         for track in tracks:
-            rows += _rate_rows(track, at, "reported")
+            rows += rate_rows(track, at, "reported")
     return rows, tuple(missing)
 
 
-def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
+def _differenced(beside: Beside, at: Instants) -> Iterable[Error]:
     """Velocities and accelerations from the logged positions, by central differences."""
     if at.time_s.size < 3 or not beside.is_even:
         return
@@ -291,7 +167,7 @@ def _differenced(beside: Beside, at: _Instants) -> Iterable[Error]:
                 scale=measure.scale(beside.scene, beside.reference),
                 unit=measure.unit,
             )
-            yield from _rate_rows(differenced, inner, "differenced")
+            yield from rate_rows(differenced, inner, "differenced")
 
 
 def _uncertain(beside: Beside) -> dict[tuple[str, str], float]:

@@ -29,6 +29,8 @@ class ForceErrors:
     load_slopes: Mapping[str, float] = field(default_factory=dict)
     inertia_share: float = 1.0
     incomplete: str = ""
+    unsure: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    """What the reference is wrong by, as a pure number, of forces that it knows at no sample."""
 
 
 def off_stamps(run: Run) -> str:

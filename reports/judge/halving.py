@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.compare import force_rows, places
+from reports.compare.compare import places
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
+from reports.compare.force_rows import force_rows
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
 from reports.judge.tolerance import limits
 from reports.judge.too_good import too_good

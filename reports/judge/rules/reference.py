@@ -69,7 +69,10 @@ class ReferenceCertain:
         "The reference carries a bound of its own error; near a singular position that grows, "
         "and a limit below it can not be judged."
     )
-    cure = "Keep away from the toggle position, or widen the tolerance that is named."
+    cure = (
+        "Keep away from the toggle position, take friction out of a joint that never turns, or "
+        "widen the tolerance that is named."
+    )
 
     def check(self, evidence: Evidence) -> Finding | None:
         if evidence.errors is None:

@@ -15,8 +15,9 @@ from models.files import load_scene
 from models.forces import Forces
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.compare import compare, force_rows
+from reports.compare.compare import compare
 from reports.compare.errors import Errors
+from reports.compare.force_rows import force_rows
 from reports.stability.catalogue import CATALOGUE
 from sim.engine import Run
 from sim.run import run
