@@ -11,6 +11,7 @@ import pytest
 
 from analytic.kinematics import solve
 from models.files import load_scene
+from models.friction import ConstantFriction
 from reports.compare.asked import not_asked_for
 from reports.judge.cell import Cell, CellRunner, Checked, examined
 from reports.selftest.fault import integrates
@@ -156,3 +157,12 @@ def test_the_words_of_a_finer_run_are_held_to_the_request_too() -> None:
     found = said(examined(cell("shaper", "mujoco"), unlike("version", "3.0"))[0])
     assert "finer run, dt / 2: version: asked for '" in found
     assert "finer run, dt / 4: version: asked for '" in found
+
+
+def test_the_iterations_that_friction_needs_are_told_beside_those_asked_for() -> None:
+    scene = load_scene("fourbar-lecture-1")
+    rubbing = replace(scene, friction={"D": ConstantFriction("D", 0.05)})
+    checked, done = examined(replace(cell("fourbar-lecture-1", "mujoco"), scene=rubbing))
+    assert done is not None
+    assert (done.settings["iterations"], done.settings["iterations_of_friction"]) == (2, 20)
+    assert "CC117" not in {finding.rule for finding in checked.failures}

@@ -9,10 +9,12 @@ from dataclasses import replace
 import pytest
 
 from models.files import load_scene
+from models.friction import ConstantFriction
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rows import FORCE_COLUMNS, cell_row
 from reports.judge.rules import FORCES
-from reports.judge.tolerance import in_passage
+from reports.judge.tolerance import DEFAULTS, default, in_passage
+from reports.quantities.places import WITHIN_A_STEP
 
 ENGINES = ["mujoco", "pymunk", "exudyn"]
 
@@ -88,3 +90,54 @@ def test_near_a_change_point_forces_are_not_judged_and_a_limit_that_was_given_st
     assert in_passage("reaction", given, checked.errors) == given
     rate = checked.limits["velocity"]
     assert in_passage("velocity", rate, checked.errors).number < math.inf
+
+
+@pytest.mark.parametrize("name", ["toggle-press", "shaper-cutting"])
+def test_loads_that_come_on_within_a_few_steps_are_in_the_budget(name: str) -> None:
+    checked = _checked(name, "mujoco", 720)
+    assert checked.errors is not None
+    assert checked.verdict == "within", checked.failures
+    without = replace(checked.errors, loading=0.0, load_slopes={})
+    over = [
+        row.quantity
+        for row in checked.errors.rows
+        if row.kind == "total" and not row.pure <= default(DEFAULTS[row.tolerance], without)
+    ]
+    assert "acceleration" in over  # it is the loads that it takes
+
+
+def test_of_where_a_slider_is_no_more_is_felt_than_its_limit() -> None:
+    errors = _checked("toggle-press", "mujoco", 360).errors
+    assert errors is not None
+    tolerance, most = DEFAULTS["torque"], default(WITHIN_A_STEP, errors)
+    near = default(tolerance, errors)
+    far = [
+        replace(row, maximum=row.scale * 1.0) if row.quantity == "displacement" else row
+        for row in errors.rows
+    ]
+    silent = [row for row in errors.rows if row.quantity != "displacement"]
+    slope = errors.load_slopes["torque"] / errors.conditioning
+    plain = default(tolerance, replace(errors, load_slopes={}))
+    for rows in (far, silent):
+        found = default(tolerance, replace(errors, rows=tuple(rows)))
+        assert found == pytest.approx(min(plain + slope * most, tolerance.cap), rel=1e-3)
+        assert found > near
+
+
+def test_without_loads_no_limit_is_other_than_before() -> None:
+    errors = _checked("fourbar-lecture-1", "mujoco", 90).errors
+    assert errors is not None
+    assert errors.loading == 0.0
+    assert not any(errors.load_slopes.values())
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_forces_beside_jumps_of_constant_friction_are_left_out_and_counted(engine: str) -> None:
+    for name, joint, size in (("fourbar-lecture-1", "D", 0.05), ("slider-crank-offset", "C", 0.5)):
+        scene = replace(load_scene(name), friction={joint: ConstantFriction(joint, size)})
+        period = scene.driver.law.period_s
+        options = {"with_forces": True, "converge": False}
+        checked = check(Cell(scene, engine, "tuned", period / 360, 360, **options))  # type: ignore[arg-type]
+        assert checked.verdict == "within", checked.failures
+        assert checked.errors is not None
+        assert any("12 samples of 36" in note for note in checked.errors.notes)

@@ -9,6 +9,8 @@ import pytest
 from models.files import load_scene
 from models.poses import mass_ratio
 from models.scene import Scene
+from reports.compare.beside import SETTLING
+from reports.compare.compare import OF_STEPS
 from reports.compare.errors import Errors
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.start_allowance import allowance
@@ -82,3 +84,15 @@ def test_the_mass_ratio_leaves_out_what_has_no_mass(slider_crank: Scene) -> None
     masses = [link.mass_kg for link in slider_crank.links.values()]
     without = replace(slider_crank, sliders={slider.name: replace(slider, mass_kg=0.0)})
     assert mass_ratio(without) == pytest.approx(max(masses) / min(masses))
+
+
+def test_forces_of_steps_start_for_a_dozen_steps_and_those_of_states_for_forty() -> None:
+    scene = load_scene("shaper")  # where pymunk rings longest
+    for name, samples in (("pymunk", OF_STEPS), ("mujoco", SETTLING)):
+        dt_s = scene.driver.law.period_s / 720
+        cell = Cell(scene, name, "tuned", dt_s, 720, converge=False, with_forces=True)
+        checked = check(cell)
+        assert checked.verdict == "within", checked.failures
+        assert checked.errors is not None
+        rows = [row for row in checked.errors.rows if row.quantity == "reaction"]
+        assert {row.samples for row in rows if row.kind == "start"} == {samples}

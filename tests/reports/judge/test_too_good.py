@@ -12,6 +12,7 @@ from analytic.kinematics import solve
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed
 from models.scene import Scene
+from reports.compare.errors import Error
 from reports.compare.uneven import uneven
 from reports.judge.cell import Cell, examined
 from reports.judge.rules import RULES
@@ -145,3 +146,26 @@ def test_a_law_that_swings_is_looked_at_like_any_other() -> None:
     assert not isinstance(scene.driver.law, ConstantSpeed)
     time_s, driver_rad = turn(scene)
     assert ("link", "rocker") in uneven(scene, solve(scene, time_s), driver_rad)
+
+
+@pytest.mark.parametrize("moved", [0.0, 1e-3])
+def test_forces_where_places_are_solved_are_too_good_for_accelerations_that_are_off(
+    moved: float,
+) -> None:
+    """An engine whose accelerations are right may have its forces from these, as inverse dynamics
+    has; one whose are not, has them of somebody else."""
+    scene = load_scene("fourbar-lecture-1")
+    period = scene.driver.law.period_s
+    cell = Cell(scene, "exudyn", "tuned", period / 360, 360, converge=False, with_forces=True)
+    errors = examined(cell)[0].errors
+    assert errors is not None
+
+    def sized(size: float, *quantities: str) -> list[Error]:
+        rows = (row for row in errors.rows if row.quantity in quantities)
+        return [replace(row, maximum=size * row.scale) for row in rows]
+
+    forces = sized(1e-13, "reaction", "torque")
+    rows = (*forces, *sized(moved, "acceleration"), *sized(1e-9, "velocity"))
+    found = too_good(replace(errors, rows=rows), "solved", 2)
+    assert bool(found) == bool(moved)
+    assert too_good(errors, "solved", 2) == []

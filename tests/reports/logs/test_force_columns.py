@@ -43,6 +43,42 @@ def test_so_is_a_log_of_forces_of_steps() -> None:
     assert _judged(run_frame(done)).verdict == "within"
 
 
+def test_so_is_one_of_joints_that_are_solved_for_which_starts_as_those_may() -> None:
+    done = crankcheck.run(SCENE, "exudyn", steps_per_turn=360, turns=1, forces=True)
+    assert _judged(run_frame(done)).verdict == "within"
+    moved = run_frame(done)
+    moved["C_x_m"] += 1e-6 * np.sin(moved["time_s"])  # as what is integrated may be
+    assert {finding.rule for finding in _judged(moved).failures} == {"CC116"}
+
+
+def test_a_log_of_a_loaded_mechanism_has_the_budget_of_its_loads() -> None:
+    press = load_scene("toggle-press")
+    done = crankcheck.run(press, "mujoco", steps_per_turn=360, turns=1, forces=True)
+    step_s = press.driver.law.period_s / 360
+    verdict = crankcheck.judge(press, run_frame(done), step_s=step_s, forces=True)
+    assert verdict.verdict == "within", verdict.failures
+    assert verdict.errors.loading > 1.0
+
+
+@pytest.mark.parametrize(
+    ("columns", "factor", "rule"),
+    [
+        (("B_rod_fx_n", "B_rod_fy_n"), -1.0, "CC120"),
+        (("B_rod_fx_n",), 1 / 9.80665, "CC120"),
+        (("C_slider_normal_n",), -1.0, "CC121"),
+        (("torque_n_m",), -1.0, "CC123"),
+        (("torque_n_m",), 1e3, "CC123"),
+    ],
+)
+def test_a_wrong_sign_or_unit_is_named_by_the_rule_of_its_quantity(
+    frame: pd.DataFrame, columns: tuple[str, ...], factor: float, rule: str
+) -> None:
+    wrong = frame.copy()
+    wrong[list(columns)] *= factor
+    failed = {finding.rule for finding in _judged(wrong).failures}
+    assert failed - {"CC116"} == {rule}
+
+
 OTHERWISE = {
     "torque_n_m": ("crank torque [N mm]", 1e3),
     "C_slider_normal_n": ("C.normal (kN)", 1e-3),
