@@ -61,6 +61,7 @@ class Forces:
     not give is NaN. ``friction`` holds what rubs, by joint: in a pin the couple [N m] that its
     first body exerts on its second, in a slider the force [N] of the guide on what slides, along
     the line; ``friction_solution`` is how that was found where it is Coulomb's.
+    ``contradictions`` is what an engine's own numbers say against its forces.
     """
 
     time_s: Array
@@ -71,6 +72,7 @@ class Forces:
     undetermined: str = ""
     friction: Mapping[str, Array] = field(default_factory=dict)
     friction_solution: FrictionSolution | None = None
+    contradictions: tuple[str, ...] = ()
 
     def each_series(self, change: Callable[[Array], Array]) -> Forces:
         """The forces alone, without bound, with every series changed; their instants stay."""
@@ -124,4 +126,5 @@ class Forces:
                 for joint in first.friction
             },
             friction_solution=None,
+            contradictions=tuple(text for part in parts for text in part.contradictions),
         )

@@ -82,6 +82,7 @@ def compare(beside: Beside | None) -> Errors | None:
         starts_in_passage=bool(np.any(at.passed[: at.first])),
         uneven=far,
         uneven_rates=unevenly_turned(scene, far),
+        contradictions=borne.contradictions,
         unbalanced=borne.unbalanced,
         start_load=borne.start_load,
         loading=loading(scene, beside.whole),

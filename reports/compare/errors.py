@@ -93,7 +93,8 @@ class Errors:
     run, and ``mass_ratio`` the mass of the heaviest body over that of the lightest.
     ``starts_in_passage`` says that one of the first samples is near a change point. ``uneven`` is
     how far bodies depart from moving evenly with the driver, ``uneven_rates`` those of them whose
-    rates do too (`reports.compare.uneven`). ``unbalanced`` is the pin whose forces add up to most,
+    rates do too (`reports.compare.uneven`). ``contradictions`` is what the engine's own numbers say
+    against its forces, ``unbalanced`` the pin whose forces add up to most,
     None where there are none; ``start_load`` the largest force at the start, as a share of the
     largest of its kind, where the engine's forces are those of steps, which start with half a step.
     ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
@@ -118,6 +119,7 @@ class Errors:
     starts_in_passage: bool = False
     uneven: Mapping[tuple[BodyKind, str], float] = field(default_factory=dict)
     uneven_rates: Set[tuple[BodyKind, str]] = frozenset()
+    contradictions: tuple[str, ...] = ()
     unbalanced: Unbalanced | None = None
     start_load: float = 0.0
     loading: float = 0.0

@@ -24,6 +24,7 @@ class ForceErrors:
     rows: tuple[Error, ...] = ()
     not_reported: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    contradictions: tuple[str, ...] = ()
     unbalanced: Unbalanced | None = None
     start_load: float = 0.0
     load_slopes: Mapping[str, float] = field(default_factory=dict)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from models.array import Mask
 from reports.compare.beside import Beside
 from reports.compare.error_rows import instants_of, rate_rows
 from reports.compare.errors import Error
@@ -14,7 +15,7 @@ from reports.compare.jumps import near_jumps
 from reports.compare.loading import inertia_share, load_slopes
 from reports.compare.series import length
 from reports.quantities import named
-from reports.quantities.forces import acting_at, largest_reaction, largest_torque, silent
+from reports.quantities.forces import acting, acting_at, largest_reaction, largest_torque, silent
 
 UNSURE = 1e-5
 """The most that a force of the reference may be wrong by, of its scale: where a load jumps between
@@ -35,14 +36,15 @@ def force_rows(beside: Beside) -> ForceErrors:
     reference = beside.truth.with_forces_at(time_s)
     assert reference.forces is not None
     tracks = beside.tracks(named("force"), reference)
-    known = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
+    determined: Mask = np.isfinite(reference.forces.torque) & ~near_jumps(scene, reference)
     at = instants_of(beside, time_s, reference)
     if run.forces_of == "steps":
         at = replace(at, settling=min(at.settling, OF_STEPS))
-    rows, missing, start, left = list[Error](), list[str](), 0.0, ~known
+    rows, missing, start = list[Error](), list[str](), 0.0
+    left: Mask = ~determined
     unsure = dict[tuple[str, str], float]()
     for track in tracks:
-        kept = known & (track.bound <= UNSURE * track.scale)
+        kept: Mask = determined & (track.bound <= UNSURE * track.scale)
         if not np.any(kept):  # friction of a joint that never turns may be either way, say
             unsure[track.quantity, track.body] = float(np.max(track.bound)) / track.scale
             continue
@@ -53,11 +55,13 @@ def force_rows(beside: Beside) -> ForceErrors:
             continue
         sure = replace(track, error=track.error[kept], bound=track.bound[kept])
         rows += rate_rows(sure, at[kept], "reported")
+    borne = acting(run)
     force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)
     return ForceErrors(
         tuple(rows),
         tuple(missing),
         force_notes(run, reference.forces, int(np.sum(left)), int(np.sum(at[~left].passed))),
+        () if borne is None else borne.contradictions,
         unbalanced(run, force),
         start if run.forces_of == "steps" else 0.0,
         load_slopes(scene, reference, force, torque),

@@ -96,7 +96,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
     assert errors is not None
-    errors = _of_what_is_held(errors)
+    errors = _of_what_is_held(errors, log)
     if not errors.rows:
         held = [each.channel.name for each in log.readings]
         held += [f"gap of {gap.of} (a gap is of a pin or a slider)" for gap in log.gaps]
@@ -161,9 +161,10 @@ def _check_step(log: OwnLog, step_s: float) -> None:
         )
 
 
-def _of_what_is_held(errors: Errors) -> Errors:
+def _of_what_is_held(errors: Errors, log: OwnLog) -> Errors:
     """Errors without what the reference may be wrong by where the log has nothing."""
     held = {(row.quantity, row.body) for row in errors.rows}
+    held |= set(log.forces.columns) if log.forces else set()
     sure = {key: number for key, number in errors.uncertain.items() if key in held}
     return replace(errors, uncertain=sure)
 

@@ -120,8 +120,8 @@ class PymunkSession:
         before, after = rows[1::2], rows[0::2]
         count = finite(after)
         poses = self._poses(after[:count], at[:count])
-        forces, doubts = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
-        return Log(poses, (count - 1) * every, count < len(at), doubts, wall, forces=forces)
+        forces = reactions.forces(before[: max(count - 1, 0)], after[:count], poses.time_s)
+        return Log(poses, (count - 1) * every, count < len(at), (), wall, forces=forces)
 
     def read(self) -> Poses:
         """The current state."""

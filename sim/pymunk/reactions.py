@@ -66,8 +66,8 @@ class Reactions:
         self._rubbed.append(rubbed)
 
     @np.errstate(all="ignore")  # what comes apart may overflow; it is judged, not warned of
-    def forces(self, before: Array, after: Array, time_s: Array) -> tuple[Forces, tuple[str, ...]]:
-        """The forces at logged steps, and what speaks against them.
+    def forces(self, before: Array, after: Array, time_s: Array) -> Forces:
+        """The forces at logged steps, with what pymunk's impulses say against them.
 
         Parameters
         ----------
@@ -89,8 +89,10 @@ class Reactions:
         friction = couples | _by_name(self._rubbed[: len(ends)])
         forces = forces_by_body(self._scene, pushes, on_blocks, friction, ends)
         forces = forces.each_series(_with_start).stretch(slice(0, len(time_s)))
-        doubts = tuple(self._doubts(pushes, ends)) if len(ends) and not pushes.spare else ()
-        return replace(forces, time_s=time_s), doubts
+        if not len(ends) or pushes.spare:
+            return replace(forces, time_s=time_s)
+        against = tuple(self._contradictions(pushes, ends))
+        return replace(forces, time_s=time_s, contradictions=against)
 
     def _couples(self, before: Array, after: Array) -> dict[str, Array]:
         """The friction of pins, by joint, (T,)."""
@@ -138,7 +140,7 @@ class Reactions:
         moment = inertia * alpha[:, 0] + np.sum(across * force, axis=1)
         return np.column_stack([force, moment])
 
-    def _doubts(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
+    def _contradictions(self, pushes: JointPushes, time_s: Array) -> Iterator[str]:
         """Joints whose impulse is not what momentum says of them."""
         held = [hinge for hinge, joint in self._model.hinges.items() if joint is not None]
         found = {

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from reports.judge.rules.balance import PinsBalance
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.log import AsAsked, LogComplete, Required, StatusOk, ValuesFinite
+from reports.judge.rules.own_impulses import NothingContradicts
+from reports.judge.rules.pin_sums import PinsBalance
 from reports.judge.rules.reference import ReferenceCertain, TwoComputations
 from reports.judge.rules.rule import Evidence, Finding, Rule
 from reports.judge.rules.shrinking import ErrorShrinks, ForcesShrink
@@ -28,6 +29,7 @@ _ALL: tuple[Rule, ...] = (
     Required(),
     PinsBalance(),
     ForcesShrink(),
+    NothingContradicts(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
