@@ -28,10 +28,14 @@ class LockedRange:
     locks: bool
 
     @property
+    def ends(self) -> str:
+        """From where to where, for people."""
+        return f"from {math.degrees(self.begin_rad):.6g} to {math.degrees(self.end_rad):.6g} deg"
+
+    @property
     def words(self) -> str:
         """For people."""
-        ends = f"{math.degrees(self.begin_rad):.6g} to {math.degrees(self.end_rad):.6g} deg"
-        return f"locks itself from {ends}" if self.locks else f"may jam from {ends}"
+        return f"locks itself {self.ends}" if self.locks else f"may jam {self.ends}"
 
 
 def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
