@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.table import Table
 
 from analytic.forces.efficiency import Efficiency, PowerFlow, efficiency, friction_power, power_flow
@@ -113,15 +111,6 @@ def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
         if ranges := [each.ends for each in cycle.locked if each.locks == locks]:
             words.append(f"It {what} with {scene.driver.link} {listed(ranges)}: there {why}.")
     return words
-
-
-def solved_in(acting: Forces, ways: int) -> NDArray[np.bool_]:
-    """The samples (T,) at which friction has so many equilibria: 0 where it locks, 2 where it may
-    jam."""
-    found = acting.friction_solution
-    if found is None:
-        return np.zeros(acting.time_s.size, np.bool_)
-    return np.asarray(found.solutions == ways)
 
 
 def _bodies(scene: Scene, joint: str) -> tuple[str, str]:

@@ -18,7 +18,6 @@ from models.errors import CrankcheckError
 from models.forces import Forces, SliderForces
 from models.motion import Motion
 from models.scene import Scene
-from reports.describe.friction import solved_in
 from reports.output.numbers import count, listed
 
 UNCERTAIN = 1e-6
@@ -78,7 +77,7 @@ def force_notes(scene: Scene, motion: Motion) -> list[str]:
 def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
     """Where the driver stands in dead points, and where friction locks, a sentence for each."""
     assert motion.forces is not None
-    is_locked = solved_in(motion.forces, 0)
+    is_locked = motion.forces.has_equilibria(0)
     locked = np.flatnonzero(is_locked)
     dead = np.flatnonzero(np.isnan(motion.forces.torque) & ~is_locked)
     notes = []
@@ -108,7 +107,8 @@ def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
 
 def force_certainty(acting: Forces) -> str:
     """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
-    the size of the forces themselves are counted apart; those at which it locks or may jam are left out."""
+    the size of the forces themselves are counted apart; those at which it locks or may jam are left
+    out."""
     bound = acting.bound
     if bound is None:
         return ""
@@ -118,7 +118,7 @@ def force_certainty(acting: Forces) -> str:
     for name, slider in acting.sliders.items():
         kinds["N"].append((slider.normal, bound.sliders[name].normal))
         kinds["N m"].append((slider.moment, bound.sliders[name].moment))
-    apart = solved_in(acting, 0) | solved_in(acting, 2)  # which notes tell of
+    apart = acting.has_equilibria(0) | acting.has_equilibria(2)  # which notes tell of
     told, doubtful = [], np.isnan(acting.torque) & ~apart
     for unit, pairs in kinds.items():
         largest = max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
@@ -145,7 +145,7 @@ def cleaned_forces(acting: Forces) -> Forces:
     bound = acting.bound
     if bound is None:
         return acting
-    jams = solved_in(acting, 2)
+    jams = acting.has_equilibria(2)
 
     def clean(series: Array, limit: Array) -> Array:
         return _cleaned(series, np.where(jams, 0.0, limit))

@@ -23,20 +23,20 @@ JAMS = {"facecolor": "none", "edgecolor": FRONT, "hatch": "////", "linewidth": 0
 
 
 def draw(turn: ForceTurn) -> Figure | None:
-    """One panel, from 0 to 1; None without friction."""
-    flow = flow_of(turn.scene, turn.motion, turn.acting)
-    if flow is None:
+    """One panel, from 0 to 1; None without friction, or where the loads drive all the time."""
+    assert turn.motion.forces is not None
+    flow = flow_of(turn.scene, turn.motion, turn.motion.forces)
+    if flow is None or not np.isfinite(flow.efficiency).any():
         return None
     cycle = cycle_of(turn.scene)
     entries: list[tuple[Artist, str]] = [(Line2D([], [], **CURVE), "at an instant")]  # type: ignore[arg-type]  # looks of a line
     over = math.nan if cycle is None else cycle.cycle
     if math.isfinite(over):
         entries.append((Line2D([], [], **CYCLE), f"over a cycle {readable(over)}"))  # type: ignore[arg-type]  # as above
-    solution = turn.acting.friction_solution
     bands = []
     for number, words, look in ((0, "locks itself", LOCKED), (2, "may jam", JAMS)):
-        if solution is not None and np.any(solution.solutions == number):
-            bands.append((solution.solutions == number, look))
+        if (samples := turn.acting.has_equilibria(number)).any():
+            bands.append((samples, look))
             entries.append((Patch(**look), words))  # type: ignore[arg-type]  # as above
     notes = [*cycle_words(turn.scene, cycle), "No curve where no power goes on.", *turn.notes]
     title = f"Efficiency: {turn.scene.name}"
