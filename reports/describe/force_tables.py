@@ -66,7 +66,7 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
 @dataclass(frozen=True)
 class Largest:
     """The largest value over a turn, with its sign, in ``unit``; the driver's angle there [deg],
-    and the mean over time."""
+    and the mean over time, NaN where friction locks in part of it."""
 
     name: str
     value: float
@@ -100,6 +100,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
         mean = float(np.nanmean(values[:-1]))
         # What comes and goes alike has no mean but rounding.
         mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
+        mean = math.nan if acting.has_equilibria(0).any() else mean
         rows.append(Largest(name, value, unit, float(degrees[at]) if value else math.nan, mean))
     return rows
 
@@ -114,7 +115,8 @@ def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
     table.add_column("mean", justify="right", no_wrap=True)
     for row in largest_of(scene, turn, acting):
         at = "-" if math.isnan(row.at_deg) else f"{row.at_deg:.4g} deg"
-        table.add_row(row.name, f"{row.value:.6g}", row.unit, at, f"{row.mean:.6g}")
+        mean = "-" if math.isnan(row.mean) else f"{row.mean:.6g}"
+        table.add_row(row.name, f"{row.value:.6g}", row.unit, at, mean)
     return table
 
 
