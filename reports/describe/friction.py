@@ -95,15 +95,12 @@ def cycle_words(scene: Scene, cycle: Efficiency | None) -> list[str]:
         return []
     words = []
     if math.isfinite(cycle.put_in):
-        told = f"Friction takes {cycle.wasted:.6g} J in a cycle"
+        taken = f"Friction takes {cycle.wasted:.6g} J in a cycle"
+        useful = f"{cycle.useful:.6g} J of the {cycle.put_in:.6g} J that the drive puts in"
         if math.isfinite(cycle.cycle):
-            told += (
-                f", and {cycle.useful:.6g} J of {cycle.put_in:.6g} J are useful work: efficiency "
-            )
-            told += f"{cycle.cycle:.6g}."
+            words.append(f"{taken}; {useful} are useful work: efficiency {cycle.cycle:.6g}.")
         else:
-            told += "; no useful work is done in it, so it has no efficiency."
-        words.append(told)
+            words.append(f"{taken}; no useful work is done in it, so it has no efficiency.")
     for locks, what, why in (
         (True, "locks itself", "no finite torque keeps it moving, and its cycle has no efficiency"),
         (False, "may jam", "the load helps, and another equilibrium, of more friction, is as good"),
