@@ -50,7 +50,6 @@ class VerifyRequest:
             help="Run at half and quarter step too, and say what the error does.",
         ),
     ] = True
-    forces: Forces = False
     jobs: Jobs = 0
     junit: Annotated[Path | None, typer.Option(help="Write JUnit XML.")] = None
     csv: Annotated[Path | None, typer.Option(help="Write the cells as CSV.")] = None
@@ -65,6 +64,7 @@ class VerifyRequest:
     factor: Annotated[
         float, typer.Option(help="Growth over the baseline that is no fault yet.")
     ] = 1.1
+    forces: Forces = False
     mjcf: Annotated[
         Path | None,
         typer.Option(
@@ -174,15 +174,15 @@ class SelftestRequest:
             "--fault", metavar="NAME", help="Fault of the table; may be repeated; all if none."
         ),
     ] = ()
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
-    ] = False
     jobs: Jobs = 0
     csv: Annotated[Path | None, typer.Option(help="Write a row per fault and place.")] = None
     json: Annotated[Path | None, typer.Option(help="Write the same and more as JSON.")] = None
     folder: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write both into a folder.")
     ] = None
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
+    ] = False
 
 
 @command

@@ -33,9 +33,6 @@ class JudgeRequest:
         str,
         typer.Option(help="scene, fitted (speed and start), or logged (geometry at its angle)."),
     ] = "scene"
-    forces: Annotated[
-        bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
-    ] = False
     step_s: Annotated[
         float | None,
         typer.Option("--step", metavar="SECONDS", parser=seconds, help="Step of the solver."),
@@ -56,6 +53,9 @@ class JudgeRequest:
     output: Annotated[Path | None, typer.Option("-o", "--output", help="Write a page, .html.")] = (
         None
     )
+    forces: Annotated[
+        bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
+    ] = False
 
 
 @command

@@ -37,7 +37,6 @@ class SweepRequest:
         Sequence[str],
         typer.Option("--set", metavar="ENGINE.SETTING=A,B", help="One variant per value."),
     ] = ()
-    forces: Forces = False
     limit_s: Annotated[float, typer.Option(help="Longest time for a cell, in seconds.")] = 60.0
     memory_gb: Annotated[float, typer.Option(help="Most memory for a cell, in GB.")] = 2.0
     jobs: Jobs = 0
@@ -51,6 +50,7 @@ class SweepRequest:
     again: Annotated[
         bool, typer.Option("--again", help="Run cells again that timed out or crashed.")
     ] = False
+    forces: Forces = False
 
 
 @command
@@ -190,10 +190,10 @@ class StabilityRequest:
     folder: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for matrix, table and page.")
     ] = None
-    forces: Forces = False
     limit_s: Annotated[float, typer.Option(help="Longest time for a run, in seconds.")] = 120.0
     memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
     jobs: Jobs = 0
+    forces: Forces = False
 
 
 @command

@@ -76,10 +76,10 @@ class RunRequest:
     drive: Annotated[str, typer.Option(help="prescribed, servo, or free (nothing drives it).")] = (
         "prescribed"
     )
-    forces: Forces = False
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
     ] = None
+    forces: Forces = False
 
 
 @command

@@ -35,6 +35,9 @@ from reports.quantities import QUANTITIES, named
 from reports.quantities.forces import acting_at, largest_reaction, silent
 from reports.quantities.quantity import Role, Source
 
+UNSURE = 1e-5
+"""The most that a force of the reference may be wrong by, of its scale: where a load jumps between
+two samples that rounding can not tell apart, it is known to the jump."""
 EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -131,10 +134,13 @@ def force_rows(beside: Beside) -> ForceErrors:
     time_s = beside.motion.time_s if known is None else known
     reference = beside.truth.with_forces_at(time_s)
     assert reference.forces is not None
+    tracks = beside.tracks(named("force"), reference)
     alive = np.isfinite(reference.forces.torque)
+    for track in tracks:
+        alive = alive & (track.bound <= UNSURE * track.scale)
     at = _instants(beside, time_s, reference)[alive]
     rows, missing, start = list[Error](), list[str](), 0.0
-    for track in beside.tracks(named("force"), reference) if np.any(alive) else ():
+    for track in tracks if np.any(alive) else ():
         start = max(start, float(length(track.truth)[alive][0]) / track.scale)
         if silent(run) and np.all(np.isnan(track.error)):
             missing.append(f"{track.quantity} of {track.body_kind} {track.body}")

@@ -66,7 +66,7 @@ def force_notes(run: Run, reference: Forces, dead: int, passed: int) -> tuple[st
     if dead:
         notes.append(
             f"forces: {count(dead, 'sample')} of {reference.time_s.size} in dead points left out, "
-            "where statics does not determine them"
+            "or where a load jumps: there they are not determined"
         )
     if passed:
         notes.append(

@@ -22,6 +22,9 @@ A change point that the motion goes through is left out of ``conditioning``, wit
 the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
 own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
 
+Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
+in their budget, but in that of the start (`reports.judge.start_allowance`).
+
 ``cap`` is what anyone would call wrong, whatever the theory grants: near a singular position the
 budget grows without end, and an engine on the other branch must not pass.
 

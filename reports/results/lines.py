@@ -154,7 +154,7 @@ def _unit(quantity: str) -> str:
         return QUANTITIES[names[0]].share if names else "rad"
     units = {measure.unit for entry in QUANTITIES.values() for measure in entry.measures}
     ends = {f"_{re.sub('[ /]', '_', unit).replace('^', '').lower()}": unit for unit in units}
-    end = max((end for end in ends if quantity.endswith(end)), key=len, default="")
+    end = max((end for end in ends if quantity.lower().endswith(end)), key=len, default="")
     return ends.get(end, "")
 
 

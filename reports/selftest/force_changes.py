@@ -114,31 +114,31 @@ def pins_swapped(_: Scene, done: Run, own: Forces, size: float) -> Forces:
 def of_another(change: Callable[[Scene, float], Scene]) -> Change:
     """The forces that another scene would have, at the same instants."""
 
-    def changed(scene: Scene, done: Run, own: Forces, size: float) -> Forces:
-        known = np.isfinite(own.time_s)
-        times = np.where(known, own.time_s, 0.0)
-        right, wrong = (
-            forces(each, times, bound=False, skip_dead_points=True)
-            for each in (scene, change(scene, size))
-        )
-        pins = {
-            point: {
-                body: force + wrong.pins[point][body] - right.pins[point][body]
-                for body, force in bodies.items()
-            }
-            for point, bodies in own.pins.items()
-        }
-        sliders = {
-            name: SliderForces(
-                slider.normal + wrong.sliders[name].normal - right.sliders[name].normal,
-                slider.moment + wrong.sliders[name].moment - right.sliders[name].moment,
-            )
-            for name, slider in own.sliders.items()
-        }
-        torque = own.torque + wrong.torque - right.torque
-        return replace(own, pins=pins, sliders=sliders, torque=torque)
+    return lambda scene, _, own, size: changed_by_scene(own, scene, change(scene, size))
 
-    return changed
+
+def changed_by_scene(own: Forces, right: Scene, wrong: Scene) -> Forces:
+    """The forces of a log, with what another scene makes other than the right one."""
+    times = np.where(np.isfinite(own.time_s), own.time_s, 0.0)
+    before, after = (
+        forces(each, times, bound=False, skip_dead_points=True) for each in (right, wrong)
+    )
+    pins = {
+        point: {
+            body: force + after.pins[point][body] - before.pins[point][body]
+            for body, force in bodies.items()
+        }
+        for point, bodies in own.pins.items()
+    }
+    sliders = {
+        name: SliderForces(
+            slider.normal + after.sliders[name].normal - before.sliders[name].normal,
+            slider.moment + after.sliders[name].moment - before.sliders[name].moment,
+        )
+        for name, slider in own.sliders.items()
+    }
+    torque = own.torque + after.torque - before.torque
+    return replace(own, pins=pins, sliders=sliders, torque=torque)
 
 
 def lighter(scene: Scene, share: float) -> Scene:

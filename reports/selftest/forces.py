@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from analytic.check.moved_scene import scaled
-from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log
+from reports.selftest.fault import FOURBAR, SHAPER, SLIDER, Fault, in_log, integrates
 from reports.selftest.force_changes import (
     about_another_point,
     dropped,
@@ -33,6 +33,7 @@ from reports.selftest.force_changes import (
     weighed,
     without_last_pin,
 )
+from reports.selftest.load_changes import load_in_body, load_late, of_load
 from reports.selftest.logs import WHEN, noisy
 
 SLIDING = (SLIDER, SHAPER)
@@ -43,7 +44,7 @@ FAULTS = (
     _fault("force-sign", "all forces have the other sign", "CC120", each_force(lambda x, _: -x)),
     _fault(
         "force-giver",
-        "a pin's force on one body is said of the other",
+        "a pin's force said of the other body",
         "CC120",
         in_forces(of_the_giver),
     ),
@@ -71,7 +72,7 @@ FAULTS = (
     ),
     _fault(
         "no-turning-inertia",
-        "inertia of a link against turning left out",
+        "a link's inertia left out",
         "CC123",
         in_forces(of_another(turning_lighter)),
         1.0,
@@ -85,6 +86,21 @@ FAULTS = (
         9.81,
         "m/s^2",
     ),
+    _fault(
+        "load-late",
+        "a load over time is felt late",
+        "CC120",
+        in_forces(of_load(load_late)),
+        1.0,
+        "steps",
+    ),
+    _fault(
+        "load-in-body",
+        "a load felt in the body's frame",
+        "CC120",
+        in_forces(of_load(load_in_body)),
+    ),
+    _fault("load-left-out", "a load is not felt", "CC120", in_forces(of_load(lambda *_: None))),
     _fault(
         "other-scene-forces",
         "forces of a larger scene",
@@ -172,7 +188,7 @@ FAULTS = (
     ),
     _fault(
         "force-floor",
-        "a reaction off, within this step's limit",
+        "a reaction off, within the limit",
         "CC125",
         in_forces(spoilt_pin(slice(None))),
         1e-3,
@@ -180,7 +196,13 @@ FAULTS = (
         scenes=(FOURBAR,),
         finer=True,
     ),
-    _fault("forces-copied", "forces of the reference", "CC111", in_forces(of_reference)),
+    _fault(
+        "forces-copied",
+        "forces of the reference",
+        "CC111",
+        in_forces(of_reference),
+        needs=lambda name: gives(name) and integrates(name),
+    ),
     _fault("force-nan", "a reaction not a number at the end", "CC109", in_forces(nan_at_end)),
     _fault("pin-missing", "a pin is not in the log", "CC109", in_forces(without_last_pin)),
     _fault("forces-missing", "no force is in the log", "CC109", in_log(dropped)),

@@ -27,13 +27,13 @@ def _pull(motion: Motion) -> Mapping[str, Array]:
 QUANTITIES["pull"] = Quantity(
     name="pull",
     role="derived",
-    head="pull\n/ F",
+    head="pull\n/ G",
     measures=(
         Measure(
             body_kind="point",
             column="pull_error_N",
             unit="N",
-            share="F",
+            share="G",
             scale=lambda scene, _: MASS_KG * scene.longest_m * scene.driver.law.peak_speed_rad_s**2,
             truth=lambda scene, reference: _pull(reference) if "rocker" in scene.links else {},
             logged=lambda scene, run: {} if run.motion is None else _pull(run.motion),

@@ -46,6 +46,7 @@ NOT_OF_MODELS = {
     "jobs": "--jobs",
     "baseline": "--baseline",
     "factor": "--factor",
+    "forces": "--forces",
 }
 """What is asked of scenes alone, by the field of the request."""
 

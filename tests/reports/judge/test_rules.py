@@ -57,6 +57,8 @@ START = (
     replace(row("acceleration"), kind="start"),
     replace(row("acceleration", "differenced"), kind="start"),
 )
+OF_FORCES = "CC120"
+"""The first of the rules that have something to say where forces were asked for."""
 HEALTHY = Evidence(
     status="ok",
     reason="",
@@ -80,7 +82,7 @@ def with_row(new: Error) -> Evidence:
 
 def test_a_healthy_run_passes_every_rule() -> None:
     findings = judge(HEALTHY)
-    assert [finding.rule for finding in findings] == list(RULES)
+    assert [finding.rule for finding in findings] == [name for name in RULES if name < OF_FORCES]
     assert {finding.level for finding in findings} == {"pass"}
 
 

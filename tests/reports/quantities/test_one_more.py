@@ -50,7 +50,7 @@ def test_its_rule_judges_it_and_fails_where_its_limit_is_too_narrow(told: Told) 
         [],
         ["fail"],
     ]
-    assert own[-1][0]["text"].endswith("limit 1e-09 F (--tol)")
+    assert own[-1][0]["text"].endswith("limit 1e-09 G (--tol)")
     assert own[-1][0]["cure"].startswith("Shorten the step.")
     order = [finding["rule"] for finding in told["findings"][0]]
     assert order[order.index("CC901") - 1 : order.index("CC901") + 2] == ["CC114", "CC901", "CC109"]
@@ -70,12 +70,12 @@ def test_it_has_its_columns_in_frames_store_and_tables(told: Told) -> None:
     heads = next(line for line in told["table"].splitlines() if "veloc." in line)
     assert heads.split()[3:6] == ["veloc.", "accel.", "pull"]
     assert "CC901 pull: point C: " in told["table"]
-    assert told["page"]["pull_pure"] == ["pull at C", "F"]
-    assert told["tune"]["pull_pure"] == "pull / F"
+    assert told["page"]["pull_pure"] == ["pull at C", "G"]
+    assert told["tune"]["pull_pure"] == "pull / G"
     assert told["diff"][-1] == "pull"
     followed, heads_of_history = told["history"]
-    assert followed == {"unit": "of F", "stored": ["pull"], "tolerance": "pull", "rate": True}
-    assert heads_of_history["pull\n/ F"] == ["pull"]
+    assert followed == {"unit": "of G", "stored": ["pull"], "tolerance": "pull", "rate": True}
+    assert heads_of_history["pull\n/ G"] == ["pull"]
 
 
 def test_all_else_is_as_it_was(told: Told) -> None:
