@@ -43,13 +43,25 @@ def every_shipped() -> dict[str, Path]:
 
 
 def names_of_scenes(names: str | Iterable[str]) -> list[str]:
-    """Names and paths of scenes, each once; the name of a kind stands for all its scenes.
+    """Names and paths of scenes, each once; the name of a kind stands for all its scenes but those
+    of the reference alone.
 
     Raises CrankcheckError for what is neither a name nor several.
     """
     known = kinds()
-    written_out = (shipped(name) if name in known else [name] for name in names_in(names, "scenes"))
+    written_out = (
+        [one for one in shipped(name) if one not in reference_alone(name)]
+        if name in known
+        else [name]
+        for name in names_in(names, "scenes")
+    )
     return list(dict.fromkeys(name for each in written_out for name in each))
+
+
+def reference_alone(kind: str) -> list[str]:
+    """The shipped scenes of a kind that no engine is given, as friction in them follows from the
+    reactions."""
+    return [name for name, path in shipped(kind).items() if read_scene(path).coulomb_joints]
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:

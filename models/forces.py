@@ -74,6 +74,13 @@ class Forces:
     friction_solution: FrictionSolution | None = None
     contradictions: tuple[str, ...] = ()
 
+    def has_equilibria(self, number: int) -> NDArray[np.bool_]:
+        """The samples (T,) at which Coulomb's friction has so many equilibria: 0 where it locks the
+        mechanism, 2 where that may jam."""
+        if self.friction_solution is None:
+            return np.zeros(self.time_s.size, np.bool_)
+        return np.asarray(self.friction_solution.solutions == number)
+
     def each_series(self, change: Callable[[Array], Array]) -> Forces:
         """The forces alone, without bound, with every series changed; their instants stay."""
         return replace(

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from models.fixed import FixedMapping
-from models.friction import Friction
+from models.friction import CoulombFriction, Friction
 from models.laws import Law
 from models.loads import Load
 
@@ -119,6 +119,11 @@ class Scene:
     def longest_m(self) -> float:
         """The longest distance between two points of one link: the scale that errors are over."""
         return max(span(link.points) for link in self.links.values())
+
+    @property
+    def coulomb_joints(self) -> list[str]:
+        """The joints whose friction follows from the reactions, which no engine is given."""
+        return [n for n, one in self.friction.items() if isinstance(one, CoulombFriction)]
 
     @property
     def driver_pivot(self) -> str:

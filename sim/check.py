@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from models.errors import EngineError
-from models.friction import CoulombFriction
 from models.joints import bodies
 from models.motion import State
 from models.poses import centre_of, frames, mass_of
@@ -52,8 +51,8 @@ def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) ->
         )
     rubbing = [
         f"friction.{name}"
-        for name, one in scene.friction.items()
-        if isinstance(one, CoulombFriction) or not engine.applies_constant_friction
+        for name in scene.friction
+        if name in scene.coulomb_joints or not engine.applies_constant_friction
     ]
     if rubbing:
         raise EngineError(

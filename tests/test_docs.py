@@ -53,7 +53,7 @@ def test_what_is_said_of_own_logs_is_true(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_forces_is_true(tmp_path: Path) -> None:
-    """Of scenes that stand on the page: a command's start each, some 15 s in all."""
+    """Of scenes that stand on the page: a command's start each, some 20 s in all."""
     for text in blocks(FORCES, "toml"):
         name = re.search('name = "(.+)"', text)
         assert name is not None

@@ -14,6 +14,7 @@ from analytic.forces.self_locking import LockedRange, self_locking
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
 from models.array import Array
+from models.forces import Forces
 from models.joints import block_name
 from models.motion import Motion
 from models.scene import GROUND, Scene
@@ -47,6 +48,27 @@ class Efficiency:
         return self.useful / self.put_in if self.useful > 0.0 < self.put_in else float("nan")
 
 
+@dataclass(frozen=True)
+class PowerFlow:
+    """At instants of a motion, (T,) each: the power that the drive puts in, what of it is lost in
+    friction [W], and the part that goes on to loads and masses; NaN where none goes on."""
+
+    put_in: Array
+    lost: Array
+    efficiency: Array
+
+
+def power_flow(scene: Scene, motion: Motion, found: Forces) -> PowerFlow:
+    """What the drive and friction do in a whole motion with these forces."""
+    put_in = found.torque * motion.links[scene.driver.link].omega
+    watts = friction_power(scene, motion, found.friction).values()
+    lost = sum((-each for each in watts), np.zeros_like(put_in))
+    going_on = put_in - lost
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.where(going_on > 0.0, going_on / put_in, np.nan)
+    return PowerFlow(put_in, lost, part)
+
+
 def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
     """The efficiency of a machine at ``count`` instants of a cycle.
 
@@ -60,16 +82,13 @@ def efficiency(scene: Scene, count: int = SAMPLES) -> Efficiency:
     motion = solve(scene, time_s, bound=False)
     found = forces(scene, time_s, bound=False, skip_dead_points=True)
     omega = motion.links[scene.driver.link].omega
-    power = found.torque * omega
-    lost = -sum(friction_power(scene, motion, found.friction).values(), np.zeros_like(power))
-    going_on = power - lost
-    with np.errstate(divide="ignore", invalid="ignore"):
-        instantaneous = np.where(going_on > 0.0, going_on / power, np.nan)
+    flow = power_flow(scene, motion, found)
     against = -reduced_machine(scene, time_s).torque * omega  # weights do no work in a cycle
-    works = [float(np.sum(each)) * part_s for each in (power, against, lost)]
+    works = [float(np.sum(each)) * part_s for each in (flow.put_in, against, flow.lost)]
     put_in, useful, wasted = works if np.isfinite(works).all() else [float("nan")] * 3
     theta, locked = motion.links[scene.driver.link].theta, self_locking(scene, count)
-    return Efficiency(theta, power, lost, instantaneous, put_in, useful, wasted, locked)
+    parts = (flow.put_in, flow.lost, flow.efficiency)
+    return Efficiency(theta, *parts, put_in, useful, wasted, locked)
 
 
 def friction_power(scene: Scene, motion: Motion, friction: Mapping[str, Array]) -> dict[str, Array]:

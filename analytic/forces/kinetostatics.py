@@ -28,7 +28,7 @@ from analytic.structure.mobility import Structure, analyse
 from models.array import Array
 from models.errors import CrankcheckError, few
 from models.forces import Forces
-from models.friction import ConstantFriction, CoulombFriction
+from models.friction import ConstantFriction
 from models.motion import Motion
 from models.samples import samples
 from models.scene import Scene
@@ -159,12 +159,11 @@ def _check_loaded(scene: Scene) -> None:
 
 def _check_friction(scene: Scene, structure: Structure) -> None:
     """Refuse friction that hangs on reactions which statics does not determine."""
-    coulomb = [n for n, one in scene.friction.items() if isinstance(one, CoulombFriction)]
-    if structure.redundant and coulomb:
+    if structure.redundant and scene.coulomb_joints:
         raise CrankcheckError(
-            f"{scene.name}: friction.{coulomb[0]}: Coulomb's friction follows from the reactions, "
-            f"and how redundant links ({structure.spare}) share them is open, so it can not be "
-            "worked out; give torque_n_m or force_n, or leave the redundant links out"
+            f"{scene.name}: friction.{scene.coulomb_joints[0]}: Coulomb's friction follows from "
+            f"the reactions, and how redundant links ({structure.spare}) share them is open, so "
+            "it can not be worked out; give torque_n_m or force_n, or leave the redundant links out"
         )
 
 
@@ -192,11 +191,11 @@ def _dead_point(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
 def _locked(scene: Scene, chunk: Chunk, time_s: Array, index: int) -> str:
     """Where friction holds against any torque, and what would work."""
     theta = math.degrees(_at(chunk.theta, index))
-    coulomb = [n for n, one in scene.friction.items() if isinstance(one, CoulombFriction)]
     return (
         f"{scene.name}: {scene.driver.link} at {theta:.6g} deg (t = {time_s[index]:.6g} s) locks "
-        f"itself: friction in {few(coulomb, 6)} grows by more than what overcomes it, so no finite "
-        "torque keeps it moving; leave that instant out, lessen mu, or drive another link"
+        f"itself: friction in {few(scene.coulomb_joints, 6)} grows by more than what overcomes it, "
+        "so no finite torque keeps it moving; leave that instant out, lessen mu, or drive another "
+        "link"
     )
 
 

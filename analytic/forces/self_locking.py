@@ -10,7 +10,6 @@ import numpy as np
 from analytic.forces.cycle_time import cycle_s, looks
 from analytic.forces.kinetostatics import forces
 from models.array import Array
-from models.friction import CoulombFriction
 from models.scene import Scene
 
 LOOKS = 720
@@ -29,10 +28,14 @@ class LockedRange:
     locks: bool
 
     @property
+    def ends(self) -> str:
+        """From where to where, for people."""
+        return f"from {math.degrees(self.begin_rad):.6g} to {math.degrees(self.end_rad):.6g} deg"
+
+    @property
     def words(self) -> str:
         """For people."""
-        ends = f"{math.degrees(self.begin_rad):.6g} to {math.degrees(self.end_rad):.6g} deg"
-        return f"locks itself from {ends}" if self.locks else f"may jam from {ends}"
+        return f"locks itself {self.ends}" if self.locks else f"may jam {self.ends}"
 
 
 def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
@@ -56,7 +59,7 @@ def self_locking(scene: Scene, count: int = LOOKS) -> tuple[LockedRange, ...]:
         As `analytic.forces.kinetostatics.forces`, but for dead points and locked positions; a
         driver under whose law nothing repeats.
     """
-    if not any(isinstance(law, CoulombFriction) for law in scene.friction.values()):
+    if not scene.coulomb_joints:
         return ()
     cycle, instants = cycle_s(scene), looks(scene, count)
     cases = _solutions(scene, instants)

@@ -27,8 +27,8 @@ def acted_on(acting: Forces) -> Iterator[tuple[str, str, str, Array]]:
 
 
 def force_columns(acting: Forces, *, lengths: bool = True) -> dict[str, Array]:
-    """Columns by name: the driving torque, pins by point and body, sliders; vectors also by
-    length."""
+    """Columns by name: the driving torque, pins by point and body, sliders, and what rubs; vectors
+    also by length."""
     columns = {"torque_n_m": acting.torque}
     for point, body, _, force in acted_on(acting):
         stem = f"{point}_{body.replace(' ', '_')}"
@@ -38,4 +38,7 @@ def force_columns(acting: Forces, *, lengths: bool = True) -> dict[str, Array]:
     for name, slider in acting.sliders.items():
         columns[f"{name}_slider_normal_n"] = slider.normal
         columns[f"{name}_slider_moment_n_m"] = slider.moment
+    for joint, series in acting.friction.items():
+        is_slider = joint in acting.sliders
+        columns[f"{joint}_slider_friction_n" if is_slider else f"{joint}_friction_n_m"] = series
     return columns

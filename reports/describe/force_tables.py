@@ -13,6 +13,13 @@ from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.force_frame import acted_on
+from reports.describe.friction import (
+    flow_of,
+    friction_name,
+    friction_over_time,
+    position_friction_tables,
+    unit_of,
+)
 from reports.describe.tables import Columns, digits, head_table, tables_over_time
 from reports.output.columns import plain_table
 
@@ -38,7 +45,8 @@ def position_force_tables(scene: Scene, motion: Motion, acting: Forces) -> list[
         body = scene.sliders[name].link or "block"
         row = (f"{name} {body}", scene.sliders[name].on, *map(digits, (normal, moment, at)))
         guides.add_row(*row)
-    return [table for table in (drive, pins, guides) if table.row_count]
+    tables = [table for table in (drive, pins, guides) if table.row_count]
+    return tables + position_friction_tables(scene, motion, acting)
 
 
 def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int) -> list[Table]:
@@ -51,13 +59,14 @@ def motion_force_tables(scene: Scene, motion: Motion, acting: Forces, width: int
     for name, slider in acting.sliders.items():
         both = [("normal\nN", slider.normal), ("moment\nN m", slider.moment)]
         bodies.append((f"slider {name}", both))
+    bodies += friction_over_time(scene, motion, acting)
     return tables_over_time(scene, motion, bodies, width)
 
 
 @dataclass(frozen=True)
 class Largest:
     """The largest value over a turn, with its sign, in ``unit``; the driver's angle there [deg],
-    and the mean over time."""
+    and the mean over time, NaN where friction locks in part of it."""
 
     name: str
     value: float
@@ -76,6 +85,12 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
     for name, slider in acting.sliders.items():
         series.append((f"slider {name}, normal", slider.normal, "N"))
         series.append((f"slider {name}, moment", slider.moment, "N m"))
+    for joint, rubbing in acting.friction.items():
+        unit = unit_of(scene, joint)
+        series.append((f"{friction_name(scene, joint)}, friction", rubbing, unit))
+    flow = flow_of(scene, turn, acting)
+    if flow is not None:
+        series.append(("power lost in friction", flow.lost, "W"))
     rows = []
     for name, values, unit in series:
         if not np.isfinite(values).any():
@@ -85,6 +100,7 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
         mean = float(np.nanmean(values[:-1]))
         # What comes and goes alike has no mean but rounding.
         mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
+        mean = math.nan if acting.has_equilibria(0).any() else mean
         rows.append(Largest(name, value, unit, float(degrees[at]) if value else math.nan, mean))
     return rows
 
@@ -99,7 +115,8 @@ def largest_table(scene: Scene, turn: Motion, acting: Forces) -> Table:
     table.add_column("mean", justify="right", no_wrap=True)
     for row in largest_of(scene, turn, acting):
         at = "-" if math.isnan(row.at_deg) else f"{row.at_deg:.4g} deg"
-        table.add_row(row.name, f"{row.value:.6g}", row.unit, at, f"{row.mean:.6g}")
+        mean = "-" if math.isnan(row.mean) else f"{row.mean:.6g}"
+        table.add_row(row.name, f"{row.value:.6g}", row.unit, at, mean)
     return table
 
 

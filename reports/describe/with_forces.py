@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
@@ -70,31 +71,44 @@ def force_notes(scene: Scene, motion: Motion) -> list[str]:
     if acting is None:
         return []
     notes = [f"Reactions: none, as {acting.undetermined}."] if acting.undetermined else []
-    return notes + dead_point_note(scene, motion)
+    return notes + left_out_notes(scene, motion)
 
 
-def dead_point_note(scene: Scene, motion: Motion) -> list[str]:
-    """Where the driver stands in dead points, in a sentence, if it does."""
+def left_out_notes(scene: Scene, motion: Motion) -> list[str]:
+    """Where the driver stands in dead points, and where friction locks, a sentence for each."""
     assert motion.forces is not None
-    dead = np.flatnonzero(np.isnan(motion.forces.torque))
-    if dead.size == 0:
-        return []
+    is_locked = motion.forces.has_equilibria(0)
+    locked = np.flatnonzero(is_locked)
+    dead = np.flatnonzero(np.isnan(motion.forces.torque) & ~is_locked)
+    notes = []
+    if dead.size:
+        notes.append(
+            f"Dead point, {_where(scene, motion, dead)}: the driving torque and the reactions are "
+            "not determined there, and left out; beside it they may be of any size."
+        )
+    if locked.size:
+        notes.append(
+            f"Locked, {_where(scene, motion, locked)}: friction grows there by more than what "
+            "overcomes it; there are no forces, and beside it they may be of any size."
+        )
+    return notes
+
+
+def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
+    """The driver's angles at samples."""
     driver = motion.links.get(scene.driver.link)
-    where = count(dead.size, "instant")
-    if driver is not None:
-        degrees = np.round(np.degrees(driver.theta[dead]) % 360.0, 6) % 360.0
-        angles = [f"{each:g} deg" for each in sorted(set(degrees.tolist()))]
-        few = [*angles[:NAMED], "more"] if len(angles) > NAMED else angles
-        where = f"{scene.driver.link} at {listed(few)}"
-    return [
-        f"Dead point, {where}: the driving torque and the reactions are not determined there, and "
-        "left out; beside it they may be of any size."
-    ]
+    if driver is None:
+        return count(samples.size, "instant")
+    degrees = np.round(np.degrees(driver.theta[samples]) % 360.0, 6) % 360.0
+    angles = [f"{each:g} deg" for each in sorted(set(degrees.tolist()))]
+    few = [*angles[:NAMED], "more"] if len(angles) > NAMED else angles
+    return f"{scene.driver.link} at {listed(few)}"
 
 
 def force_certainty(acting: Forces) -> str:
     """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
-    the size of the forces themselves are counted apart."""
+    the size of the forces themselves are counted apart; those at which it locks or may jam are left
+    out."""
     bound = acting.bound
     if bound is None:
         return ""
@@ -104,14 +118,17 @@ def force_certainty(acting: Forces) -> str:
     for name, slider in acting.sliders.items():
         kinds["N"].append((slider.normal, bound.sliders[name].normal))
         kinds["N m"].append((slider.moment, bound.sliders[name].moment))
-    told, doubtful = [], np.isnan(acting.torque)
+    apart = acting.has_equilibria(0) | acting.has_equilibria(2)  # which notes tell of
+    told, doubtful = [], np.isnan(acting.torque) & ~apart
     for unit, pairs in kinds.items():
         largest = max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
-        limits = np.array([limit for _, limit in pairs])
+        limits = np.array([np.where(apart, 0.0, limit) for _, limit in pairs])
         fit = np.where(limits <= UNCERTAIN * largest, limits, 0.0)
         doubtful = doubtful | np.any(limits > UNCERTAIN * largest, axis=0)
         if np.any(limits <= UNCERTAIN * largest):
             told.append(f"{float(fit.max()):.1e} {unit}")
+    if apart.any() and apart.all():
+        return "Forces have no bound here, as the mechanism may jam."
     if not told:
         return "Forces are not certain here: a dead point is near, or a load sets in."
     words = f"Forces certain to {', '.join(told)}"
@@ -123,22 +140,30 @@ def force_certainty(acting: Forces) -> str:
 
 def cleaned_forces(acting: Forces) -> Forces:
     """The forces to be read by people: numbers that are 0 within their own bound are 0, and those
-    of which the bound leaves nothing are NaN."""
+    of which the bound leaves nothing are NaN. Where the mechanism may jam there is no bound, and
+    they stay."""
     bound = acting.bound
     if bound is None:
         return acting
+    jams = acting.has_equilibria(2)
+
+    def clean(series: Array, limit: Array) -> Array:
+        return _cleaned(series, np.where(jams, 0.0, limit))
+
     pins = {
-        point: {body: _cleaned(force, bound.pins[point][body]) for body, force in bodies.items()}
+        point: {body: clean(force, bound.pins[point][body]) for body, force in bodies.items()}
         for point, bodies in acting.pins.items()
     }
     sliders = {
         name: SliderForces(
-            _cleaned(slider.normal, bound.sliders[name].normal),
-            _cleaned(slider.moment, bound.sliders[name].moment),
+            clean(slider.normal, bound.sliders[name].normal),
+            clean(slider.moment, bound.sliders[name].moment),
         )
         for name, slider in acting.sliders.items()
     }
-    return replace(acting, pins=pins, sliders=sliders, torque=_cleaned(acting.torque, bound.torque))
+    friction = {n: clean(series, bound.friction[n]) for n, series in acting.friction.items()}
+    torque = clean(acting.torque, bound.torque)
+    return replace(acting, pins=pins, sliders=sliders, torque=torque, friction=friction)
 
 
 def _cleaned(series: Array, limit: Array) -> Array:

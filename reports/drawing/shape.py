@@ -13,6 +13,7 @@ from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from reports.drawing.beside_locking import clear_of_locking
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
@@ -28,7 +29,7 @@ def turn_of(
 ) -> Motion:
     """One turn, or the first ``most_s`` of it, both ends included; a driver that swings begins at
     an end of its swing, so that an even number of equal parts of its period shows the other end as
-    well. Its forces are those outside of dead points."""
+    well. Its forces are those outside of dead points, and clear of where friction locks."""
     law = scene.driver.law
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
     if isinstance(law, Oscillating):
@@ -36,7 +37,8 @@ def turn_of(
     motion = solve(scene, time_s, bound=False)
     if not with_forces:
         return motion
-    return replace(motion, forces=forces(scene, time_s, bound=False, skip_dead_points=True))
+    acting = forces(scene, time_s, bound=False, skip_dead_points=True)
+    return replace(motion, forces=clear_of_locking(acting))
 
 
 def clearest(path: Motion) -> int:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from analytic import kinematics
+from analytic.forces.efficiency import Efficiency, efficiency
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import MOST_TURNS
@@ -41,6 +43,12 @@ class Solution(Shown, Motion):
 
     scene: Scene
 
+    @cached_property
+    def efficiency(self) -> Efficiency | None:
+        """What friction takes over a cycle of the scene, at its instants and as a whole, and where
+        it locks; None without friction. Raises CrankcheckError for a driver that speeds up."""
+        return efficiency(self.scene) if self.scene.friction else None
+
     def frame(self) -> pd.DataFrame:
         """One row per sample, columns with their units: ``rocker_theta_rad``, ``C_x_m``."""
         from reports.describe.frame import motion_frame
@@ -51,6 +59,7 @@ class Solution(Shown, Motion):
         from analytic.structure.mobility import analyse
         from reports.describe.facts import speed_facts
         from reports.face.solution_text import (
+            show_friction,
             show_heading,
             show_largest,
             show_motion,
@@ -71,6 +80,8 @@ class Solution(Shown, Motion):
                 console.print(left, style="dim", highlight=False)
             if self.forces is not None:
                 show_largest(console, self.scene)
+        if self.forces is not None:
+            show_friction(console, self.scene)
         show_notes(console, self.scene, self)
 
     def _drawn(self) -> str:

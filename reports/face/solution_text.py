@@ -18,13 +18,14 @@ from reports.describe.force_tables import (
     position_force_tables,
 )
 from reports.describe.frame import cleaned
+from reports.describe.friction import friction_words
 from reports.describe.law import describe_law
 from reports.describe.tables import certainty, motion_tables, position_tables, speed_table
 from reports.describe.with_forces import (
     cleaned_forces,
-    dead_point_note,
     force_certainty,
     force_notes,
+    left_out_notes,
     turn_with_forces,
 )
 from reports.plan.singular import continued_note, singular_note
@@ -86,8 +87,14 @@ def show_largest(console: Console, scene: Scene) -> None:
         return
     assert turn.forces is not None
     console.print(largest_table(scene, turn, cleaned_forces(turn.forces)), "")
-    for note in dead_point_note(scene, turn):
+    for note in left_out_notes(scene, turn):
         console.print(note, style="yellow", highlight=False, markup=False)
+
+
+def show_friction(console: Console, scene: Scene) -> None:
+    """Print what friction takes over a cycle, and where it locks, where it does."""
+    for words in friction_words(scene):
+        console.print(words, highlight=False, markup=False)
 
 
 def show_notes(console: Console, scene: Scene, motion: Motion) -> None:

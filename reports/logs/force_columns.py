@@ -13,7 +13,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -22,7 +22,9 @@ from models.errors import CrankcheckError, cut, few
 from models.forces import Forces, SliderForces
 from models.joints import joined_at
 from models.scene import Scene
-from reports.logs.columns import Columns
+
+if TYPE_CHECKING:
+    from reports.logs.columns import Columns  # and the readers of files with it
 
 POUND, INCH = 4.4482216152605, 0.0254
 UNITS: Mapping[str, Mapping[str, float]] = {

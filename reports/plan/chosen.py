@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
-from models.files import load_scene, names_of_scenes, shipped
+from models.files import kinds, load_scene, names_of_scenes, reference_alone, shipped
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
@@ -37,6 +37,20 @@ def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
                 f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
             )
     return list(scenes.values())
+
+
+def left_out_note(names: str | Sequence[str]) -> str:
+    """What is said of scenes that named kinds have and no engine is given; "" where there are
+    none."""
+    asked = names_in(names, "scenes")
+    scenes = [one for name in asked if name in kinds() for one in reference_alone(name)]
+    several = [one for one in dict.fromkeys(scenes) if one not in asked]
+    if not several:
+        return ""
+    return (
+        f"{' and '.join(several)}: left out, as engines are given no friction that grows with what "
+        "a joint bears; `crankcheck solve` shows its forces"
+    )
 
 
 def refuse_unfollowed(scene: Scene) -> None:

@@ -20,6 +20,7 @@ from models.files import (
     names_of_scenes,
     parse_scene,
     read_scene,
+    reference_alone,
     scene_texts,
     shipped,
 )
@@ -73,11 +74,19 @@ def test_no_two_kinds_share_a_name_and_no_scene_is_called_as_a_kind() -> None:
 
 def test_all_scenes_of_a_kind_are_meant_by_its_name_and_those_of_no_kind_by_none() -> None:
     several = ["shaper", "forces", "toggle-press", "shaper"]
-    assert names_of_scenes(several) == ["shaper", *shipped("forces")]
+    engines_are_given = [n for n in shipped("forces") if n not in reference_alone("forces")]
+    assert names_of_scenes(several) == ["shaper", *engines_are_given]
     assert names_of_scenes("kinematics") == list(shipped())
     assert scene_texts(()).keys() == scene_texts("kinematics").keys() == shipped().keys()
-    assert scene_texts("forces").keys() == shipped("forces").keys()
-    assert [path.stem for path in find_scenes("forces")] == list(shipped("forces"))
+    assert list(scene_texts("forces")) == engines_are_given
+    assert [path.stem for path in find_scenes("forces")] == engines_are_given
+
+
+def test_scenes_of_the_reference_alone_are_run_where_they_are_named() -> None:
+    assert reference_alone("kinematics") == []
+    assert reference_alone("forces") == ["slider-crank-self-locking"]
+    named = names_of_scenes(["forces", "slider-crank-self-locking"])
+    assert named[-1] == "slider-crank-self-locking"
 
 
 def test_one_scene_is_not_a_kind() -> None:

@@ -22,7 +22,7 @@ from reports.cli.measuring import AdviseRequest
 from reports.output.console import tell
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
-from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.results.lines import lines
 from reports.store.reader import Stored, read_store
 from reports.workers.progress import progress_bar
@@ -41,6 +41,8 @@ def run_advise(request: AdviseRequest, console: Console, progress: Console) -> i
     stored = _study(request)
     scenes, texts = _scenes(request, stored)
     demand = demanded(scenes, request.speed, request.dt_s, request.target, request.turns)
+    if note := left_out_note(request.scenes):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     engines = chosen_engines(request.engines)
     every = lines(stored) if stored else ()
     wanted = choices(engines, stored_choices(every))

@@ -22,6 +22,7 @@ from reports.history.version_result import VersionResult, read_version
 from reports.judge.cell import Cell
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
+from reports.plan.chosen import left_out_note
 from reports.results.changes.reading import scene_digests
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
@@ -40,6 +41,8 @@ def run_history(request: HistoryRequest, console: Console, progress: Console) ->
     cache = cache_folder(request.cache)
     _check_outputs(request, versions)
     uv = uv_here()
+    if note := left_out_note(request.scenes):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     # The files of a result hold the digests of the scenes' texts, by which they are compared later.
     key, results = key_of([*cells, scene_digests(request.scenes)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:

@@ -21,6 +21,7 @@ from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
 from reports.face.solution_text import (
+    show_friction,
     show_heading,
     show_largest,
     show_motion,
@@ -78,10 +79,13 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     show_heading(console, scene, structure, along, speeds)
     if request.at_deg is not None:
         show_position(console, scene, motion)
+        if request.forces:
+            show_friction(console, scene)
     else:
         show_motion(console, scene, motion)
         if request.forces:
             show_largest(console, scene)
+            show_friction(console, scene)
         console.print(
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )

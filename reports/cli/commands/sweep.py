@@ -10,6 +10,7 @@ from rich.console import Console
 from models.errors import CrankcheckError, shown
 from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
+from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
 from reports.plan.forces import silent_note
 from reports.plan.study import Study, StudyValue, load_study
@@ -35,7 +36,8 @@ def sweep(request: SweepRequest, console: Console, progress: Console) -> int:
     )
     command = ["crankcheck", *sys.argv[1:]]
     study = asked(request)
-    if study.forces and (note := silent_note([one.engine for one in study.variants])):
+    silent = silent_note([one.engine for one in study.variants]) if study.forces else ""
+    for note in filter(None, (silent, left_out_note(study.scenes))):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     laid, done = swept(study, request.folder, manner, command, progress)
     show_sweep(console, request.folder, len(laid.tasks), done)

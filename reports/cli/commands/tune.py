@@ -18,7 +18,7 @@ from models.files import find_scenes, read_text
 from reports.cli.measuring import TuneRequest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
-from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
 from reports.plan.key import MEASURE, digest
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
@@ -46,6 +46,8 @@ def run_tune(request: TuneRequest, console: Console, progress: Console) -> int:
     """Do it; returns the exit code: 0 when settings reach the target, 1 when none do. Raises
     CrankcheckError for what can be told of the request before the search."""
     goal = _goal(request)
+    if note := left_out_note(request.scenes):
+        progress.print(note, markup=False, highlight=False, soft_wrap=True)
     base = resolved(profile_of(engine(goal.engine), goal.profile), None)
     space = search_space(goal.engine).around(base)
     if request.output is not None:

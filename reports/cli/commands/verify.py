@@ -24,7 +24,7 @@ from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
-from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes
+from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes, left_out_note
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
@@ -66,7 +66,7 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
         _spare_baseline(files, request.baseline)
     digests = _digests(request)
     silent = silent_note(chosen_engines(())) if request.forces and not request.engines else ""
-    for note in filter(None, (*passages(cells), silent)):
+    for note in filter(None, (*passages(cells), silent, left_out_note(request.scenes))):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     base = _baseline(request, cells, digests)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:

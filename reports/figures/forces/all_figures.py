@@ -7,15 +7,16 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
-from reports.figures.forces import hodographs, loaded, reaction_sizes, reduced, torque
+from reports.figures.forces import efficiency, hodographs, loaded, reaction_sizes, reduced, torque
 from reports.figures.forces.force_turn import ForceTurn
 
 FORCE_FIGURES: Mapping[str, Callable[[ForceTurn], Figure | None]] = {
     "torque": torque.draw,
     "reactions": reaction_sizes.draw,
+    "efficiency": efficiency.draw,
     "reduced": reduced.draw,
     "forces": loaded.draw,
     "reactions-polar": hodographs.draw,
 }
 """Each gives None where a scene has nothing to draw: with redundant links there are no
-reactions."""
+reactions, and without friction there is no efficiency."""

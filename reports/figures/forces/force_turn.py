@@ -20,6 +20,7 @@ from models.motion import Motion
 from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.describe.with_forces import cleaned_forces, force_notes, turn_with_forces
+from reports.drawing.beside_locking import clear_of_locking
 from reports.figures.style import SMALL
 from reports.output.provenance import crankcheck_version
 
@@ -66,7 +67,10 @@ class ForceTurn:
             f"gravity {gravity:g} m/s²" if gravity else "no gravity",
             f"loads: {', '.join(scene.loads)}" if scene.loads else "no loads",
         ]
-        return [f"{'; '.join(parts)}.", *force_notes(scene, self.motion)]
+        notes = [f"{'; '.join(parts)}.", *force_notes(scene, self.motion)]
+        if self.acting.has_equilibria(0).any():
+            notes.append("Forces within 5 deg of it are not drawn.")
+        return notes
 
 
 def force_turn(scene: Scene) -> ForceTurn:
@@ -74,7 +78,7 @@ def force_turn(scene: Scene) -> ForceTurn:
     motion = turn_with_forces(scene)
     assert motion.forces is not None
     reduced = reduced_machine(scene, motion.time_s)
-    acting = cleaned_forces(motion.forces)
+    acting = clear_of_locking(cleaned_forces(motion.forces))
     law, every = scene.driver.law, np.arange(motion.time_s.size)
     label = f"angle of {scene.driver.link} [deg]"
     theta = motion.links[scene.driver.link].theta

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from models.scene import Scene
 from reports.describe.force_tables import largest_of
+from reports.describe.friction import friction_words
 from reports.describe.with_forces import (
     cleaned_forces,
     force_certainty,
@@ -19,6 +20,7 @@ CAPTIONS: Mapping[str, str] = {
     "torque": "The driving torque, and its mean over the turn.",
     "reactions": "How large the reactions are; normal forces of guides with their sign.",
     "reactions-polar": "The tip of each reaction over a turn, drawn from the cross.",
+    "efficiency": "What of the drive's power goes on to loads and masses.",
     "reduced": "The machine as one flywheel on the driver's shaft.",
     "forces": "The mechanism where its reactions are largest.",
 }
@@ -36,7 +38,11 @@ def build(scene: Scene, figures: Mapping[str, bytes]) -> Section:
         words={
             "driver": scene.driver.link,
             "rows": largest_of(scene, turn, cleaned_forces(turn.forces)),
-            "notes": [*force_notes(scene, turn), force_certainty(turn.forces)],
+            "notes": [
+                *friction_words(scene),
+                *force_notes(scene, turn),
+                force_certainty(turn.forces),
+            ],
             "figures": [
                 (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
                 for name, svg in figures.items()

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from analytic.check import power
+from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
 from models.forces import Forces
@@ -19,6 +21,21 @@ SAMPLES = 61
 def turn(scene: Scene) -> Array:
     """Times over a period, none of them in a position of symmetry."""
     return np.linspace(0.0, scene.driver.law.period_s, SAMPLES) + 1e-3 * scene.driver.law.period_s
+
+
+def unlocked(scene: Scene, time_s: Array) -> Array:
+    """The instants at which a tenth more friction would still have one equilibrium: there the
+    substitutions of the second opinion settle."""
+    if not scene.coulomb_joints:
+        return time_s
+    more = {n: replace(scene.friction[n], mu=1.1 * scene.friction[n].mu) for n in scene.friction}
+    found = kinetostatics.forces(
+        replace(scene, friction=more), time_s, bound=False, skip_dead_points=True
+    )
+    assert found.friction_solution is not None
+    single = time_s[found.friction_solution.solutions == 1]
+    assert 0 < single.size < time_s.size
+    return single
 
 
 def series(found: Forces) -> Iterator[tuple[str, Array]]:

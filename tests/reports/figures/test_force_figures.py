@@ -13,6 +13,7 @@ from matplotlib.transforms import Bbox
 from analytic.forces.kinetostatics import forces
 from models.characteristics import Tabulated
 from models.files import load_scene
+from models.friction import ConstantFriction
 from models.laws import ConstantSpeed
 from models.loads import Load
 from models.scene import Scene
@@ -26,8 +27,15 @@ FOUR_STROKES = Tabulated((0.0, 3.0, 6.0, 12.0), (0.0, 5.0, -2.0, 0.0), period=4.
 WORK = Load("work", "crank", None, FOUR_STROKES, "angle")
 
 
-@pytest.mark.parametrize("name", ["shaper", "tangent"])
-@pytest.mark.parametrize("figure", FORCE_FIGURES)
+DRAWN = [
+    (name, figure)
+    for name in ("shaper", "tangent", "slider-crank-self-locking")
+    for figure in FORCE_FIGURES
+    if figure != "efficiency" or load_scene(name).friction
+]
+
+
+@pytest.mark.parametrize(("name", "figure"), DRAWN)
 def test_words_of_a_figure_keep_off_each_other_and_off_the_edge(name: str, figure: str) -> None:
     with styled():
         drawn = FORCE_FIGURES[figure](force_turn(load_scene(name)))
@@ -69,3 +77,47 @@ def test_the_mean_is_the_work_of_the_loads(fourbar: Scene) -> None:
     turn = force_turn(replace(fourbar, loads={"work": steady}))
     assert mean_torque(turn) == pytest.approx(-2.0, rel=1e-9)
     assert mean_torque(force_turn(fourbar)) == 0.0
+
+
+def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> None:
+    turn = force_turn(load_scene("slider-crank-self-locking"))
+    degrees = np.degrees(turn.motion.links["crank"].theta) % 360.0
+    is_drawn = np.isfinite(turn.acting.torque)
+    # It locks from 80.6 to 99.4 and from 260.6 to 279.4 deg.
+    assert not is_drawn[(np.abs(degrees - 90.0) < 14.0) | (np.abs(degrees - 270.0) < 14.0)].any()
+    far = np.abs(np.abs(degrees - 180.0) - 90.0) > 15.5
+    assert np.sum(far & ~is_drawn) <= 3  # where the load turns round
+    assert any("within 5 deg" in note for note in turn.notes)
+    figure = FORCE_FIGURES["efficiency"](turn)
+    assert figure is not None
+    curve = np.ravel(figure.axes[0].lines[-1].get_ydata())
+    assert np.nanmin(curve) < 0.05
+    assert np.nanmax(curve) <= 1.0
+    assert len(figure.axes[0].collections) == 1
+
+
+def test_without_friction_and_where_the_loads_drive_there_is_no_efficiency(fourbar: Scene) -> None:
+    assert FORCE_FIGURES["efficiency"](force_turn(fourbar)) is None
+    scene = load_scene("slider-crank-self-locking")
+    loads = {
+        name: replace(one, direction_rad=one.direction_rad + math.pi)
+        for name, one in scene.loads.items()
+    }
+    helped = force_turn(replace(scene, loads=loads))
+    assert helped.acting.has_equilibria(2).any()
+    assert FORCE_FIGURES["efficiency"](helped) is None
+
+
+def test_the_shares_of_the_torque_are_the_torque(fourbar: Scene) -> None:
+    """Inertia, weights and loads, and friction: constant friction of the drive's pin is its own."""
+    rubbing = replace(fourbar, friction={"A": ConstantFriction("A", 0.25)})
+    figure = FORCE_FIGURES["torque"](force_turn(rubbing))
+    assert figure is not None
+    curves = [np.ravel(line.get_ydata()) for line in figure.axes[0].lines]
+    friction, inertia, held, torque = (c for c in curves if c.size > 2)
+    np.testing.assert_allclose(friction, 0.25, rtol=1e-12)
+    np.testing.assert_allclose(inertia + held + friction, torque, atol=1e-12)
+    bare = FORCE_FIGURES["torque"](force_turn(fourbar))
+    assert bare is not None
+    alone = [np.ravel(line.get_ydata()) for line in bare.axes[0].lines]
+    np.testing.assert_allclose(inertia, next(c for c in alone if c.size > 2), atol=1e-9)
