@@ -214,14 +214,13 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """What is to be said of forces, each scene's once."""
-    notes = {
-        f"{one.cell.scene.name}: {note}.": None
-        for one in checked
-        if one.cell.with_forces and one.errors
-        for note in one.errors.notes
-    }
-    return list(notes)
+    """What is to be said of forces, once for a scene: engines differ by a sample in their counts."""
+    notes = dict[tuple[str, str], str]()
+    for one in checked:
+        for note in one.errors.notes if one.cell.with_forces and one.errors else ():
+            words = "".join(letter for letter in note if not letter.isdigit())
+            notes.setdefault((one.cell.scene.name, words), f"{one.cell.scene.name}: {note}.")
+    return list(notes.values())
 
 
 def _span(values: Sequence[float]) -> str:

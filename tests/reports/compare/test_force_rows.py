@@ -11,13 +11,15 @@ import numpy as np
 import pytest
 
 from models.array import Array
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.forces import Forces
 from models.scene import Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from reports.compare.force_rows import force_rows
+from reports.judge.rules import RULES
+from reports.judge.rules.rule import Evidence
 from reports.stability.catalogue import CATALOGUE
 from sim.engine import Run
 from sim.run import run
@@ -173,3 +175,51 @@ def test_the_torque_of_a_parallelogram_at_constant_speed_is_held_to_an_arm() -> 
     assert worst is not None
     assert worst.scale > 1e-3  # N m, of a torque that is 0
     assert worst.pure < 1e-2
+
+
+YOKE = """
+name = "yoke"
+source = "made here: two bodies at R that never turn against each other"
+gravity_m_s2 = [0.0, -9.81]
+ground = { points = { A = [0.0, 0.0] } }
+friction = { R = { torque_n_m = 0.05 } }
+branch = { S = 1 }
+
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+yoke = { points = { Q = [0.0, 0.0], R = [0.0, 0.3] }, mass_kg = 1.0 }
+tool = { points = { R = [0.0, 0.0], S = [0.1, 0.0] }, mass_kg = 1.0 }
+
+[sliders]
+Q = { on = "ground", link = "yoke" }
+B = { on = "yoke", direction_deg = 90.0 }
+S = { on = "ground", through_m = [0.0, 0.3] }
+
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+start_deg = 30.0
+"""
+
+
+def test_forces_that_the_reference_knows_at_no_sample_are_not_taken_for_judged() -> None:
+    """Friction in a joint that never turns may be either way."""
+    yoke = parse_scene(YOKE, "here")
+    errors = _errors(yoke, _of(yoke, "pymunk"))
+    assert errors.uncertain["moment", "Q"] > 0.01
+    assert not any((row.quantity, row.body) == ("moment", "Q") for row in errors.rows)
+
+
+def test_what_the_engine_says_against_its_forces_fails_a_rule() -> None:
+    said = ("at 1 s the impulse on pin C is 2, and 3 by the momentum of the bodies",)
+    done = _with(_run("pymunk"), lambda forces: replace(forces, contradictions=said))
+    errors = _errors(FOURBAR, done)
+    assert errors.contradictions == said
+    finding = RULES["CC126"].check(Evidence("ok", "", 1.0, errors, {}))
+    assert finding is not None
+    assert finding.level == "fail"
+    assert said[0] in finding.text
+    assert (
+        RULES["CC126"].check(Evidence("ok", "", 1.0, replace(errors, contradictions=()), {}))
+        is None
+    )

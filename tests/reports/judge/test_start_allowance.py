@@ -10,8 +10,8 @@ from models.files import load_scene
 from models.poses import mass_ratio
 from models.scene import Scene
 from reports.compare.beside import SETTLING
-from reports.compare.compare import OF_STEPS
 from reports.compare.errors import Errors
+from reports.compare.force_rows import OF_STEPS
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.start_allowance import allowance
 
