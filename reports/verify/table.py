@@ -214,7 +214,7 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """What is to be said of forces, once for a scene: engines differ by a sample in their counts."""
+    """What is to be said of forces, once for a scene: counts may differ by a sample."""
     notes = dict[tuple[str, str], str]()
     for one in checked:
         for note in one.errors.notes if one.cell.with_forces and one.errors else ():
