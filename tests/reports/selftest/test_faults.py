@@ -15,7 +15,7 @@ from reports.selftest.trial import Verdict, healthy, passed_by, passes, tried
 ENGINES = ("mujoco", "pymunk")
 NO_FAULT_OF_A_RUN = {"CC112", "CC119", "CC126"}
 """That the reference is certain depends on the scene and the limits alone; what is required is
-asked of a user's own log; an engine's own word against its forces is planted in tests/sim/pymunk."""
+asked of a user's own log; what an engine says against its own forces is planted in tests/sim."""
 WITHIN_THE_LIMIT_AT_360 = {"pin-moved": "CC103", "slow-drift": "CC103"}
 """What is planted below the limit of 360 steps a turn is above that of 720."""
 ASKED_FOR = {
