@@ -181,16 +181,11 @@ def _law(driver: DriverTable) -> Law:
 def _load(
     name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
 ) -> Load | None:
-    """The load of a table, or None and why it has no magnitude or acts on no mass."""
+    """The load of a table, or None and why it has no magnitude."""
     body, point = table.link, table.point
     if table.block is not None:
         block = sliders[table.block]
         body, point = block_name(block), block.point
-        if block.mass_kg == 0.0:
-            faults.append(
-                f"loads.{name}.block: block {table.block} has no mass, so it is no body; give "
-                f"sliders.{table.block} mass_kg, or name a link that carries {block.point}"
-            )
     assert body is not None
     try:
         characteristic = _characteristic(table)

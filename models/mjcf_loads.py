@@ -94,7 +94,10 @@ def load_actuators(scene: Scene) -> list[str]:
     """The actuators, in the order of the loads."""
     if not scene.loads:
         return []
-    lines = ["    <!-- loads: the control of each is its size [N or N m] -->"]
+    lines = [
+        "    <!-- loads: the control of each is its size [N or N m]. The keyframe has those of -->",
+        "    <!-- the start; load it, as without it all controls are 0 and no load acts. -->",
+    ]
     for load in scene.loads.values():
         if not isinstance(load.characteristic, Constant) or load.stroke != "both":
             lines += _not_in_the_file(load)
@@ -117,8 +120,7 @@ def _not_in_the_file(load: Load) -> list[str]:
     slider = "" if load.slider is None else f" of {load.slider}"
     return [
         f"    <!-- {commentable(load.name)}: its course{course}{stroke}{slider} is not in this -->",
-        "    <!-- file: it comes as the control of each step. Without it the load keeps the -->",
-        "    <!-- size that it has at the start. -->",
+        "    <!-- file: it comes as the control of each step. -->",
     ]
 
 

@@ -97,10 +97,11 @@ def largest_of(scene: Scene, turn: Motion, acting: Forces) -> list[Largest]:
             continue
         at = int(np.nanargmax(np.abs(values)))
         value = float(values[at]) + 0.0
-        mean = float(np.nanmean(values[:-1]))
-        # What comes and goes alike has no mean but rounding.
-        mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
-        mean = math.nan if acting.has_equilibria(0).any() else mean
+        mean = math.nan
+        if not acting.has_equilibria(0).any():
+            mean = float(np.nanmean(values[:-1]))
+            # What comes and goes alike has no mean but rounding.
+            mean = mean if abs(mean) > 1e-9 * abs(value) else 0.0
         rows.append(Largest(name, value, unit, float(degrees[at]) if value else math.nan, mean))
     return rows
 

@@ -105,10 +105,14 @@ def _where(scene: Scene, motion: Motion, samples: NDArray[np.intp]) -> str:
     return f"{scene.driver.link} at {listed(few)}"
 
 
-def force_certainty(acting: Forces) -> str:
+def force_certainty(scene: Scene, acting: Forces) -> str:
     """What forces may be wrong by, in a line; "" without a bound. Instants at which a bound is of
     the size of the forces themselves are counted apart; those at which it locks or may jam are left
-    out."""
+    out.
+
+    A couple is large or small against what forces do at the arms of the links: where it is 0, as in
+    a dead centre, its own size says nothing of what is lost.
+    """
     bound = acting.bound
     if bound is None:
         return ""
@@ -119,16 +123,27 @@ def force_certainty(acting: Forces) -> str:
         kinds["N"].append((slider.normal, bound.sliders[name].normal))
         kinds["N m"].append((slider.moment, bound.sliders[name].moment))
     apart = acting.has_equilibria(0) | acting.has_equilibria(2)  # which notes tell of
+    largest_n, largest_n_m = (
+        max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
+        for pairs in kinds.values()
+    )
+    sizes = {
+        "N": max(largest_n, largest_n_m / scene.longest_m),
+        "N m": max(largest_n_m, largest_n * scene.longest_m),
+    }
     told, doubtful = [], np.isnan(acting.torque) & ~apart
     for unit, pairs in kinds.items():
-        largest = max((float(np.nanmax(np.abs(f), initial=0.0)) for f, _ in pairs), default=0.0)
+        largest = sizes[unit]
         limits = np.array([np.where(apart, 0.0, limit) for _, limit in pairs])
         fit = np.where(limits <= UNCERTAIN * largest, limits, 0.0)
         doubtful = doubtful | np.any(limits > UNCERTAIN * largest, axis=0)
         if np.any(limits <= UNCERTAIN * largest):
             told.append(f"{float(fit.max()):.1e} {unit}")
     if apart.any() and apart.all():
-        return "Forces have no bound here, as the mechanism may jam."
+        return (
+            "Two equilibria here, as the mechanism may jam: these forces, those of less friction, "
+            "have no bound."
+        )
     if not told:
         return "Forces are not certain here: a dead point is near, or a load sets in."
     words = f"Forces certain to {', '.join(told)}"

@@ -62,7 +62,7 @@ def show_position(console: Console, scene: Scene, motion: Motion) -> None:
         console.print(table, "")
     told = [certainty(motion)]
     if motion.forces is not None:
-        told.append(force_certainty(motion.forces))
+        told.append(force_certainty(scene, motion.forces))
         for table in position_force_tables(scene, motion, cleaned_forces(motion.forces)):
             console.print(table, "")
     console.print("\n".join(filter(None, told)), style="dim", highlight=False)

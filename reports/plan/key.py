@@ -39,7 +39,8 @@ def line_key(
     """What all cells share that differ in step only.
 
     ``turns`` is what was asked for, which the steps of a cell may not divide; ``settings`` is the
-    complete set.
+    complete set. Engines did not always take loads and friction: rows of that time, which say
+    "unsupported", have another name than those of today.
     """
     return _hash(
         [
@@ -51,6 +52,8 @@ def line_key(
             cell.drive,
             turns,
             *(["forces"] if cell.with_forces else ()),
+            *(["loads"] if cell.scene.loads else ()),
+            *(["friction"] if cell.scene.friction else ()),
         ]
     )
 

@@ -13,7 +13,7 @@ from models.scene import Scene
 from sim.engine import Drive, Poses, Settings
 from sim.exudyn.crank import CrankCourse
 from sim.exudyn.library import items
-from sim.exudyn.multipliers import Multipliers
+from sim.exudyn.step_multipliers import Multipliers
 from sim.exudyn.system import Index, PlaneSystem
 
 
@@ -73,10 +73,10 @@ class CrankDrive:
             )
         )
 
-    def torque(self, poses: Poses, lambdas: Array, held: Multipliers) -> Array:
+    def torque(self, poses: Poses, lambdas: Array, multipliers: Multipliers) -> Array:
         """What it exerts on the crank [N m] at states with such multipliers, a row each."""
         if self._constraint is not None:
-            (row,) = held.rows(self._constraint)
+            (row,) = multipliers.rows(self._constraint)
             return np.asarray(-lambdas[:, row])
         lag = self._law.at(poses.time_s)[1] - poses.bodies[self._link].omega
         return np.asarray(self._gain * lag)

@@ -18,12 +18,17 @@ from models.joints import Prism, block_name, joined_at, joints, riding_body
 from models.scene import Scene
 from sim.engine import Poses
 from sim.exudyn.blocks import BlockLoads, unit
-from sim.exudyn.multipliers import Multipliers
+from sim.exudyn.step_multipliers import Multipliers
 from sim.exudyn.system import PlaneSystem
 
 
 def reactions(
-    scene: Scene, made: PlaneSystem, held: Multipliers, lambdas: Array, poses: Poses, torque: Array
+    scene: Scene,
+    made: PlaneSystem,
+    multipliers: Multipliers,
+    lambdas: Array,
+    poses: Poses,
+    torque: Array,
 ) -> Forces:
     """The forces at the states of ``poses``, of the multipliers there, a row each."""
     count = len(poses.time_s)
@@ -33,13 +38,13 @@ def reactions(
     }
     for point, hinges in made.hinge.items():
         for (first, second), joint in hinges.items():
-            force = lambdas[:, held.rows(joint)]
+            force = lambdas[:, multipliers.rows(joint)]
             pins[point][first] += force
             pins[point][second] -= force
     sliders = {}
     for slide in joints(scene).slides:
         slider = slide.slider
-        normal, moment = lambdas[:, held.rows(made.prismatic[slider.name])].T
+        normal, moment = lambdas[:, multipliers.rows(made.prismatic[slider.name])].T
         if isinstance(slide, Prism):
             sliders[slider.name] = SliderForces(normal, -moment)
             continue

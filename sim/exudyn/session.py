@@ -14,17 +14,17 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.exudyn.applied import Applied
+from sim.exudyn.body_coordinates import LEVELS, WIDTH, body_poses
 from sim.exudyn.crank import CrankCourse
 from sim.exudyn.crank_drive import CrankDrive
 from sim.exudyn.friction import apply_friction
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
 from sim.exudyn.loads import apply_loads
-from sim.exudyn.multipliers import Multipliers
-from sim.exudyn.poses import LEVELS, WIDTH, body_poses
 from sim.exudyn.present import Present
 from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import checked
 from sim.exudyn.solver import constraints, held, initialized, multipliers, simulation
+from sim.exudyn.step_multipliers import Multipliers
 from sim.exudyn.system import build, masses
 
 LEAST_DT_S = 1e-9

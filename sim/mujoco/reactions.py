@@ -16,16 +16,16 @@ from sim.mujoco.joint_forces import JointForces
 from sim.mujoco.wrench import Wrench
 
 
-def reactions(scene: Scene, tree: Tree, poses: Poses, found: JointForces) -> Forces:
+def reactions(scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> Forces:
     """The forces at the states of ``poses``, which act at the instants of their positions."""
-    return _Reactions(scene, tree, poses, found).forces()
+    return _Reactions(scene, tree, poses, joint_forces).forces()
 
 
 class _Reactions:
     """The reactions while they are put together, joint by joint."""
 
-    def __init__(self, scene: Scene, tree: Tree, poses: Poses, found: JointForces) -> None:
-        self._scene, self._tree, self._poses, self._found = scene, tree, poses, found
+    def __init__(self, scene: Scene, tree: Tree, poses: Poses, joint_forces: JointForces) -> None:
+        self._scene, self._tree, self._poses, self._joint_forces = scene, tree, poses, joint_forces
         count = len(poses.time_s)
         self._pins = {
             point: {body: np.zeros((count, 2)) for body in names}
@@ -43,7 +43,7 @@ class _Reactions:
                 self._slide(limb, limb.slider)
         for k, closure in enumerate(self._tree.closures):
             taker, giver = closure.bodies
-            self._pin(closure.point, giver, taker, self._found.at_loop(k))
+            self._pin(closure.point, giver, taker, self._joint_forces.at_loop(k))
         sliders = {name: self._sliders[name] for name in self._scene.sliders}
         friction = self._friction()
         pivot = self._scene.driver_pivot
@@ -61,7 +61,7 @@ class _Reactions:
             for k, (limb, freedom) in enumerate(freedoms):
                 if rubbing_freedom(self._scene, limb, one.joint) is freedom:
                     sign = self._sense(limb, one.joint) if freedom.kind == "hinge" else 1.0
-                    found[one.joint] = sign * self._found.of_friction(k)
+                    found[one.joint] = sign * self._joint_forces.of_friction(k)
         return found
 
     def _sense(self, limb: Limb, point: str) -> float:
@@ -111,7 +111,7 @@ class _Reactions:
     def _from_parent(self, limb: Limb) -> Wrench:
         """What the parent exerts on a limb: what MuJoCo has, less the loads on all that hangs on
         the limb, which it takes to come through the joint."""
-        given = self._found.from_parent(limb)
+        given = self._joint_forces.from_parent(limb)
         hanging = {limb.body}
         for other in self._tree.limbs:  # parents before children
             if other.parent in hanging:
@@ -124,7 +124,7 @@ class _Reactions:
     def _load(self, k: int) -> tuple[str, Wrench]:
         """The body on which a load acts in MuJoCo, and what it exerts there."""
         load = list(self._scene.loads.values())[k]
-        size, at = self._found.of_load(k), point_of_application(self._scene, load)
+        size, at = self._joint_forces.of_load(k), point_of_application(self._scene, load)
         place = self._place(at.body, at.place)
         if load.point is None:
             return at.body, Wrench(np.zeros_like(place), size, place)

@@ -95,9 +95,9 @@ class MujocoSession(SteppedModel):
 
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of `mj_forward` at each kept state."""
-        found = JointForces(self._model, self._limbs, self._loading.first)
-        log = self._recorded(steps, every, found.look)
-        return replace(log, forces=reactions(self._scene, self._tree, log.poses, found))
+        joint_forces = JointForces(self._model, self._limbs, self._loading.first)
+        log = self._recorded(steps, every, joint_forces.look)
+        return replace(log, forces=reactions(self._scene, self._tree, log.poses, joint_forces))
 
     def _inertia(self, body: str) -> float:
         """Inertia about the centre of mass; a free crank has that of its hinge as well."""

@@ -49,8 +49,10 @@ class PinFriction:
         """
         if self.motor is None:
             return np.asarray(-self.size * np.sign(after))
-        told = impulse / dt_s
-        return np.asarray(-told * np.sign(np.where(told >= WHOLE * self.size, after, before)))
+        magnitude = impulse / dt_s
+        return np.asarray(
+            -magnitude * np.sign(np.where(magnitude >= WHOLE * self.size, after, before))
+        )
 
 
 def pin_friction(scene: Scene, made: Mapping[str, pymunk.Body]) -> tuple[PinFriction, ...]:

@@ -12,6 +12,7 @@ from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from reports.cli.recipes import ForceRecipeRequest
 from reports.output.write import check_file, write
+from reports.plan.steps import MOST_STEPS
 from sim.force_recipes import force_recipe
 from sim.registry import engine
 from sim.run import check_steps
@@ -25,6 +26,11 @@ def run_force_recipe(request: ForceRecipeRequest, console: Console) -> int:
     if not (math.isfinite(request.steps_per_turn) and request.steps_per_turn > 0.0):
         raise CrankcheckError(
             f"--steps-per-turn: found {request.steps_per_turn:g}; give a number above 0"
+        )
+    if request.steps_per_turn > MOST_STEPS:
+        raise CrankcheckError(
+            f"--steps-per-turn: found {request.steps_per_turn:g}; the program keeps a line for "
+            f"each step, so give {MOST_STEPS} at most"
         )
     scene = load_scene(request.scene)
     settings = resolved(profile_of(engine(request.engine), request.profile), None)

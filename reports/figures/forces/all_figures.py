@@ -19,4 +19,5 @@ FORCE_FIGURES: Mapping[str, Callable[[ForceTurn], Figure | None]] = {
     "reactions-polar": hodographs.draw,
 }
 """Each gives None where a scene has nothing to draw: with redundant links there are no
-reactions, and without friction there is no efficiency."""
+reactions, without friction there is no efficiency, and where friction locks nearly all of a turn
+there are no forces."""

@@ -58,6 +58,11 @@ class ForceTurn:
             axes.xaxis.set_major_locator(MultipleLocator(60.0))
 
     @property
+    def has_forces(self) -> bool:
+        """Whether any forces are left to draw, beside where friction locks."""
+        return bool(np.isfinite(self.acting.torque).any())
+
+    @property
     def notes(self) -> list[str]:
         """What stands under each figure."""
         scene = self.scene
@@ -69,7 +74,8 @@ class ForceTurn:
         ]
         notes = [f"{'; '.join(parts)}.", *force_notes(scene, self.motion)]
         if self.acting.has_equilibria(0).any():
-            notes.append("Forces within 5 deg of it are not drawn.")
+            left = "" if self.has_forces else ", which is all of the turn"
+            notes.append(f"Forces within 5 deg of it are not drawn{left}.")
         return notes
 
 

@@ -31,7 +31,7 @@ ROOM = 0.12
 def draw(turn: ForceTurn) -> Figure | None:
     """A panel per pin, with equal axes each; None where there are no reactions."""
     pins = list(acted_on(turn.acting))
-    if not pins:
+    if not (pins and turn.has_forces):
         return None
     columns = 2 if len(pins) == 4 else min(COLUMNS, len(pins))
     rows = math.ceil(len(pins) / columns)

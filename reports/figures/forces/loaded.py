@@ -22,7 +22,7 @@ from reports.output.numbers import readable
 
 def draw(turn: ForceTurn) -> Figure | None:
     """The drawing; None without reactions."""
-    if not turn.acting.pins and not turn.acting.sliders:
+    if not turn.has_forces or not (turn.acting.pins or turn.acting.sliders):
         return None
     scene = turn.scene
     path = turn_of(scene, PATH_SAMPLES, with_forces=True)

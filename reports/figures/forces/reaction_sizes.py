@@ -24,6 +24,8 @@ Curve = tuple[str, Array, dict[str, Any]]
 
 def draw(turn: ForceTurn) -> Figure | None:
     """Forces in one panel, moments in one below where there are any; None without reactions."""
+    if not turn.has_forces:
+        return None
     forces, moments = _forces(turn), _moments(turn)
     if not forces:
         return None

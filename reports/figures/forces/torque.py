@@ -24,10 +24,14 @@ FRICTION = {"color": "#7a3e9d", "linewidth": 0.8, "linestyle": (0, (3.0, 1.2))}
 LOADS = {"color": "#2f7d4c", "linewidth": 0.8, "linestyle": (0, (6.0, 1.5, 1.0, 1.5))}
 
 
-def draw(turn: ForceTurn) -> Figure:
-    """One panel. Shares are drawn where weights or loads act, or friction: the drive holds against
-    the reduced torque and friction, and the rest is inertia. Where friction locks, a turn has no
-    mean."""
+def draw(turn: ForceTurn) -> Figure | None:
+    """One panel; None without forces.
+
+    Shares are drawn where weights or loads act, or friction: the drive holds against the reduced
+    torque and friction, and the rest is inertia. Where friction locks, a turn has no mean.
+    """
+    if not turn.has_forces:
+        return None
     torque, held, rubbing = turn.acting.torque, -turn.reduced.torque, _of_friction(turn)
     mean = math.nan if turn.acting.has_equilibria(0).any() else mean_torque(turn)
     entries: list[tuple[Artist, str]] = [

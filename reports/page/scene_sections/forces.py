@@ -41,7 +41,7 @@ def build(scene: Scene, figures: Mapping[str, bytes]) -> Section:
             "notes": [
                 *friction_words(scene),
                 *force_notes(scene, turn),
-                force_certainty(turn.forces),
+                force_certainty(scene, turn.forces),
             ],
             "figures": [
                 (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))

@@ -87,7 +87,7 @@ def _no_bound_broken(rows: list[Held], told: object) -> None:
 
 @pytest.mark.parametrize("name", every_shipped())
 def test_errors_stay_below_their_bounds_in_every_scene(name: str) -> None:
-    # Bounds of friction are held in test_friction.
+    # Bounds of friction are held in test_friction_bounds.
     scene = replace(load_scene(name), gravity_m_s2=(0.0, -9.81), friction={})
     times = np.random.default_rng(1).uniform(-1.0, 1.0, 4) * scene.driver.law.period_s
     rows = beside(scene, times * [1.0, 1.0, 1.0, 1e4])

@@ -30,6 +30,8 @@ def test_the_program_is_shown_or_written(tmp_path: Path) -> None:
         (["--engine", "mujoco", "--profile", "best"], "best"),
         (["--engine", "mujoco", "--steps-per-turn", "0"], "found 0; give a number above 0"),
         (["--engine", "mujoco", "--steps-per-turn", "4"], "at least 8 are needed"),
+        (["--engine", "mujoco", "--steps-per-turn", "1e300"], "1e\\+300.*300000 at\\s+most"),
+        (["--engine", "mujoco", "--steps-per-turn", "inf"], "found inf"),
         (["--engine", "mujoco", "-o", "forces.txt"], "use .py"),
         ([], "Missing option '--engine'"),
     ],

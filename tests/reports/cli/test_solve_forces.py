@@ -94,6 +94,15 @@ def test_a_file_has_every_force_to_the_last_bit(crank: Crank, tmp_path: Path) ->
     assert list(plain) == list(frame)[: len(plain.columns)]  # what has no forces is as it was
 
 
+def test_couples_that_are_0_in_a_dead_centre_are_as_certain_as_the_forces(crank: Crank) -> None:
+    """Torque and moments are 0 there, and what rounding leaves is little at the links' arms."""
+    output = " ".join(
+        crank("solve", "slider-crank-central", "--at-deg", "0", "--forces").output.split()
+    )
+    assert re.search(r"Forces certain to \S+e-1\d N, \S+e-1\d N m\.", output)
+    assert "dead point" not in output
+
+
 def test_dead_points_of_a_turn_are_left_out_and_told(crank: Crank, tmp_path: Path) -> None:
     scene = written(replace(parallelogram(1), name="flat"), tmp_path)
     output = " ".join(crank("solve", scene, "--forces").output.split())

@@ -93,7 +93,7 @@ def test_where_it_may_jam_the_numbers_stay_without_a_bound(crank: Crank, tmp_pat
     output = crank("solve", written(helped(), tmp_path), "--at-deg", "90", "--forces").output
     assert abs(row(output, "piston block ground")[-2]) > 100.0
     told = " ".join(output.split())
-    assert "Forces have no bound here, as the mechanism may jam." in told
+    assert "Two equilibria here, as the mechanism may jam: these forces, those of less" in told
     assert "It may jam with crank from 80.5961 to 99.4039 deg and from 260.596" in told
     assert "no useful work is done in it, so it has no efficiency." in told
 

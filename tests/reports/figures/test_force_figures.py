@@ -13,7 +13,7 @@ from matplotlib.transforms import Bbox
 from analytic.forces.kinetostatics import forces
 from models.characteristics import Tabulated
 from models.files import load_scene
-from models.friction import ConstantFriction
+from models.friction import ConstantFriction, CoulombFriction
 from models.laws import ConstantSpeed
 from models.loads import Load
 from models.scene import Scene
@@ -94,6 +94,17 @@ def test_beside_where_friction_locks_nothing_is_drawn_but_the_efficiency() -> No
     assert np.nanmin(curve) < 0.05
     assert np.nanmax(curve) <= 1.0
     assert len(figure.axes[0].collections) == 1
+
+
+def test_a_turn_locked_nearly_everywhere_draws_no_forces_and_says_so() -> None:
+    """With mu = 10 only some degrees near the ends of the stroke are not locked."""
+    scene = load_scene("slider-crank-self-locking")
+    turn = force_turn(replace(scene, friction={"piston": CoulombFriction("piston", 10.0)}))
+    assert turn.motion.forces is not None
+    assert np.isfinite(turn.motion.forces.torque).any()
+    left = {name for name, draw in FORCE_FIGURES.items() if draw(turn) is not None}
+    assert left == {"reduced", "efficiency"}
+    assert "within 5 deg of it are not drawn, which is all of the turn" in turn.notes[-1]
 
 
 def test_without_friction_and_where_the_loads_drive_there_is_no_efficiency(fourbar: Scene) -> None:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from models.characteristics import Constant
 from models.errors import CrankcheckError
+from models.files import load_scene
+from models.friction import ConstantFriction
+from models.loads import Load
+from models.scene import Scene
 from reports.cli.commands.sweep import asked
 from reports.cli.measuring import SweepRequest
 from reports.plan.chosen_study import StudyChoice, chosen_study
@@ -248,3 +254,21 @@ def test_comments_in_a_scene_do_not_make_another_scene() -> None:
 
     assert digest("a = 1.0 # one") == digest("# so\na   = 1.0")
     assert digest("a = 1.0") != digest("a = 1.1")
+
+
+def test_only_loads_and_friction_make_other_names_than_before_engines_took_them() -> None:
+    """The name of the plain line is written out: stores hold it."""
+    from reports.judge.cell import Cell
+    from reports.plan.key import line_key
+
+    def named(scene: Scene) -> str:
+        cell = Cell(scene, "mujoco", "tuned", dt_s=0.001, steps=9)
+        return line_key(cell, 1.0, "text", "1.0", {"iterations": 100})
+
+    plain = load_scene("slider-crank-central")
+    assert named(plain) == "3826cae1ddfc672e0c9b4a5b4ef9995233b742dc"
+    push = Load("push", "crank", None, Constant(1.0), "time")
+    loaded = replace(plain, loads={"push": push})
+    rubbing = replace(plain, friction={"A": ConstantFriction("A", 0.25)})
+    both = replace(loaded, friction=rubbing.friction)
+    assert len({named(each) for each in (plain, loaded, rubbing, both)}) == 4

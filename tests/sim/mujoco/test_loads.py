@@ -154,7 +154,9 @@ def test_loads_add_lines_to_the_text_and_change_none() -> None:
     assert all(line in rest for line in bare.splitlines() if line != key)
     assert "pulse: its course over the time is not in this" in text
     assert "pull: its course" not in text
+    assert "load it, as without it all controls are 0" in text
     model = mujoco.MjModel.from_xml_string(text)
+    assert not mujoco.MjData(model).ctrl.any()
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
