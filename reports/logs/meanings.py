@@ -10,7 +10,8 @@ from models.scene import Scene
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.column_meaning import GapColumn, column_meaning
 from reports.logs.columns import Columns
-from reports.logs.force_columns import TIMES, log_forces, names_force
+from reports.logs.force_columns import log_forces
+from reports.logs.force_names import TIMES, names_force
 from reports.logs.instants import instants, refuse_far
 from reports.logs.judged_channels import judged_channels, without_lengths
 from reports.logs.map_file import ChannelTable, Map

@@ -11,7 +11,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.describe.frame import run_frame
 from reports.logs.columns import columns_of
-from reports.logs.force_columns import names_force
+from reports.logs.force_names import names_force, shown_names
 from reports.logs.meanings import understood
 
 SCENE = load_scene("slider-crank-offset")
@@ -114,3 +114,11 @@ def test_at_the_logged_angle_there_are_no_forces(frame: pd.DataFrame) -> None:
 @pytest.mark.parametrize("name", ["B_fz_n", "torque_deg", "normal_n", "C_fx_n_m", "time_s"])
 def test_other_columns_are_none(name: str) -> None:
     assert not names_force(name, SCENE)
+
+
+def test_the_names_that_are_proposed_are_ours_and_each_stands_once(frame: pd.DataFrame) -> None:
+    names = shown_names(SCENE)
+    assert len(set(names)) == len(names)
+    assert set(names) <= set(frame)
+    with pytest.raises(CrankcheckError, match="such as torque_n_m, A_crank_fx_n, A_crank_fy_n, "):
+        understood(columns_of(frame[["time_s", "crank_theta_rad"]], "log"), SCENE, forces=True)
