@@ -10,11 +10,12 @@ where they are others than those of the rows.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from models.joints import joined_at
-from models.scene import Scene
+from models.scene import GROUND, Scene
+from reports.output.numbers import listed
 
 POUND, INCH = 4.4482216152605, 0.0254
 UNITS: Mapping[str, Mapping[str, float]] = {
@@ -34,6 +35,8 @@ UNITS: Mapping[str, Mapping[str, float]] = {
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "pin", "normal", "moment"], str, str, int]
 """What a column is of: kind, point or slider, body, and axis."""
+LENGTH = "it is the length of a force, whose components are judged with --forces"
+FRICTION = "it is friction, which is not judged"
 
 
 def names_force(column: str, scene: Scene) -> bool:
@@ -77,14 +80,54 @@ def force_places(scene: Scene) -> dict[str, Place]:
 
 def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, float] | None:
     """What a column is of, and what one of its numbers is in SI; None for none."""
+    for stem, kind, unit in _stems(column):
+        place = places.get(stem)
+        if place and (place[0] in ("torque", "moment")) == (kind == "moment"):
+            return place, UNITS[kind][unit.lower()] if unit else 1.0
+    return None
+
+
+def _stems(column: str) -> Iterator[tuple[str, str, str]]:
+    """What a name may be without its unit, of which kind the unit is, and how that is spelled, ""
+    for none."""
     bare = re.sub(r"\s*[\[(]([^\[\]()]*)[\])]\s*$", r"_\1", column)
     words = re.sub(r"[\s._·*]+", "_", bare.strip()).strip("_")
     for kind, units in UNITS.items():
-        for unit, factor in (*units.items(), ("", 1.0)):
-            end = f"_{unit}" if unit else ""
-            if not words.lower().endswith(end):
-                continue
-            place = places.get(words[: len(words) - len(end)])
-            if place and (place[0] in ("torque", "moment")) == (kind == "moment"):
-                return place, factor
-    return None
+        for unit in units:
+            stem = words[: -len(unit) - 1]
+            if words.lower().endswith(f"_{unit}"):
+                yield stem, kind, words[len(stem) + 1 :]
+        yield words, kind, ""
+
+
+def why_not_judged(column: str, scene: Scene) -> str:
+    """Why a column is not judged that says what belongs to forces, and is none: a length, friction,
+    a body that is not there; "" for another."""
+    reasons = _others(scene)
+    return next((reasons[stem] for stem, _, _ in _stems(column) if stem in reasons), "")
+
+
+def _others(scene: Scene) -> dict[str, str]:
+    """What columns may be called beside forces, without units, and why each is not judged."""
+    every = [*scene.ground, *scene.pins, *(slider.point for slider in scene.sliders.values())]
+    met: dict[str, tuple[str, ...]] = dict.fromkeys(every, ()) | dict(joined_at(scene))
+    bodies = [GROUND, *scene.links, *(name for meet in met.values() for name in meet)]
+    found: dict[str, str] = {}
+    for point, meet in met.items():
+        where = f"in {point} meet {listed(meet)}" if meet else f"{point} is no pin"
+        for body in dict.fromkeys(bodies):
+            why = LENGTH if body in meet else f"{where}, not {body}" if meet else where
+            for stem in (f"{point}_{body}", f"{point}_on_{body}"):
+                found |= dict.fromkeys(_vector(stem.replace(" ", "_")), why)
+        which = f"{where}: name the body, as in {point}_{meet[0]}_fx_n" if meet else where
+        found |= dict.fromkeys(_vector(point), LENGTH if len(meet) == 2 else which)
+        found[f"{point}_friction"] = FRICTION
+    for name in scene.sliders:
+        found |= dict.fromkeys((f"{name}_slider_friction", f"{name}_friction"), FRICTION)
+    places = force_places(scene)
+    return {name: why for name, why in found.items() if name not in places}
+
+
+def _vector(stem: str) -> tuple[str, str, str]:
+    """What components and length of a force are called."""
+    return f"{stem}_fx", f"{stem}_fy", f"{stem}_f"

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import crankcheck
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.describe.frame import run_frame
+from reports.describe.frame import motion_frame, run_frame
 from reports.logs.columns import columns_of
-from reports.logs.force_names import names_force, shown_names
+from reports.logs.force_names import FRICTION, LENGTH, names_force, shown_names
 from reports.logs.meanings import understood
 
 SCENE = load_scene("slider-crank-offset")
@@ -122,3 +126,30 @@ def test_the_names_that_are_proposed_are_ours_and_each_stands_once(frame: pd.Dat
     assert set(names) <= set(frame)
     with pytest.raises(CrankcheckError, match="such as torque_n_m, A_crank_fx_n, A_crank_fy_n, "):
         understood(columns_of(frame[["time_s", "crank_theta_rad"]], "log"), SCENE, forces=True)
+
+
+def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
+    motion = solve(SCENE, np.array([0.0, 0.01]))
+    rubs = dict.fromkeys(("B", "C"), motion.time_s)
+    bears = replace(forces(SCENE, motion), friction=rubs)
+    columns = motion_frame(replace(motion, forces=bears))
+    named = [name for name in columns if "friction" in name or name.endswith("_f_n")]
+    assert any("slider_friction" in name for name in named)
+    assert any("friction_n_m" in name for name in named)
+    unused = dict(understood(columns_of(columns, "log"), SCENE, forces=True).unused)
+    for name in named:
+        assert unused[name] == (FRICTION if "friction" in name else LENGTH), name
+
+
+@pytest.mark.parametrize(
+    ("scene", "column", "reason"),
+    [
+        ("slider-crank-offset", "B_ground_fx_n", "in B meet crank and rod, not ground"),
+        ("slider-crank-offset", "B_on_ground_f [kN]", "in B meet crank and rod, not ground"),
+        ("slotted-lever", "E_crank_fx_n", "E is no pin"),
+        ("toggle-press", "C_fy_n", "in C meet coupler, upper and lower: name the body"),
+    ],
+)
+def test_a_body_that_does_not_meet_there_is_told_of(scene: str, column: str, reason: str) -> None:
+    log = columns_of(pd.DataFrame({"time_s": [0.0, 0.1], "crank_deg": [30.0, 30.0], column: 1.0}))
+    assert dict(understood(log, load_scene(scene)).unused)[column].startswith(reason)
