@@ -56,6 +56,11 @@ def log_forces(
         if meant is None:
             continue
         place, factor = meant
+        if math.isnan(factor):
+            raise CrankcheckError(
+                f"{columns.source}, column {cut(column)!r}: its unit may be milli or mega; write "
+                "mN or MN, or ignore = true"
+            )
         if place in found:
             raise CrankcheckError(
                 f"two columns for one force: {cut(found[place][0])!r} and {cut(column)!r}; rename "

@@ -9,6 +9,7 @@ where they are others than those of the rows.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
@@ -19,7 +20,7 @@ from reports.output.numbers import listed
 
 POUND, INCH = 4.4482216152605, 0.0254
 UNITS: Mapping[str, Mapping[str, float]] = {
-    "force": {"n": 1.0, "kn": 1e3, "mn": 1e-3, "lbf": POUND},
+    "force": {"n": 1.0, "kn": 1e3, "mN": 1e-3, "MN": 1e6, "lbf": POUND},
     "moment": {
         "n_m": 1.0,
         "nm": 1.0,
@@ -27,11 +28,15 @@ UNITS: Mapping[str, Mapping[str, float]] = {
         "nmm": 1e-3,
         "kn_m": 1e3,
         "knm": 1e3,
+        "mN_m": 1e-3,
+        "mNm": 1e-3,
+        "MN_m": 1e6,
+        "MNm": 1e6,
         "lbf_in": POUND * INCH,
         "lbf_ft": POUND * 12 * INCH,
     },
 }
-"""What one is in SI, by how it is spelled in small letters; mN is a millinewton."""
+"""What one is in SI, by how it is spelled: in letters of any size, but for milli and mega."""
 TIMES = "force_time_s"
 Place = tuple[Literal["torque", "pin", "normal", "moment"], str, str, int]
 """What a column is of: kind, point or slider, body, and axis."""
@@ -79,11 +84,13 @@ def force_places(scene: Scene) -> dict[str, Place]:
 
 
 def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, float] | None:
-    """What a column is of, and what one of its numbers is in SI; None for none."""
+    """What a column is of, and what one of its numbers is in SI, NaN where that may be milli or
+    mega; None for none."""
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
         if place and (place[0] in ("torque", "moment")) == (kind == "moment"):
-            return place, UNITS[kind][unit.lower()] if unit else 1.0
+            known = {"": 1.0} | UNITS[kind]
+            return place, known.get(unit, known.get(unit.lower(), math.nan))
     return None
 
 
@@ -95,7 +102,7 @@ def _stems(column: str) -> Iterator[tuple[str, str, str]]:
     for kind, units in UNITS.items():
         for unit in units:
             stem = words[: -len(unit) - 1]
-            if words.lower().endswith(f"_{unit}"):
+            if words.lower().endswith(f"_{unit.lower()}"):
                 yield stem, kind, words[len(stem) + 1 :]
         yield words, kind, ""
 

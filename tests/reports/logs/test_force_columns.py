@@ -15,7 +15,14 @@ from models.errors import CrankcheckError
 from models.files import load_scene
 from reports.describe.frame import motion_frame, run_frame
 from reports.logs.columns import columns_of
-from reports.logs.force_names import FRICTION, LENGTH, names_force, shown_names
+from reports.logs.force_names import (
+    FRICTION,
+    LENGTH,
+    force_meaning,
+    force_places,
+    names_force,
+    shown_names,
+)
 from reports.logs.meanings import understood
 
 SCENE = load_scene("slider-crank-offset")
@@ -102,6 +109,8 @@ def test_without_being_asked_forces_are_named_and_not_judged(frame: pd.DataFrame
         ({"crank_deg": 30.0}, "no column is a force of slider-crank-offset"),
         ({"torque_n_m": 1.0, "crank_torque [N m]": 1.0}, "two columns for one force"),
         ({"torque_n_m": np.inf}, "found inf"),
+        ({"B_fx [mn]": 1.0}, "its unit may be milli or mega; write mN or MN"),
+        ({"torque_Mn_m": 1.0}, "its unit may be milli or mega; write mN or MN"),
     ],
 )
 def test_bad_columns_are_refused(log: dict[str, float], words: str) -> None:
@@ -153,3 +162,22 @@ def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
 def test_a_body_that_does_not_meet_there_is_told_of(scene: str, column: str, reason: str) -> None:
     log = columns_of(pd.DataFrame({"time_s": [0.0, 0.1], "crank_deg": [30.0, 30.0], column: 1.0}))
     assert dict(understood(log, load_scene(scene)).unused)[column].startswith(reason)
+
+
+@pytest.mark.parametrize(
+    ("column", "one"),
+    [
+        ("B_fx [MN]", 1e6),
+        ("B_fx_mN", 1e-3),
+        ("B_fx [KN]", 1e3),
+        ("torque [mN m]", 1e-3),
+        ("torque_MNm", 1e6),
+        ("torque [N mm]", 1e-3),
+        ("torque_NM", 1.0),
+        ("B_fx", 1.0),
+    ],
+)
+def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: float) -> None:
+    found = force_meaning(column, force_places(SCENE))
+    assert found is not None
+    assert found[1] == one
