@@ -49,24 +49,7 @@ def log_forces(
     CrankcheckError
         No column of forces, two of one, or cells that are no numbers.
     """
-    places = force_places(scene)
-    found: dict[Place, tuple[str, Array]] = {}
-    for column in columns.raw:
-        meant = None if column in ignored else force_meaning(column, places)
-        if meant is None:
-            continue
-        place, factor = meant
-        if math.isnan(factor):
-            raise CrankcheckError(
-                f"{columns.source}, column {cut(column)!r}: its unit may be milli or mega; write "
-                "mN or MN, or ignore = true"
-            )
-        if place in found:
-            raise CrankcheckError(
-                f"two columns for one force: {cut(found[place][0])!r} and {cut(column)!r}; rename "
-                "one, or ignore = true"
-            )
-        found[place] = column, factor * _numbers(columns, column)
+    found = _found(columns, scene, ignored)
     if not found:
         raise CrankcheckError(
             f"{columns.source}: no column is a force of {scene.name}; found "
@@ -93,8 +76,34 @@ def log_forces(
         name = f"{of} on {body}" if kind == "pin" and not pair else of
         key = ("reaction" if kind == "pin" else kind, name)
         by_body[key] = (*by_body.get(key, ()), column)
-    first = [values[0] for values in read.values()]
-    return LogForces(forces, by_body, bool(np.all(np.isnan(first))))
+    of_steps = any(np.isnan(values[0]) for values in read.values())
+    return LogForces(forces, by_body, of_steps)
+
+
+def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tuple[str, Array]]:
+    """The columns that are of forces, with their numbers in SI. Raises CrankcheckError."""
+    places = force_places(scene)
+    found: dict[Place, tuple[str, Array]] = {}
+    for column in columns.raw:
+        meant = None if column in ignored else force_meaning(column, places)
+        if meant is None:
+            continue
+        place, factor = meant
+        if math.isnan(factor):
+            raise CrankcheckError(
+                f"{columns.source}, column {cut(column)!r}: its unit may be milli or mega; write "
+                "mN or MN, or ignore = true"
+            )
+        if place in found:
+            raise CrankcheckError(
+                f"two columns for one force: {cut(found[place][0])!r} and {cut(column)!r}; rename "
+                "one, or ignore = true"
+            )
+        found[place] = column, factor * _numbers(columns, column)
+    lacking = [column for column, values in found.values() if np.isnan(values[0])]
+    if lacking and len(lacking) < len(found):  # where forces are those of steps, all lack it
+        columns.numbers(lacking[0])  # which refuses the cell
+    return found
 
 
 def _pin(

@@ -181,3 +181,10 @@ def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: flo
     found = force_meaning(column, force_places(SCENE))
     assert found is not None
     assert found[1] == one
+
+
+def test_a_first_row_that_only_some_forces_have_is_refused(frame: pd.DataFrame) -> None:
+    some = frame.copy()
+    some.loc[0, "torque_n_m"] = np.nan
+    with pytest.raises(CrankcheckError, match="row 0, column 'torque_n_m': found nan; fill it"):
+        _judged(some)
