@@ -109,15 +109,17 @@ def _found(columns: Columns, scene: Scene, ignored: set[str]) -> dict[Place, tup
 def _pin(
     point: str, bodies: tuple[str, ...], read: Mapping[Place, Array], nothing: Array
 ) -> dict[str, Array]:
-    """The forces of a pin; where two bodies meet, that on the second follows from the first's."""
-    found = {
-        body: np.stack([read.get(("pin", point, body, axis), nothing) for axis in (0, 1)], axis=-1)
-        for body in bodies
-    }
-    if len(bodies) == 2 and np.all(np.isnan(found[bodies[1]])):
-        first, second = bodies
-        found[second], found[first] = -found[first], found[second]
-    return found
+    """The forces of a pin; where two bodies meet, each component on the one is the opposite of that
+    on the other, where only this was logged."""
+
+    def component(body: str, axis: int) -> Array:
+        own = read.get(("pin", point, body, axis))
+        if own is None and len(bodies) == 2:
+            other = read.get(("pin", point, bodies[body == bodies[0]], axis))
+            own = None if other is None else -other
+        return nothing if own is None else own
+
+    return {body: np.stack([component(body, axis) for axis in (0, 1)], axis=-1) for body in bodies}
 
 
 def _numbers(columns: Columns, name: str) -> Array:

@@ -89,7 +89,7 @@ def force_meaning(column: str, places: Mapping[str, Place]) -> tuple[Place, floa
     for stem, kind, unit in _stems(column):
         place = places.get(stem)
         if place and (place[0] in ("torque", "moment")) == (kind == "moment"):
-            known = {"": 1.0} | UNITS[kind]
+            known = {"": 1.0, **UNITS[kind]}
             return place, known.get(unit, known.get(unit.lower(), math.nan))
     return None
 

@@ -188,3 +188,35 @@ def test_a_first_row_that_only_some_forces_have_is_refused(frame: pd.DataFrame) 
     some.loc[0, "torque_n_m"] = np.nan
     with pytest.raises(CrankcheckError, match="row 0, column 'torque_n_m': found nan; fill it"):
         _judged(some)
+
+
+@pytest.mark.parametrize(
+    ("scene", "point", "kept"),
+    [
+        ("slider-crank-offset", "B", {"B_rod_fx_n": ("B_rod_fx_n", 1.0)}),
+        ("slider-crank-offset", "B", {"B_crank_fy_n": ("B_rod_fy_n", -1.0)}),
+        (
+            "slider-crank-offset",
+            "B",
+            {"B_crank_fx_n": ("B_rod_fx_n", -1.0), "B_fy_n": ("B_rod_fy_n", 1.0)},
+        ),
+        ("toggle-press", "C on upper", {"C_upper_fy_n": ("C_upper_fy_n", 1.0)}),
+    ],
+)
+def test_one_component_of_a_force_alone_is_judged(
+    scene: str, point: str, kept: dict[str, tuple[str, float]]
+) -> None:
+    known = load_scene(scene)
+    motion = solve(known, np.linspace(0.0, 0.3, 30))
+    every = motion_frame(replace(motion, forces=forces(known, motion, skip_dead_points=True)))
+    log = every[["time_s", f"{known.driver.link}_theta_rad"]].copy()
+    for name, (column, sign) in kept.items():
+        log[name] = sign * every[column]
+
+    def judged() -> crankcheck.LogVerdict:
+        return crankcheck.judge(known, log, target=1e-6, forces=True)
+
+    assert judged().verdict == "within"
+    assert ("reaction", point) in {(row.quantity, row.body) for row in judged().errors.rows}
+    log[next(iter(kept))] *= -1.0
+    assert {finding.rule for finding in judged().failures} >= {"CC120"}
