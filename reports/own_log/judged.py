@@ -23,7 +23,7 @@ from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
 from reports.own_log.log_limits import limits_by_column, log_limits
 from reports.own_log.no_cause import of_no_cause, seldom
-from reports.own_log.required import absent_names, required_name
+from reports.own_log.required import absent_names, refuse_forces_unasked, required_name
 
 NO_FIT = (
     "no speed and start of the driver were found that explain the places: errors are those beside "
@@ -84,12 +84,15 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     Raises
     ------
     CrankcheckError
-        Neither target nor step for what the log holds; a step that is none; a name in ``require``
-        that the scene has not; a drive that the log does not allow; a range that the mechanism can
-        not be moved in.
+        Neither target nor step for what the log holds; a target of forces that are not judged; a
+        step that is none; a name in ``require`` that the scene has not; a drive that the log does
+        not allow; a range that the mechanism can not be moved in.
     """
     _check_step(log, request.step_s)
     required = [required_name(log.scene, name) for name in request.require]
+    if log.forces is None:
+        refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
+        refuse_forces_unasked("--target", request.target)
     truth, fit = truth_of_log(log, request.drive)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)

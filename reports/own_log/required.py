@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from models.errors import CrankcheckError, few, shown, suggestion
 from models.scene import Scene
 from reports.compare.errors import Errors
+from reports.judge.tolerance import FORCES
 from reports.quantities import QUANTITIES
 
 
@@ -32,6 +33,16 @@ def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
     )
 
 
+def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
+    """Refuse an option about forces where these are not judged. Raises CrankcheckError."""
+    asked = [name for name in quantities if name in FORCES]
+    if asked:
+        raise CrankcheckError(
+            f"{option} {asked[0]}: forces are not judged unless they are asked for; add --forces, "
+            f"or leave {asked[0]} out"
+        )
+
+
 def absent_names(
     scene: Scene,
     required: Iterable[tuple[str, str, str]],
@@ -47,9 +58,9 @@ def absent_names(
             each.replace("drive of", "angle of")
             for each in not_judged
             if (not quantity or each.startswith(f"{quantity} of "))
-            and (not body or each.endswith(f" of {body}"))
+            and (not body or _is_of(each.partition(" of ")[2], body))
         ]
-        there = any(quantity in ("", q) and body in ("", b) for q, b in held)
+        there = any(quantity in ("", q) and (not body or _is_of(b, body)) for q, b in held)
         if not (lacks or there):
             none = f"{body or scene.name} has none"
             why = "a point of the ground does not move" if body in scene.ground else none
@@ -63,3 +74,8 @@ def absent_names(
         else:
             found.append(f"{name} ({few(lacks, 6)})")
     return tuple(found)
+
+
+def _is_of(judged: str, body: str) -> bool:
+    """Whether what is judged is of a body: `C on rod`, the force of a pin on a body, is of C."""
+    return judged == body or judged.startswith(f"{body} on ")

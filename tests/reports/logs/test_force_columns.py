@@ -220,3 +220,26 @@ def test_one_component_of_a_force_alone_is_judged(
     assert ("reaction", point) in {(row.quantity, row.body) for row in judged().errors.rows}
     log[next(iter(kept))] *= -1.0
     assert {finding.rule for finding in judged().failures} >= {"CC120"}
+
+
+@pytest.mark.parametrize(
+    "asked", [{"require": "torque"}, {"require": "crank.torque"}, {"target": {"torque": 1e-3}}]
+)
+def test_what_is_asked_of_forces_asks_for_them(
+    frame: pd.DataFrame, asked: dict[str, object]
+) -> None:
+    with pytest.raises(CrankcheckError, match=r"add (--forces|forces=True), or leave torque out"):
+        crankcheck.judge(SCENE, frame, step_s=STEP_S, **asked)  # type: ignore[call-overload]
+    assert _judged(frame, **asked).verdict == "within"
+
+
+def test_reactions_of_a_pin_of_three_can_be_required() -> None:
+    scene = load_scene("toggle-press")
+    motion = solve(scene, np.linspace(0.0, 0.3, 10))
+    every = motion_frame(replace(motion, forces=forces(scene, motion, skip_dead_points=True)))
+    asked = {"forces": True, "target": 1e-6, "require": "C.reaction"}
+    found = crankcheck.judge(scene, every, **asked)  # type: ignore[call-overload]
+    assert not [each for each in found.failures if each.rule == "CC119"]
+    less = every.drop(columns=["C_upper_fx_n", "C_upper_fy_n"])
+    lacks = crankcheck.judge(scene, less, **asked)  # type: ignore[call-overload]
+    assert "reaction of C on upper" in next(f.text for f in lacks.failures if f.rule == "CC119")
