@@ -130,7 +130,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         findings=_findings(evidence, request),
         causes=found,
         not_judged=not_judged,
-        notes=_notes(case, found, errors) if sound else (NO_FIT,),
+        notes=(*errors.notes, *(_notes(case, found, errors) if sound else (NO_FIT,))),
     )
 
 
