@@ -156,6 +156,16 @@ def check_names(scene: Scene) -> None:
         _quantity(name, f"scene {scene.name}, [tolerance] {name}")
 
 
+def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
+    """Refuse an option about forces where these are not judged. Raises CrankcheckError."""
+    asked = [name for name in quantities if name in FORCES]
+    if asked:
+        raise CrankcheckError(
+            f"{option} {asked[0]}: forces are not judged unless they are asked for; add --forces, "
+            f"or leave {asked[0]} out"
+        )
+
+
 def _quantity(name: str, place: str) -> str:
     """The name, or a CrankcheckError that suggests the near ones."""
     if name in DEFAULTS:

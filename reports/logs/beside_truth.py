@@ -3,7 +3,7 @@
 The log's readings may be wrapped, relative to another link, or belong to other instants. So what
 each is off by is worked out first (`reports.logs.channel`), and put on what the truth says of the
 places and rates of the bodies themselves: of a point of which the log has one coordinate, the other
-is right.
+is right, and so of a force.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from reports.compare.beside import Beside, Truth
 from reports.compare.tracks import Track, tracks
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import Kind
+from reports.logs.whole_pins import whole_pins
 from reports.quantities import QUANTITIES, named
 from reports.quantities.moving import Order
 from sim.engine import Run
@@ -139,7 +140,8 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
             motion = truth.at(instants[kind.order]).points[body]
             fields[kind.field] = getattr(motion, kind.field).copy()
         fields[kind.field][:, kind.axis] += wrong
-    alone, borne = isinstance(truth, AtCrank), log.forces
+    alone = isinstance(truth, AtCrank)
+    borne = None if alone else log.forces
     moved = _motion(log.time_s, bodies)
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
     run = Run(
@@ -152,7 +154,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         status="ok",
         reason="",
         settings={},
-        motion=replace(moved, forces=borne.forces if borne else None),
+        motion=replace(moved, forces=whole_pins(borne.forces, truth) if borne else None),
         gaps={**_gaps(log), **{gap.of: gap.opening_m for gap in log.gaps}},
         velocity_time_s=instants[1],
         acceleration_time_s=instants[2],
@@ -160,7 +162,7 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         start_s=float(log.time_s[0]),
         steps=steps,
         every=1,
-        with_forces=borne is not None and not alone,
+        with_forces=borne is not None,
         forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None

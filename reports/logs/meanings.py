@@ -10,10 +10,11 @@ from models.scene import Scene
 from reports.logs.channel import Channel, OwnLog
 from reports.logs.column_meaning import GapColumn, column_meaning
 from reports.logs.columns import Columns
-from reports.logs.force_columns import TIMES, log_forces, names_force
+from reports.logs.force_columns import log_forces
+from reports.logs.force_names import TIMES, names_force, why_not_judged
 from reports.logs.instants import instants, refuse_far
 from reports.logs.judged_channels import judged_channels, without_lengths
-from reports.logs.map_file import ChannelTable, Map
+from reports.logs.map_file import LEFT_OUT, ChannelTable, Map
 from reports.logs.names import meaning
 from reports.logs.readings import Reader, gaps_told
 from reports.logs.scene_names import SceneNames
@@ -118,7 +119,8 @@ def _by_meaning(
             continue
         found = column_meaning(column, told.get(column), named, times)
         if isinstance(found, str):
-            unused.append((column, A_FORCE if names_force(column, scene) else found))
+            told_so = A_FORCE if names_force(column, scene) else why_not_judged(column, scene)
+            unused.append((column, found if found == LEFT_OUT else told_so or found))
         elif isinstance(found, GapColumn):
             gaps.append(found)
         else:

@@ -18,6 +18,7 @@ from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.tolerance import refuse_forces_unasked
 from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
@@ -86,12 +87,15 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     Raises
     ------
     CrankcheckError
-        Neither target nor step for what the log holds; a step that is none; a name in ``require``
-        that the scene has not; a drive that the log does not allow; a range that the mechanism can
-        not be moved in.
+        Neither target nor step for what the log holds; a target of forces that are not judged; a
+        step that is none; a name in ``require`` that the scene has not; a drive that the log does
+        not allow; a range that the mechanism can not be moved in.
     """
     _check_step(log, request.step_s)
     required = [required_name(log.scene, name) for name in request.require]
+    if log.forces is None:
+        refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
+        refuse_forces_unasked("--target", request.target)
     truth, fit = truth_of_log(log, request.drive)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
@@ -130,7 +134,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         findings=_findings(evidence, request),
         causes=found,
         not_judged=not_judged,
-        notes=_notes(case, found, errors) if sound else (NO_FIT,),
+        notes=(*errors.notes, *(_notes(case, found, errors) if sound else (NO_FIT,))),
     )
 
 

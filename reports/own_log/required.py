@@ -47,9 +47,9 @@ def absent_names(
             each.replace("drive of", "angle of")
             for each in not_judged
             if (not quantity or each.startswith(f"{quantity} of "))
-            and (not body or each.endswith(f" of {body}"))
+            and (not body or _is_of(each.partition(" of ")[2], body))
         ]
-        there = any(quantity in ("", q) and body in ("", b) for q, b in held)
+        there = any(quantity in ("", q) and (not body or _is_of(b, body)) for q, b in held)
         if not (lacks or there):
             none = f"{body or scene.name} has none"
             why = "a point of the ground does not move" if body in scene.ground else none
@@ -63,3 +63,8 @@ def absent_names(
         else:
             found.append(f"{name} ({few(lacks, 6)})")
     return tuple(found)
+
+
+def _is_of(judged: str, body: str) -> bool:
+    """Whether what is judged is of a body: `C on rod`, the force of a pin on a body, is of C."""
+    return judged == body or judged.startswith(f"{body} on ")

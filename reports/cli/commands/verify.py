@@ -17,7 +17,7 @@ from reports.cli.checking import VerifyRequest
 from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame
 from reports.judge.rows import cell_row
-from reports.judge.tolerance import parse
+from reports.judge.tolerance import parse, refuse_forces_unasked
 from reports.output.console import tell
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
@@ -103,6 +103,8 @@ def plan(request: VerifyRequest) -> list[Cell]:
     """The cells that the request asks for; with forces, engines that report none are run without
     unless they are named. Raises CrankcheckError for what can not be run."""
     tolerance = parse(request.tolerance)
+    if not request.forces:
+        refuse_forces_unasked("--tol", tolerance)
     if request.drive not in ("prescribed", "servo"):
         raise CrankcheckError(
             f"--drive {request.drive!r}: unknown; use prescribed or servo, or name the model whose "

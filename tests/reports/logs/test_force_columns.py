@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import crankcheck
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
 from models.errors import CrankcheckError
 from models.files import load_scene
-from reports.describe.frame import run_frame
+from reports.describe.frame import motion_frame, run_frame
 from reports.logs.columns import columns_of
-from reports.logs.force_columns import names_force
+from reports.logs.force_names import (
+    FRICTION,
+    LENGTH,
+    force_meaning,
+    force_places,
+    names_force,
+    shown_names,
+)
 from reports.logs.meanings import understood
 
 SCENE = load_scene("slider-crank-offset")
@@ -134,6 +145,8 @@ def test_without_being_asked_forces_are_named_and_not_judged(frame: pd.DataFrame
         ({"crank_deg": 30.0}, "no column is a force of slider-crank-offset"),
         ({"torque_n_m": 1.0, "crank_torque [N m]": 1.0}, "two columns for one force"),
         ({"torque_n_m": np.inf}, "found inf"),
+        ({"B_fx [mn]": 1.0}, "its unit may be milli or mega; write mN or MN"),
+        ({"torque_Mn_m": 1.0}, "its unit may be milli or mega; write mN or MN"),
     ],
 )
 def test_bad_columns_are_refused(log: dict[str, float], words: str) -> None:
@@ -150,3 +163,129 @@ def test_at_the_logged_angle_there_are_no_forces(frame: pd.DataFrame) -> None:
 @pytest.mark.parametrize("name", ["B_fz_n", "torque_deg", "normal_n", "C_fx_n_m", "time_s"])
 def test_other_columns_are_none(name: str) -> None:
     assert not names_force(name, SCENE)
+
+
+def test_the_names_that_are_proposed_are_ours_and_each_stands_once(frame: pd.DataFrame) -> None:
+    names = shown_names(SCENE)
+    assert len(set(names)) == len(names)
+    assert set(names) <= set(frame)
+    with pytest.raises(CrankcheckError, match="such as torque_n_m, A_crank_fx_n, A_crank_fy_n, "):
+        understood(columns_of(frame[["time_s", "crank_theta_rad"]], "log"), SCENE, forces=True)
+
+
+def test_lengths_and_friction_that_we_write_are_left_alone() -> None:
+    motion = solve(SCENE, np.array([0.0, 0.01]))
+    rubs = dict.fromkeys(("B", "C"), motion.time_s)
+    bears = replace(forces(SCENE, motion), friction=rubs)
+    columns = motion_frame(replace(motion, forces=bears))
+    named = [name for name in columns if "friction" in name or name.endswith("_f_n")]
+    assert any("slider_friction" in name for name in named)
+    assert any("friction_n_m" in name for name in named)
+    unused = dict(understood(columns_of(columns, "log"), SCENE, forces=True).unused)
+    for name in named:
+        assert unused[name] == (FRICTION if "friction" in name else LENGTH), name
+
+
+@pytest.mark.parametrize(
+    ("scene", "column", "reason"),
+    [
+        ("slider-crank-offset", "B_ground_fx_n", "in B meet crank and rod, not ground"),
+        ("slider-crank-offset", "B_on_ground_f [kN]", "in B meet crank and rod, not ground"),
+        ("slotted-lever", "E_crank_fx_n", "E is no pin"),
+        ("toggle-press", "C_fy_n", "in C meet coupler, upper and lower: name the body"),
+    ],
+)
+def test_a_body_that_does_not_meet_there_is_told_of(scene: str, column: str, reason: str) -> None:
+    log = columns_of(pd.DataFrame({"time_s": [0.0, 0.1], "crank_deg": [30.0, 30.0], column: 1.0}))
+    assert dict(understood(log, load_scene(scene)).unused)[column].startswith(reason)
+
+
+@pytest.mark.parametrize(
+    ("column", "one"),
+    [
+        ("B_fx [MN]", 1e6),
+        ("B_fx_mN", 1e-3),
+        ("B_fx [KN]", 1e3),
+        ("torque [mN m]", 1e-3),
+        ("torque_MNm", 1e6),
+        ("torque [N mm]", 1e-3),
+        ("torque_NM", 1.0),
+        ("B_fx", 1.0),
+    ],
+)
+def test_milli_and_mega_are_told_by_the_size_of_the_letter(column: str, one: float) -> None:
+    found = force_meaning(column, force_places(SCENE))
+    assert found is not None
+    assert found[1] == one
+
+
+def test_a_first_row_that_only_some_forces_have_is_refused(frame: pd.DataFrame) -> None:
+    some = frame.copy()
+    some.loc[0, "torque_n_m"] = np.nan
+    with pytest.raises(CrankcheckError, match="row 0, column 'torque_n_m': found nan; fill it"):
+        _judged(some)
+
+
+@pytest.mark.parametrize(
+    ("scene", "point", "kept"),
+    [
+        ("slider-crank-offset", "B", {"B_rod_fx_n": ("B_rod_fx_n", 1.0)}),
+        ("slider-crank-offset", "B", {"B_crank_fy_n": ("B_rod_fy_n", -1.0)}),
+        (
+            "slider-crank-offset",
+            "B",
+            {"B_crank_fx_n": ("B_rod_fx_n", -1.0), "B_fy_n": ("B_rod_fy_n", 1.0)},
+        ),
+        ("toggle-press", "C on upper", {"C_upper_fy_n": ("C_upper_fy_n", 1.0)}),
+    ],
+)
+def test_one_component_of_a_force_alone_is_judged(
+    scene: str, point: str, kept: dict[str, tuple[str, float]]
+) -> None:
+    known = load_scene(scene)
+    motion = solve(known, np.linspace(0.0, 0.3, 30))
+    every = motion_frame(replace(motion, forces=forces(known, motion, skip_dead_points=True)))
+    log = every[["time_s", f"{known.driver.link}_theta_rad"]].copy()
+    for name, (column, sign) in kept.items():
+        log[name] = sign * every[column]
+
+    def judged() -> crankcheck.LogVerdict:
+        return crankcheck.judge(known, log, target=1e-6, forces=True)
+
+    assert judged().verdict == "within"
+    assert ("reaction", point) in {(row.quantity, row.body) for row in judged().errors.rows}
+    log[next(iter(kept))] *= -1.0
+    assert {finding.rule for finding in judged().failures} >= {"CC120"}
+
+
+@pytest.mark.parametrize(
+    "asked", [{"require": "torque"}, {"require": "crank.torque"}, {"target": {"torque": 1e-3}}]
+)
+def test_what_is_asked_of_forces_asks_for_them(
+    frame: pd.DataFrame, asked: dict[str, object]
+) -> None:
+    with pytest.raises(CrankcheckError, match=r"add (--forces|forces=True), or leave torque out"):
+        crankcheck.judge(SCENE, frame, step_s=STEP_S, **asked)  # type: ignore[call-overload]
+    assert _judged(frame, **asked).verdict == "within"
+
+
+def test_reactions_of_a_pin_of_three_can_be_required() -> None:
+    scene = load_scene("toggle-press")
+    motion = solve(scene, np.linspace(0.0, 0.3, 10))
+    every = motion_frame(replace(motion, forces=forces(scene, motion, skip_dead_points=True)))
+    asked = {"forces": True, "target": 1e-6, "require": "C.reaction"}
+    found = crankcheck.judge(scene, every, **asked)  # type: ignore[call-overload]
+    assert not [each for each in found.failures if each.rule == "CC119"]
+    less = every.drop(columns=["C_upper_fx_n", "C_upper_fy_n"])
+    lacks = crankcheck.judge(scene, less, **asked)  # type: ignore[call-overload]
+    assert "reaction of C on upper" in next(f.text for f in lacks.failures if f.rule == "CC119")
+
+
+def test_samples_that_are_left_out_are_told() -> None:
+    scene = load_scene("slider-crank-self-locking")
+    motion = solve(scene, scene.driver.law.period_s * np.arange(36) / 36)
+    every = motion_frame(replace(motion, forces=forces(scene, motion, skip_dead_points=True)))
+    certain = every[["time_s", "crank_theta_rad"]].copy()
+    certain["torque_n_m"] = every["torque_n_m"].fillna(0.0)
+    found = crankcheck.judge(scene, certain, forces=True, target=1e-6)
+    assert any(" of 36 in dead points left out" in note for note in found.notes)
