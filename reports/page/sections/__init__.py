@@ -14,6 +14,7 @@ from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
 from reports.page.sections.precision import build as precision
 from reports.page.sections.provenance import build as provenance
+from reports.page.sections.reading_forces import build as reading_forces
 from reports.page.sections.recommendation import build as recommendation
 from reports.page.sections.section import PageReport, Section
 from reports.page.sections.stability import build as stability
@@ -24,6 +25,7 @@ SECTIONS: dict[str, Callable[[PageReport], Section | None]] = {
     "recommendation": recommendation,
     "precision": precision,
     "convergence": convergence,
+    "reading_forces": reading_forces,
     "motion": motion,
     "stability": stability,
     "hard": hard,

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pandas as pd
 import pytest
 
+from models.files import find_scene
 from reports.output.numbers import duration
 from reports.page.build import render
 from reports.page.sections.precision import build as build_precision
+from reports.page.sections.reading_forces import build as build_forces
 from reports.page.sections.recommendation import build as build_recommendation
 from reports.page.sections.stability import holds
 from reports.page.sections.verdict import build as build_verdict
@@ -230,3 +233,36 @@ def test_two_steps_tell_nothing_of_a_floor() -> None:
     told = sentences(line("a", "tuned", second_order(1e-3))[:2])["mujoco"]
     assert "too few steps to tell of a floor" in told
     assert "no floor seen" not in told
+
+
+def test_forces_are_told_at_the_finest_step_with_a_program_where_they_were_asked_for() -> None:
+    plain = [*line("a", "tuned", second_order(1e-3)), *line("b", "tuned", second_order(1e-3))]
+    assert build_forces(Report(stored(plain))) is None
+    asked = [
+        row | {"reaction_pure": size, "torque_pure": 2.0 * size}
+        for row, size in zip(plain, [4e-2, 3e-2, 2e-2, 1e-2, 8e-2, 6e-2, 4e-2, 2e-2], strict=True)
+    ]
+    report = Report(stored(asked))
+    section = build_forces(report)
+    assert section is not None
+    (told,) = section.words["rows"]  # type: ignore[misc]  # a list, as the template has it
+    assert (told["steps"], told["reaction"], told["reaction_scene"]) == (720, 2e-2, "b")
+    assert (told["torque"], told["torque_scene"]) == (4e-2, "b")
+    assert "4.0e-2" in render(report, [section])
+    asked[-1] = asked[-1] | {"status": "diverged", "reaction_pure": math.nan}
+    lost = build_forces(Report(stored(asked)))
+    assert lost is not None
+    assert lost.words["rows"][0]["reaction"] == math.inf  # type: ignore[index]  # as above
+
+
+def test_a_program_is_of_the_first_scene_that_it_covers() -> None:
+    rows = [
+        row | {"reaction_pure": 1e-3, "torque_pure": 1e-3}
+        for row in line("a", "tuned", second_order(1e-3))
+    ]
+    text = find_scene("fourbar-lecture-1").read_text()
+    made = stored(rows)
+    with_text = replace(made, manifest=replace(made.manifest, scenes={"a": text}))
+    (recipe,) = build_forces(Report(with_text)).words["recipes"]  # type: ignore[union-attr,misc]
+    assert recipe["engine"] == "mujoco"
+    assert "import mujoco" in recipe["text"]
