@@ -28,7 +28,7 @@ def build(report: Report) -> Section | None:
     if not set(columns) <= set(report.cells) or bool(report.cells[columns].isna().all(axis=None)):
         return None
     return Section(
-        anchor="forces",
+        anchor="reading_forces",
         title="Forces",
         template="reading_forces.html",
         words={
