@@ -130,6 +130,9 @@ def _unfelt(subject: Subject, changed: Scene, share: float) -> Iterator[str]:
         for name, each in more.items()
         if np.isfinite(each).any()
     }
+    if not off:
+        yield "no force is told"
+        return
     worst = max(off, key=lambda name: off[name])
     if not off[worst] <= OFF:
         yield f"the {worst} changes otherwise than it has to, by {off[worst]:.2g} of the largest"

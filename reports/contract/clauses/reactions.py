@@ -99,6 +99,9 @@ def _equilibrium(subject: Subject) -> Iterator[str]:
     scene = pulled(subject.scene)
     forces = subject.in_scene(scene).acting(STEPS).stretch(slice(START, None))
     size = largest(forces)
+    if not size > 0.0:
+        yield f"no force is told, or all are 0, in {scene.name} with a pull on its masses"
+        return
     motion = solve(scene, forces.time_s, bound=False)
     for body in (*scene.links, *(block_name(s) for s in scene.sliders.values() if not s.link)):
         held = _Held(scene, motion, body)

@@ -10,6 +10,8 @@ from sim.registry import engine
 from tests.worlds.wrong_engines import FAULTS, late_accelerations
 
 FOURBAR = ("fourbar-lecture-1",)
+OF_FORCES = {"EC81", "EC82", "EC83", "EC84", "EC85", "EC86"}
+"""Forces follow from the motion, and one that is wrong is wrong in more than one of these."""
 
 
 @pytest.mark.parametrize("name", FAULTS)
@@ -26,7 +28,7 @@ def test_a_fault_breaks_hardly_any_other_clause(name: str) -> None:
     wrong = fault(engine("pymunk"))
     rulings = [put_to(wrong, one, FOURBAR) for one in CLAUSES.values()]
     broken = {ruling.id: ruling.breaches for ruling in rulings if ruling.breaches}
-    assert set(broken) - {clause} <= besides, broken
+    assert set(broken) - {clause} <= besides | OF_FORCES, broken
 
 
 def test_accelerations_of_another_instant_are_seen() -> None:
