@@ -16,7 +16,7 @@ from models.scene import Point, Scene
 from sim.engine import Drive
 from sim.exudyn.applied import Applied, Size, massless_blocks
 from sim.exudyn.present import Present
-from sim.load_magnitudes import ahead, known_ahead, of_state
+from sim.load_magnitudes import ahead, known_ahead
 
 
 def apply_loads(
@@ -54,7 +54,7 @@ def _size(scene: Scene, load: Load, start_s: float, drive: Drive, present: Prese
     def of_present(system: Any, time_s: float) -> float:
         theta, _ = present.angle(system, scene.driver.link)
         slid = {} if load.slider is None else {load.slider: present.slider(system, load.slider)}
-        return of_state(load, start_s + time_s, theta, slid)
+        return load.size(start_s + time_s, theta, slid)
 
     return of_present
 

@@ -35,7 +35,7 @@ from models.motion import State
 from models.poses import FIXED, Frame
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
-from sim.load_magnitudes import ahead, known_ahead, of_state
+from sim.load_magnitudes import ahead, known_ahead
 from sim.pymunk.space import SpaceModel
 
 Push = tuple[float, float, float]
@@ -130,7 +130,7 @@ class LoadSteps:
             slider: (track.places[-1], track.speed) for slider, track in self._tracks.items()
         }
         theta = crank.angle + self._dt * crank.angular_velocity
-        return of_state(self._scene.loads[name], self._times[step], theta, sliders)
+        return self._scene.loads[name].size(self._times[step], theta, sliders)
 
     def _on_body(
         self, load: Load, size: float, frames: Mapping[str, Frame]
