@@ -29,7 +29,7 @@ from analytic.structure.mobility import analyse
 from analytic.turns.cells import CellSolver
 from analytic.turns.count import Counter, Turns
 from models.array import Array
-from models.errors import ReachError
+from models.errors import CrankcheckError, ReachError
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.samples import beside, samples
@@ -134,6 +134,12 @@ def unit_chunk(scene: Scene, theta: Array, *, bound: bool) -> Chunk:
     return _prepared(Same(scene)).chunk(theta, 1.0, STEADY, EXACT_ANGLE if bound else None)
 
 
+def driven_chunk(scene: Scene, theta: Array, omega: Array) -> Chunk:
+    """The mechanism at driver angles [rad] with rates [rad/s] (T,), steady, without bounds. Raises
+    as `solve`."""
+    return _prepared(Same(scene)).chunk(theta, omega, STEADY, None)
+
+
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
     return ranges(_prepared(Same(scene)).stretched)
@@ -142,6 +148,11 @@ def reach(scene: Scene) -> list[Range]:
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
     """The driver under its law, by spans of the times."""
     law = scene.driver.law
+    if scene.is_free and np.any(time_s != 0.0):
+        raise CrankcheckError(
+            f"{scene.name}: its driver is let go, and follows no law but at time 0; its motion is "
+            "that of `analytic.free`"
+        )
 
     def driver(span: slice) -> Driven:
         t = time_s[span]

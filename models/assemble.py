@@ -10,13 +10,23 @@ from models.errors import SceneError
 from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from models.load_tables import LawOfLoad, PolynomialLoad, SineLoad, TableLoad
+from models.load_tables import (
+    FourierLoad,
+    LawOfLoad,
+    PolynomialLoad,
+    PulseLoad,
+    SineLoad,
+    StepsLoad,
+    TableLoad,
+)
 from models.loads import Load
+from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     LARGEST,
     AcceleratingDriver,
     DriverTable,
+    FreeDriver,
     FrictionTable,
     FromRestDriver,
     LinkTable,
@@ -24,6 +34,10 @@ from models.schema import (
     SceneTable,
     SliderTable,
 )
+from models.spring_tables import springs_of
+from models.staircase import Staircase
+from models.start_table import start_of
+from models.waves import FourierSum, Pulse
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12
@@ -75,6 +89,8 @@ def scene_from_table(
         tolerance=dict(table.tolerance),
         loads={name: load for name, load in found.items() if load is not None},
         friction={joint: _friction(joint, table) for joint, table in table.friction.items()},
+        springs=springs_of(table),
+        start=start_of(table.start),
     )
 
 
@@ -135,7 +151,7 @@ def _link(name: str, table: LinkTable, points: dict[str, Point], faults: list[st
     inertia = mass * length**2 / 12 if table.inertia_kg_m2 is None else table.inertia_kg_m2
     if mass == 0.0 and inertia > 0.0:
         faults.append(f"links.{name}: inertia_kg_m2 is {inertia} with mass_kg 0; give both or none")
-    return Link(name, points, mass, centre, inertia)
+    return Link(name, points, mass, centre, inertia + table.flywheel_kg_m2)
 
 
 def _slider(name: str, table: SliderTable, longest: float) -> Slider:
@@ -173,6 +189,8 @@ def _law(driver: DriverTable) -> Law:
     if isinstance(driver, FromRestDriver):
         return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
     start_rad = math.radians(driver.start_deg)
+    if isinstance(driver, FreeDriver):
+        return Released(start_rad, driver.speed_rad_s, driver.duration_s)
     if isinstance(driver, AcceleratingDriver):
         return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
     return ConstantSpeed(start_rad, driver.speed_rad_s)
@@ -214,6 +232,17 @@ def _characteristic(table: LawOfLoad) -> Characteristic:
     if isinstance(table, SineLoad):
         period = math.radians(table.period) if turning else table.period
         return Sine(float(magnitude), period, _within_a_turn(table.phase_deg))  # type: ignore[arg-type]
+    if isinstance(table, PulseLoad):
+        return Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
+    if isinstance(table, StepsLoad):
+        return Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
+    if isinstance(table, FourierLoad):
+        period = math.radians(table.period) if turning else table.period
+        count = max(len(table.cosines), len(table.sines))
+        cosines, sines = (
+            (*waves, *[0.0] * (count - len(waves))) for waves in (table.cosines, table.sines)
+        )
+        return FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
     if isinstance(table, TableLoad):
         places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
         if not turning:

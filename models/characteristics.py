@@ -19,7 +19,8 @@ END = 1e-9
 
 
 class Characteristic(ABC):
-    """The magnitude of a load [N or N m] over time [s], driver angle [rad] or displacement [m].
+    """The magnitude of a load [N or N m] over time [s], driver angle [rad], displacement [m] or
+    speed [m/s or rad/s].
 
     Raises ValueError for numbers that give no magnitude.
     """
@@ -31,6 +32,11 @@ class Characteristic(ABC):
     def nearest(self, x: float) -> float:
         """The place next to ``x`` that has a magnitude."""
         return x
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The places, within a period where it has one, in which it is not smooth."""
+        return ()
 
     @abstractmethod
     def steepest(self, x: Array, by: Array | float) -> Array | float:
@@ -177,6 +183,10 @@ class Tabulated(Characteristic):
                 f"found {self.values[0]:g} in the first row and {self.values[-1]:g} in the last, "
                 "a period later; give them one value, or leave out the last row"
             )
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return self.places
 
     def _knots(self) -> tuple[Array, Array]:
         """Places and values, those of a period closed by the first row of the next."""

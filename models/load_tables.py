@@ -10,9 +10,17 @@ from models.characteristics import Interpolation
 from models.loads import Over, Stroke
 from models.schema import Degrees, Name, Number, Positive, Table
 
-UNIT: dict[str, str] = {"time": "s", "angle": "deg", "displacement": "m"}
+UNIT: dict[str, str] = {
+    "time": "s",
+    "angle": "deg",
+    "displacement": "m",
+    "speed": "m_s",
+    "omega": "rad_s",
+}
 MOST_ROWS = 10_000
 Rows = Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_ROWS)]
+Waves = Annotated[tuple[Number, ...], Field(max_length=200)]
+"""Cosines or sines; the shorter of the two goes on with zeros."""
 Powers = Annotated[tuple[Number, ...], Field(min_length=1, max_length=20)]
 
 
@@ -51,11 +59,14 @@ class LoadTable(Table):
 
     @model_validator(mode="after")
     def _follows_a_slider_where_it_says(self) -> LoadTable:
-        wanted = self.stroke != "both" or getattr(self, "over", None) == "displacement"
+        over = getattr(self, "over", None)
+        wanted = self.stroke != "both" or over in ("displacement", "speed")
         if wanted and self.slider is None:
-            raise ValueError("over displacement, or on one stroke, it needs slider = ...")
+            raise ValueError("over displacement or speed, or on one stroke, it needs slider = ...")
         if self.slider is not None and not wanted:
-            raise ValueError('slider needs stroke = "forward" or over = "displacement"')
+            raise ValueError('slider needs stroke = "forward", or over = "displacement" or "speed"')
+        if over == "omega" and self.link is None:
+            raise ValueError('over = "omega" is the angular velocity of a link; name it by link')
         return self
 
     def _in_unit(self, stem: str, over: Over) -> object:
@@ -63,7 +74,7 @@ class LoadTable(Table):
         for other, unit in UNIT.items():
             if other != over and getattr(self, f"{stem}_{unit}", None) is not None:
                 raise ValueError(f'over = "{over}" takes {stem}_{UNIT[over]}; found {stem}_{unit}')
-        value: object = getattr(self, f"{stem}_{UNIT[over]}")
+        value: object = getattr(self, f"{stem}_{UNIT[over]}", None)
         if value is None:
             raise ValueError(f'over = "{over}" needs {stem}_{UNIT[over]}')
         return value
@@ -97,6 +108,48 @@ class SineLoad(LoadTable):
         return float(self._in_unit("period", self.over))  # type: ignore[arg-type]
 
 
+class PulseLoad(LoadTable):
+    """One wave of a sine over time, from ``start_s`` on, and nothing beside it."""
+
+    law: Literal["pulse"]
+    force_n: Number | None = None
+    torque_n_m: Number | None = None
+    period_s: Positive
+    start_s: Number = 0.0
+
+
+class StepsLoad(LoadTable):
+    """Levels over time, each from its instant on; 0 before the first."""
+
+    law: Literal["steps"]
+    force_n: Rows | None = None
+    torque_n_m: Rows | None = None
+    at_s: Rows
+
+
+class FourierLoad(LoadTable):
+    """The mean, and cosines and sines of one wave in a period, of two, of three and so on."""
+
+    law: Literal["fourier"]
+    over: Over
+    force_n: Number | None = None
+    torque_n_m: Number | None = None
+    cosines: Waves = ()
+    sines: Waves = ()
+    period_s: Positive | None = None
+    period_deg: Positive | None = None
+    period_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _has_its_period(self) -> FourierLoad:
+        self._in_unit("period", self.over)
+        return self
+
+    @property
+    def period(self) -> float:
+        return float(self._in_unit("period", self.over))  # type: ignore[arg-type]
+
+
 class PolynomialLoad(LoadTable):
     """The coefficients, of x^0 first, x in s, rad or m."""
 
@@ -117,6 +170,8 @@ class TableLoad(LoadTable):
     at_s: Rows | None = None
     at_deg: Rows | None = None
     at_m: Rows | None = None
+    at_m_s: Rows | None = None
+    at_rad_s: Rows | None = None
     period_deg: Positive | None = None
 
     @model_validator(mode="after")
@@ -131,10 +186,15 @@ class TableLoad(LoadTable):
         return tuple(self._in_unit("at", self.over))  # type: ignore[arg-type]
 
 
-LawOfLoad = ConstantLoad | SineLoad | PolynomialLoad | TableLoad
+LawOfLoad = (
+    ConstantLoad | SineLoad | PulseLoad | StepsLoad | FourierLoad | PolynomialLoad | TableLoad
+)
 LOADS: dict[str, type[LawOfLoad]] = {
     "constant": ConstantLoad,
     "sine": SineLoad,
+    "pulse": PulseLoad,
+    "steps": StepsLoad,
+    "fourier": FourierLoad,
     "polynomial": PolynomialLoad,
     "table": TableLoad,
 }

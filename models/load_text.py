@@ -9,6 +9,8 @@ from models.characteristics import Constant, Polynomial, Sine, Tabulated
 from models.errors import CrankcheckError
 from models.load_tables import UNIT
 from models.loads import Load
+from models.staircase import Staircase
+from models.waves import FourierSum, Pulse
 
 
 def load_table(load: Load) -> Mapping[str, object]:
@@ -23,7 +25,7 @@ def load_table(load: Load) -> Mapping[str, object]:
             table["point"] = load.point
     if load.point is not None:
         table |= {"direction_deg": in_degrees(load.direction_rad), "frame": load.frame}
-    if load.stroke != "both" or load.over == "displacement":
+    if load.stroke != "both" or load.over in ("displacement", "speed"):
         table |= {"slider": load.slider, "stroke": load.stroke}
     key = "torque_n_m" if load.point is None else "force_n"
     return table | _characteristic(load, key)
@@ -48,6 +50,14 @@ def _characteristic(load: Load, key: str) -> dict[str, object]:
                 "phase_deg": in_degrees(phase_rad),
             }
             return {"law": "sine", "over": load.over, key: amplitude, **own}
+        case Pulse(amplitude, period, start):
+            return {"law": "pulse", key: amplitude, "period_s": period, "start_s": start}
+        case Staircase(places, values):
+            return {"law": "steps", "at_s": places, key: values}
+        case FourierSum(mean, cosines, sines, period):
+            own = {f"period_{unit}": in_degrees(period) if turns else period}
+            waves = {"cosines": cosines, "sines": sines, **own}
+            return {"law": "fourier", "over": load.over, key: mean, **waves}
         case Polynomial(coefficients):
             return {"law": "polynomial", "over": load.over, key: coefficients}
         case Tabulated(places, values, interpolation, period):

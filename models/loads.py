@@ -1,9 +1,10 @@
 """What acts on a mechanism from outside: forces at points and torques on links.
 
 A load has a direction, in the ground's frame or in that of its body, and a magnitude, which is
-constant or follows time, the driver's angle or the displacement of a slider by a `Characteristic`.
-It may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one
-point add up.
+constant or follows time, the driver's angle, the displacement or the speed of a slider, or the
+angular velocity of the link that it turns, by a `Characteristic`: a motor pulls by its speed. It
+may act on one stroke of a slider only: a cutting tool works on the way out. Two loads at one point
+add up.
 """
 
 from __future__ import annotations
@@ -18,9 +19,15 @@ from models.array import Array
 from models.characteristics import Characteristic
 from models.errors import CrankcheckError
 
-Over = Literal["time", "angle", "displacement"]
+Over = Literal["time", "angle", "displacement", "speed", "omega"]
 Stroke = Literal["both", "forward", "backward"]
-UNITS: dict[str, str] = {"time": "s", "angle": "rad", "displacement": "m"}
+UNITS: dict[str, str] = {
+    "time": "s",
+    "angle": "rad",
+    "displacement": "m",
+    "speed": "m/s",
+    "omega": "rad/s",
+}
 
 
 @dataclass(frozen=True)
@@ -29,8 +36,9 @@ class Load:
 
     ``body`` is a link, or a slider's block (`models.joints.block_name`). The force points along
     ``direction_rad`` in the frame of the ``ground`` or of the ``body`` where its magnitude is
-    positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, or
-    whose stroke, counts: ``forward`` is where it moves along its direction.
+    positive; a positive torque is counter-clockwise. ``slider`` is that whose displacement, speed
+    or stroke counts: ``forward`` is where it moves along its direction. Over ``omega`` it follows
+    the angular velocity of ``body``.
     """
 
     name: str
@@ -49,7 +57,8 @@ class Load:
         Parameters
         ----------
         x : Array
-            Times [s], driver angles [rad] or displacements of the slider [m], as ``over`` says.
+            Times [s], driver angles [rad], displacements of the slider [m], its speeds [m/s] or
+            angular velocities of the body [rad/s], as ``over`` says.
         speed : Array or None
             Speeds of the slider [m/s], where it acts on one stroke only.
 
@@ -69,10 +78,14 @@ class Load:
         return np.where(speed > 0.0 if self.stroke == "forward" else speed < 0.0, magnitude, 0.0)
 
     def size(
-        self, time_s: float, driver_rad: float, sliders: Mapping[str, tuple[float, float]]
+        self,
+        time_s: float,
+        driver_rad: float,
+        sliders: Mapping[str, tuple[float, float]],
+        omega_rad_s: float,
     ) -> float:
         """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
-        with speeds [m/s].
+        with speeds [m/s], the body at an angular velocity.
 
         Past its end a table over the displacement keeps its last value: an engine whose slider goes
         further than the mechanism can is to be judged by where it goes.
@@ -81,7 +94,13 @@ class Load:
         """
         displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
         near = self.characteristic.nearest(displacement)
-        x = {"time": time_s, "angle": driver_rad, "displacement": near}[self.over]
+        x = {
+            "time": time_s,
+            "angle": driver_rad,
+            "displacement": near,
+            "speed": speed,
+            "omega": omega_rad_s,
+        }[self.over]
         return float(self.magnitude(np.array([x]), np.array([speed]))[0])
 
     def uncertain(

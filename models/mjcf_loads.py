@@ -128,5 +128,7 @@ def load_sizes(scene: Scene, state: State) -> tuple[float, ...]:
     """The sizes of the loads in a state [N or N m]."""
     theta = state.theta[scene.driver.link]
     sliding = {name: (s, state.speed[name]) for name, s in state.displacement.items()}
-    sizes = (load.size(state.time_s, theta, sliding) for load in scene.loads.values())
-    return tuple(sizes)
+    return tuple(
+        load.size(state.time_s, theta, sliding, state.omega.get(load.body, 0.0))
+        for load in scene.loads.values()
+    )

@@ -14,6 +14,8 @@ from typing import Any
 from models.errors import cut
 from models.friction_names import faults_of_friction
 from models.scene import GROUND
+from models.spring_tables import faults_of_springs
+from models.start_table import faults_of_start
 
 LISTED = 12
 """Names that a message lists."""
@@ -30,6 +32,8 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
         *_driver(_table(raw, "driver"), points, ground),
         *_loads(_table(raw, "loads"), points, sliders),
         *faults_of_friction(_table(raw, "friction"), ground, points, sliders),
+        *faults_of_springs(_table(raw, "springs"), ground, points, sliders),
+        *faults_of_start(_table(raw, "start"), points, sliders),
         *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
     ]
 

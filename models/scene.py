@@ -23,6 +23,9 @@ from models.fixed import FixedMapping
 from models.friction import CoulombFriction, Friction
 from models.laws import Law
 from models.loads import Load
+from models.released import Released
+from models.springs import Spring
+from models.start import Start
 
 Point = tuple[float, float]
 GROUND = "ground"
@@ -86,7 +89,8 @@ class Scene:
     where the pin lies to the left of the line from the first outer pin to the second, the links
     in the order of the file) or of the slider (+1: along the direction of the line); +1 where it
     is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
-    unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies.
+    unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies,
+    ``springs`` between bodies. ``start`` says more of the start of free motion than the driver.
     """
 
     name: str
@@ -101,9 +105,13 @@ class Scene:
     note: str = ""
     loads: Mapping[str, Load] = field(default_factory=dict)
     friction: Mapping[str, Friction] = field(default_factory=dict)
+    springs: Mapping[str, Spring] = field(default_factory=dict)
+    start: Start = field(default_factory=Start)
 
     def __post_init__(self) -> None:
-        for name in ("ground", "links", "sliders", "branch", "tolerance", "loads", "friction"):
+        for name in (
+            "ground", "links", "sliders", "branch", "tolerance", "loads", "friction", "springs",
+        ):  # fmt: skip
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 
     @cached_property
@@ -119,6 +127,11 @@ class Scene:
     def longest_m(self) -> float:
         """The longest distance between two points of one link: the scale that errors are over."""
         return max(span(link.points) for link in self.links.values())
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the driver is let go, and not driven."""
+        return isinstance(self.driver.law, Released)
 
     @property
     def coulomb_joints(self) -> list[str]:

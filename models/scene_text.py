@@ -10,7 +10,10 @@ from models.errors import CrankcheckError
 from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
 from models.load_text import in_degrees, load_table
+from models.released import Released
 from models.scene import Scene, Slider
+from models.springs import LineSpring, PinSpring, Spring
+from models.start import Start
 
 Table = Mapping[str, object]
 
@@ -52,6 +55,10 @@ def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
     yield "tolerance", scene.tolerance
     for name, load in scene.loads.items():
         yield f"loads.{name}", load_table(load)
+    for name, spring in scene.springs.items():
+        yield f"springs.{name}", _spring(spring)
+    if scene.start:
+        yield "start", _start(scene.start)
     for joint, friction in scene.friction.items():
         yield f"friction.{joint}", _friction(friction, slides=joint in scene.sliders)
 
@@ -61,6 +68,31 @@ def _friction(friction: Friction, *, slides: bool) -> Table:
         return {"force_n" if slides else "torque_n_m": friction.size}
     table = {"mu": friction.mu}
     return table if slides else {**table, "radius_m": friction.radius_m}
+
+
+def _spring(spring: Spring) -> Table:
+    if isinstance(spring, PinSpring):
+        return {
+            "pin": spring.point,
+            "bodies": spring.bodies,
+            "rate_n_m_rad": spring.rate,
+            "damping_n_m_s": spring.damping,
+            "free_deg": in_degrees(spring.free),
+        }
+    own = {"rate_n_m": spring.rate, "damping_n_s_m": spring.damping, "free_m": spring.free}
+    if isinstance(spring, LineSpring):
+        return {"points": spring.points, **own}
+    return {"slider": spring.slider, **own}
+
+
+def _start(start: Start) -> Table:
+    angles = {link: in_degrees(angle) for link, angle in start.angles_rad.items()}
+    return {
+        "angles_deg": angles,
+        "rates_rad_s": start.rates_rad_s,
+        "displacements_m": start.displacements_m,
+        "speeds_m_s": start.speeds_m_s,
+    }
 
 
 def _slider(slider: Slider) -> Table:
@@ -84,10 +116,12 @@ def _law(law: Law) -> Table:
             "frequency_rad_s": law.frequency_rad_s,
             "phase_deg": in_degrees(law.phase_rad),
         }
-    if not isinstance(law, ConstantSpeed | FromRest | Accelerating):
+    if not isinstance(law, ConstantSpeed | FromRest | Accelerating | Released):
         name = type(law).__name__
         raise CrankcheckError(f"law {name}: a scene file has no words for it; take another")
     start = {"start_deg": in_degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
+    if isinstance(law, Released):
+        return {"law": "free", **start, "duration_s": law.duration_s}
     if isinstance(law, FromRest):
         return {"law": "from-rest", **start, "rise_s": law.rise_s}
     if isinstance(law, Accelerating):

@@ -65,6 +65,8 @@ class LinkTable(Table):
     mass_kg: NonNegative | None = None
     centre_m: Coordinates | None = None
     inertia_kg_m2: NonNegative | None = None
+    flywheel_kg_m2: NonNegative = 0.0
+    """The moment of inertia of a flywheel on the link, which is added to the link's own."""
 
     @model_validator(mode="after")
     def _bar_goes_with_length(self) -> LinkTable:
@@ -130,6 +132,65 @@ class AcceleratingDriver(Table):
     start_deg: Degrees = 0.0
 
 
+class FreeDriver(Table):
+    """A link that is let go, with a speed or from rest, for a duration."""
+
+    link: Name
+    law: Literal["free"]
+    speed_rad_s: Number = 0.0
+    start_deg: Degrees = 0.0
+    duration_s: Positive = 10.0
+
+
+class SpringTable(Table):
+    """A spring with a damper: between two ``points``, in a ``pin`` (between two ``bodies``), or
+    along a ``slider``."""
+
+    points: tuple[Name, Name] | None = None
+    pin: Name | None = None
+    bodies: tuple[Name, Name] | None = None
+    slider: Name | None = None
+    rate_n_m: NonNegative | None = None
+    damping_n_s_m: NonNegative | None = None
+    free_m: Number | None = None
+    rate_n_m_rad: NonNegative | None = None
+    damping_n_m_s: NonNegative | None = None
+    free_deg: Degrees | None = None
+
+    @model_validator(mode="after")
+    def _is_of_one_kind(self) -> SpringTable:
+        if sum(each is not None for each in (self.points, self.pin, self.slider)) != 1:
+            raise ValueError("name where it is: points = [...], pin = ..., or slider = ..., one")
+        along = {"rate_n_m": self.rate_n_m, "damping_n_s_m": self.damping_n_s_m}
+        turning = {"rate_n_m_rad": self.rate_n_m_rad, "damping_n_m_s": self.damping_n_m_s}
+        own, others = (turning, along) if self.pin is not None else (along, turning)
+        lengths = {"free_m": self.free_m, "free_deg": self.free_deg}
+        other_free = "free_m" if self.pin is not None else "free_deg"
+        wrong = [key for key, value in others.items() if value is not None]
+        wrong += [other_free] * (lengths[other_free] is not None)
+        if wrong:
+            where = "a pin" if self.pin is not None else "points, or a slider"
+            raise ValueError(f"{wrong[0]} does not go with {where}; give {' and '.join(own)}")
+        if not any(own.values()):
+            raise ValueError(f"a spring needs a rate or a damping above 0: {' or '.join(own)}")
+        if self.bodies is not None and self.pin is None:
+            raise ValueError("bodies belong to a spring in a pin; leave them out")
+        if self.points is not None and self.points[0] == self.points[1]:
+            raise ValueError(f"found {self.points[0]} twice; name two points")
+        if self.points is not None and self.free_m is not None and self.free_m < 0.0:
+            raise ValueError(f"free_m is {self.free_m:g}; a distance is 0 or more")
+        return self
+
+
+class StartTable(Table):
+    """More of the start of free motion, by link and by slider."""
+
+    angles_deg: dict[Name, Degrees] = Field(default_factory=dict, max_length=MOST_BODIES)
+    rates_rad_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+    displacements_m: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+    speeds_m_s: dict[Name, Number] = Field(default_factory=dict, max_length=MOST_BODIES)
+
+
 class FrictionTable(Table):
     """What rubs in the joint that the table is named after; whether its keys fit a pin or a slider
     is for `models.friction_names` to say, which knows the joints."""
@@ -168,12 +229,21 @@ class SceneTable(Table):
     tolerance: dict[Name, Positive] = Field(default_factory=dict)
     loads: dict[Name, dict[str, object]] = Field(default_factory=dict, max_length=MOST_BODIES)
     friction: dict[Name, FrictionTable] = Field(default_factory=dict, max_length=MOST_BODIES)
+    springs: dict[Name, SpringTable] = Field(default_factory=dict, max_length=MOST_BODIES)
+    start: StartTable = Field(default_factory=StartTable)
+
+    @model_validator(mode="after")
+    def _only_what_is_let_go_has_a_start(self) -> SceneTable:
+        if self.start != StartTable() and self.driver.get("law") != "free":
+            raise ValueError('[start] goes with law = "free"; a driven mechanism starts as it is')
+        return self
 
 
-DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver
+DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver | FreeDriver
 DRIVERS: dict[str, type[DriverTable]] = {
     "constant": ConstantDriver,
     "oscillating": OscillatingDriver,
     "from-rest": FromRestDriver,
     "accelerating": AcceleratingDriver,
+    "free": FreeDriver,
 }

@@ -41,12 +41,18 @@ def refuse_other_model(
 
 
 def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) -> None:
-    """Raise EngineError for a scene with loads or friction in an engine that would leave them out
-    without a word, and for forces of an engine that reports none."""
+    """Raise EngineError for a scene with loads, springs or friction in an engine that would leave
+    them out without a word, and for forces of an engine that reports none."""
     if scene.loads and not engine.applies_loads:
         names = ", ".join(f"loads.{name}" for name in scene.loads)
         raise EngineError(
             f"{scene.name}: {engine.name} is given no loads ({names}); take them out to run it, "
+            "or use the reference alone"
+        )
+    if scene.springs and not engine.applies_springs:
+        names = ", ".join(f"springs.{name}" for name in scene.springs)
+        raise EngineError(
+            f"{scene.name}: {engine.name} is given no springs ({names}); take them out to run it, "
             "or use the reference alone"
         )
     rubbing = [

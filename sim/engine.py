@@ -164,7 +164,8 @@ class Engine:
     loss in a time, of its own: without any, errors of place depend on the steps in a turn, not on
     the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
     sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported,
-    without ``applies_constant_friction`` those with friction that is constant.
+    without ``applies_constant_friction`` those with friction that is constant, without
+    ``applies_springs`` those with springs.
     """
 
     name: str
@@ -180,6 +181,7 @@ class Engine:
     forces_of: ForcesOf = "nothing"
     applies_loads: bool = False
     applies_constant_friction: bool = False
+    applies_springs: bool = False
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,11 @@ from sim.engine import Drive
 
 
 def known_ahead(load: Load, drive: Drive) -> bool:
-    """Whether time alone says how large the load is: it follows no slider, and the crank's angle
-    only where that is the law's."""
-    return load.slider is None and (load.over == "time" or drive == "prescribed")
+    """Whether time alone says how large the load is: it follows no slider, no angular velocity, and
+    the crank's angle only where that is the law's."""
+    return load.slider is None and (
+        load.over == "time" or (load.over == "angle" and drive == "prescribed")
+    )
 
 
 def ahead(scene: Scene, load: Load, time_s: Array) -> Array:

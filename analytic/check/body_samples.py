@@ -97,9 +97,11 @@ def weights_and_loads(scene: Scene, motion: Motion) -> Iterator[tuple[str, Point
     for load in scene.loads.values():
         slider = None if load.slider is None else motion.sliders[load.slider]
         x = {"time": motion.time_s, "angle": motion.links[scene.driver.link].theta}.get(load.over)
-        if x is None:
+        if load.over == "omega":
+            x = bodies[load.body].omega
+        elif x is None:
             assert slider is not None
-            x = slider.displacement
+            x = slider.displacement if load.over == "displacement" else slider.speed
         size = load.magnitude(x, None if slider is None else slider.speed)
         if load.point is None:
             yield load.body, (0.0, 0.0), rest, size

@@ -12,7 +12,9 @@ from models.friction import CoulombFriction, Friction
 from models.joints import turned
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.loads import Load
+from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.springs import PinSpring, Spring
 
 
 def rotated(scene: Scene, angle_rad: float) -> Scene:
@@ -37,6 +39,13 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
             characteristic=old.characteristic.carried(1.0, shift=ahead),
         )
 
+    def spring(old: Spring) -> Spring:
+        # Against the ground, which stays as it is, a link has turned.
+        if not isinstance(old, PinSpring) or GROUND not in old.bodies:
+            return old
+        by = angle_rad if old.bodies[0] == GROUND else -angle_rad
+        return replace(old, free=old.free + by)
+
     # A link that slides on the ground turns with it: its angle is kept against the line.
     return replace(
         scene,
@@ -45,6 +54,11 @@ def rotated(scene: Scene, angle_rad: float) -> Scene:
         driver=Driver(scene.driver.link, scene.driver.law.turned(angle_rad)),
         gravity_m_s2=turn(scene.gravity_m_s2),
         loads={name: load(old) for name, old in scene.loads.items()},
+        springs={name: spring(old) for name, old in scene.springs.items()},
+        start=replace(
+            scene.start,
+            angles_rad={n: angle + angle_rad for n, angle in scene.start.angles_rad.items()},
+        ),
     )
 
 
@@ -87,9 +101,13 @@ def mirrored(scene: Scene) -> Scene:
             old,
             direction_rad=-old.direction_rad,
             characteristic=old.characteristic.carried(
-                -1.0 if old.point is None else 1.0, stretch=-1.0 if old.over == "angle" else 1.0
+                -1.0 if old.point is None else 1.0,
+                stretch=-1.0 if old.over in ("angle", "omega") else 1.0,
             ),
         )
+
+    def spring(old: Spring) -> Spring:
+        return replace(old, free=-old.free) if isinstance(old, PinSpring) else old
 
     sides = [group.branch_key for group in analyse(scene).groups if group.kind == "RRR"]
     flipped = {pin: -scene.branch.get(pin, 1) for pin in sides}
@@ -102,6 +120,12 @@ def mirrored(scene: Scene) -> Scene:
         branch={**scene.branch, **flipped},
         gravity_m_s2=flip(scene.gravity_m_s2),
         loads={name: load(old) for name, old in scene.loads.items()},
+        springs={name: spring(old) for name, old in scene.springs.items()},
+        start=replace(
+            scene.start,
+            angles_rad={name: -angle for name, angle in scene.start.angles_rad.items()},
+            rates_rad_s={name: -rate for name, rate in scene.start.rates_rad_s.items()},
+        ),
     )
 
 
@@ -110,7 +134,7 @@ def mirrored_law(law: Law) -> Law:
     match law:
         case Oscillating():
             return replace(law, centre_rad=-law.centre_rad, amplitude_rad=-law.amplitude_rad)
-        case ConstantSpeed() | FromRest():
+        case ConstantSpeed() | FromRest() | Released():
             return replace(law, start_rad=-law.start_rad, speed_rad_s=-law.speed_rad_s)
         case Accelerating(start, speed, gain):
             return Accelerating(-start, -speed, -gain)
@@ -150,7 +174,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
 
     def load(old: Load) -> Load:
         size = factor**3 if old.point is None else factor**2
-        stretch = factor if old.over == "displacement" else 1.0
+        stretch = factor if old.over in ("displacement", "speed") else 1.0
         return replace(old, characteristic=old.characteristic.carried(size, stretch=stretch))
 
     def rubbing(old: Friction) -> Friction:
@@ -158,6 +182,14 @@ def scaled(scene: Scene, factor: float) -> Scene:
             return replace(old, radius_m=old.radius_m * factor)
         return replace(old, size=old.size * factor ** (2 if old.joint in scene.sliders else 3))
 
+    def spring(old: Spring) -> Spring:
+        if isinstance(old, PinSpring):
+            return replace(old, rate=old.rate * factor**3, damping=old.damping * factor**3)
+        rate, damping = old.rate * factor, old.damping * factor
+        return replace(old, rate=rate, damping=damping, free=old.free * factor)
+
+    grown = {name: factor * by for name, by in scene.start.displacements_m.items()}
+    quick = {name: factor * speed for name, speed in scene.start.speeds_m_s.items()}
     return replace(
         scene,
         ground={name: grow(place) for name, place in scene.ground.items()},
@@ -166,4 +198,6 @@ def scaled(scene: Scene, factor: float) -> Scene:
         gravity_m_s2=grow(scene.gravity_m_s2),
         loads={name: load(old) for name, old in scene.loads.items()},
         friction={name: rubbing(old) for name, old in scene.friction.items()},
+        springs={name: spring(old) for name, old in scene.springs.items()},
+        start=replace(scene.start, displacements_m=grown, speeds_m_s=quick),
     )

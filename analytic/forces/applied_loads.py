@@ -42,7 +42,7 @@ def _check_there(scene: Scene, load: Load, free: Mapping[str, FreeBody]) -> None
         what, found, have = "body", load.body, bodies
     elif load.slider is not None and load.slider not in scene.sliders:
         what, found, have = "slider", load.slider, list(scene.sliders)
-    elif load.slider is None and (load.over == "displacement" or load.stroke != "both"):
+    elif load.slider is None and (load.over in ("displacement", "speed") or load.stroke != "both"):
         what, found, have = "slider", "none", list(scene.sliders)
     elif load.point is not None and load.body in scene.links:
         what, found, have = "point", load.point, list(scene.links[load.body].points)
@@ -62,6 +62,9 @@ def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
     error = chunk.driver.error
     if load.over == "angle":
         x, by = chunk.theta, 0.0 if error is None else error.theta
+    if load.over == "omega":
+        body = chunk.bodies[load.body]
+        x, by = _as_samples(body.omega, time_s), 0.0 if body.error is None else body.error.omega
     if sliding is not None:
         speed = _as_samples(sliding.speed, time_s)
         if load.over == "displacement":
@@ -69,6 +72,8 @@ def _magnitude(load: Load, chunk: Chunk, time_s: Array) -> Bounded:
         if sliding.error is not None:
             speed_by = sliding.error.speed
             by = sliding.error.displacement if load.over == "displacement" else by
+        if load.over == "speed":
+            x, by = speed, speed_by
     value = load.magnitude(x, speed)
     if error is None:
         return Bounded(value, None)

@@ -52,22 +52,23 @@ def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
     for span, chunk in chunks(scene, instants, bound=False):
         unit = unit_chunk(scene, chunk.theta, bound=False)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            free = _still(scene, chunk)
-            apply_loads(scene, chunk, instants[span], free)
+            free = loaded_bodies(scene, chunk, instants[span])
             torque = -torque_by_power(free, unit, chunk)
-            rows = (chunk.theta, *_inertia(scene, free, unit), torque.value)
+            rows = (chunk.theta, *inertia_and_slope(scene, unit), torque.value)
         parts.append([np.broadcast_to(row, chunk.theta.shape) for row in rows])
     return ReducedMachine(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
-def _still(scene: Scene, chunk: Chunk) -> dict[str, FreeBody]:
-    """All bodies under their weight alone."""
+def loaded_bodies(scene: Scene, chunk: Chunk, time_s: Array) -> dict[str, FreeBody]:
+    """All bodies of a chunk at times [s] under their weights and loads, without inertia. Raises
+    CrankcheckError as `analytic.forces.applied_loads.apply_loads`."""
     free = {GROUND: FreeBody(chunk.bodies[GROUND], (0.0, 0.0))}
     for name, (mass, _, centre) in _masses(scene).items():
         free[name] = body = FreeBody(chunk.bodies[name], centre)
         if mass > 0.0 and any(scene.gravity_m_s2):
             x, y = (mass * g for g in scene.gravity_m_s2)
             body.force = BoundedVec(Vec(x, y), math.hypot(x, y), None)
+    apply_loads(scene, chunk, time_s, free)
     return free
 
 
@@ -80,9 +81,9 @@ def _masses(scene: Scene) -> dict[str, tuple[float, float, Point]]:
     return own
 
 
-def _inertia(scene: Scene, free: dict[str, FreeBody], unit: Chunk) -> tuple[Array, Array]:
-    """The reduced moment of inertia and its derivative: with the driver at 1 rad/s, steady,
-    accelerations are the derivatives of rates by its angle."""
+def inertia_and_slope(scene: Scene, unit: Chunk) -> tuple[Array, Array]:
+    """The reduced moment of inertia and its derivative [kg m^2], (T,), of a chunk with the driver
+    at 1 rad/s, steady: there accelerations are the derivatives of rates by its angle."""
     inertia, slope = np.zeros_like(unit.theta), np.zeros_like(unit.theta)
     for name, (mass, moment, centre) in _masses(scene).items():
         body = unit.bodies[name]

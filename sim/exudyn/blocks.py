@@ -84,10 +84,13 @@ class BlockLoads:
 
     def _magnitude(self, load: Load) -> Array:
         x = {"time": self._poses.time_s, "angle": self.theta(self._scene.driver.link)}
+        if load.over == "omega":
+            return load.magnitude(self._poses.bodies[load.body].omega)
         slid = self._motion.sliders.get(load.slider or "")
         if slid is None:
             return load.magnitude(x[load.over])
-        return load.magnitude(x.get(load.over, slid.displacement), slid.speed)
+        x |= {"displacement": slid.displacement, "speed": slid.speed}
+        return load.magnitude(x[load.over], slid.speed)
 
 
 def unit(angle_rad: Array) -> Array:

@@ -54,7 +54,8 @@ def _size(scene: Scene, load: Load, start_s: float, drive: Drive, present: Prese
     def of_present(system: Any, time_s: float) -> float:
         theta, _ = present.angle(system, scene.driver.link)
         slid = {} if load.slider is None else {load.slider: present.slider(system, load.slider)}
-        return load.size(start_s + time_s, theta, slid)
+        omega = 0.0 if load.over != "omega" else present.angle(system, load.body)[1]
+        return load.size(start_s + time_s, theta, slid, omega)
 
     return of_present
 

@@ -73,4 +73,6 @@ class Loading:
         sliding = {
             name: (float(data.qpos[k]), float(data.qvel[k])) for name, k in self._slides.items()
         }
-        return load.size(self._start_s + float(data.time), float(data.qpos[self._crank]), sliding)
+        omega = float(data.body(load.body).cvel[2]) if load.over == "omega" else 0.0
+        theta = float(data.qpos[self._crank])
+        return load.size(self._start_s + float(data.time), theta, sliding, omega)

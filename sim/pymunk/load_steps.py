@@ -130,7 +130,10 @@ class LoadSteps:
             slider: (track.places[-1], track.speed) for slider, track in self._tracks.items()
         }
         theta = crank.angle + self._dt * crank.angular_velocity
-        return self._scene.loads[name].size(self._times[step], theta, sliders)
+        load = self._scene.loads[name]
+        body = self._model.bodies.get(load.body)
+        omega = 0.0 if body is None else body.angular_velocity
+        return load.size(self._times[step], theta, sliders, omega)
 
     def _on_body(
         self, load: Load, size: float, frames: Mapping[str, Frame]

@@ -1,0 +1,50 @@
+"""The driver of a free mechanism: where it is let go, and how fast it moves then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from models.array import Array
+from models.laws import Law
+
+
+@dataclass(frozen=True)
+class Released(Law):
+    """A driver that is let go at time 0 at an angle, with a speed, which may be 0.
+
+    What it does then follows from masses and forces (`analytic.free`), and not from a law: `at`
+    gives the tangent of the start, of which only time 0 belongs to the motion. Its "turn" is the
+    time ``duration_s`` for which the scene is left free.
+    """
+
+    start_rad: float
+    speed_rad_s: float
+    duration_s: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.duration_s > 0.0:
+            raise ValueError(f"duration_s is {self.duration_s:g}: give a time above 0")
+
+    @property
+    def offset_rad(self) -> float:
+        return abs(self.start_rad)
+
+    @property
+    def period_s(self) -> float:
+        return self.duration_s
+
+    @property
+    def peak_speed_rad_s(self) -> float:
+        """The speed of the start; of a start from rest, one radian in the whole duration."""
+        return abs(self.speed_rad_s) or 1.0 / self.duration_s
+
+    def at(self, time_s: Array) -> tuple[Array, Array, Array]:
+        # From rest either way is as good to say on which branch it starts.
+        theta = self.start_rad + (self.speed_rad_s or self.peak_speed_rad_s) * time_s
+        return theta, np.full_like(theta, self.speed_rad_s), np.zeros_like(theta)
+
+    def turned(self, angle_rad: float) -> Released:
+        return replace(self, start_rad=self.start_rad + angle_rad)

@@ -1,0 +1,88 @@
+"""From the tables `[springs.NAME]` of a scene file to springs; what is wrong with their names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from models.errors import cut, few
+from models.scene import GROUND
+from models.schema import SceneTable, SpringTable
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+
+LISTED = 12
+"""Names that a message lists."""
+
+
+def springs_of(table: SceneTable) -> dict[str, Spring]:
+    """The springs of a scene whose names are those of things that it has (`faults_of_springs`)."""
+    return {name: _spring(name, spring, table) for name, spring in table.springs.items()}
+
+
+def _spring(name: str, spring: SpringTable, table: SceneTable) -> Spring:
+    if spring.pin is not None:
+        bodies = spring.bodies or _at_pin(
+            spring.pin,
+            set(table.ground.points),
+            {link: set(one.bar or ()) | set(one.points) for link, one in table.links.items()},
+        )
+        rate, damping = spring.rate_n_m_rad or 0.0, spring.damping_n_m_s or 0.0
+        free = math.radians(spring.free_deg or 0.0)
+        return PinSpring(name, rate, damping, free, spring.pin, (bodies[0], bodies[1]))
+    rate, damping = spring.rate_n_m or 0.0, spring.damping_n_s_m or 0.0
+    own = (name, rate, damping, spring.free_m or 0.0)
+    if spring.points is not None:
+        return LineSpring(*own, spring.points)
+    assert spring.slider is not None
+    return SlideSpring(*own, spring.slider)
+
+
+def _at_pin(point: str, ground: set[str], points: Mapping[str, set[str]]) -> tuple[str, ...]:
+    """The bodies that list a point, the ground first, then links in the order of the file."""
+    links = [name for name, own in points.items() if point in own]
+    return (*([GROUND] if point in ground else []), *links)
+
+
+def faults_of_springs(
+    springs: Mapping[str, Any],
+    ground: set[str],
+    points: Mapping[str, set[str]],
+    sliders: Mapping[str, Any],
+) -> Iterator[str]:
+    """One line per spring of the raw tables that ends in nothing, or in more than it says."""
+    everywhere = sorted(ground.union(*points.values(), _blocks(sliders)))
+    for name, table in springs.items():
+        if not isinstance(table, Mapping):
+            continue
+        key, ends = f"springs.{cut(name)}", table.get("points")
+        for point in ends if isinstance(ends, list) else []:
+            if isinstance(point, str) and point not in everywhere:
+                yield f"{key}.points: no body has a point {cut(point)}; use {few(everywhere, 12)}"
+        slider = table.get("slider")
+        if isinstance(slider, str) and slider not in sliders:
+            have = f"use one of {few(map(cut, sliders), LISTED)}" if sliders else "there is none"
+            yield f"{key}.slider: found {cut(slider)}; {have}"
+        pin = table.get("pin")
+        if isinstance(pin, str):
+            yield from _of_pin(key, pin, table.get("bodies"), _at_pin(pin, ground, points))
+
+
+def _blocks(sliders: Mapping[str, Any]) -> set[str]:
+    """The points of slider blocks."""
+    return {
+        point
+        for name, slider in sliders.items()
+        if isinstance(slider, Mapping) and isinstance(point := slider.get("point", name), str)
+    }
+
+
+def _of_pin(key: str, pin: str, bodies: object, met: tuple[str, ...]) -> Iterator[str]:
+    """A pin that is none, or in which it is open which bodies the spring is between."""
+    if len(met) < 2:
+        yield f"{key}.pin: fewer than two links, or links and the ground, meet at {cut(pin)}"
+    elif bodies is None and len(met) > 2:
+        yield f"{key}.bodies: {few(met, LISTED)} meet at {cut(pin)}; name two of them"
+    for body in bodies if isinstance(bodies, list) else []:
+        if isinstance(body, str) and body not in met:
+            yield f"{key}.bodies: {cut(body)} is not at {cut(pin)}; use two of {few(met, LISTED)}"
