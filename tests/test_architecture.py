@@ -42,9 +42,10 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
+        free
         mechanism forces
         nearness kinematics
-        free change_points check reach result
+        change_points check reach result
         turns
         dyads
         structure

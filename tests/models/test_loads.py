@@ -124,7 +124,7 @@ FAULTS = {
     "other block": ('block = "C"', 'block = "B"', "loads.work.block: found B; use one of C"),
     "other point": ('point = "B"', 'point = "D"', "loads.hum.point: rod has no point D; it has B"),
     "other slider": ('slider = "C"', 'slider = "B"', "loads.work.slider: found B; use one of C"),
-    "no slider": ('slider = "C"\nstroke', "stroke", "loads.work: over displacement, or on one"),
+    "no slider": ('slider = "C"\nstroke', "stroke", "loads.work: over displacement or speed, or"),
     "idle slider": ('stroke = "forward"', "", "loads.work: slider needs stroke = "),
     "no point": ('point = "B"\n', "", "loads.hum: a force on link rod needs the point"),
     "point of a block": ("force_n = 500.0", 'force_n = 5.0\npoint = "C"', "leave point out"),

@@ -15,7 +15,7 @@ from analytic.check.moved_scene import moved
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
-from models.files import every_shipped, load_scene
+from models.files import load_scene, shipped
 from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
@@ -85,7 +85,7 @@ def _no_bound_broken(rows: list[Held], told: object) -> None:
     assert not broken, f"{told}: {broken[:3]}"
 
 
-@pytest.mark.parametrize("name", every_shipped())
+@pytest.mark.parametrize("name", [*shipped(), *shipped("forces")])
 def test_errors_stay_below_their_bounds_in_every_scene(name: str) -> None:
     # Bounds of friction are held in test_friction_bounds.
     scene = replace(load_scene(name), gravity_m_s2=(0.0, -9.81), friction={})
