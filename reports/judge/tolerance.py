@@ -58,7 +58,17 @@ DEFAULTS: dict[str, Tolerance] = {
     tolerance_name(name, each.source): each.tolerance
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
+    if entry.role != "free"
 }
+"""Of a mechanism that is driven."""
+FREE: dict[str, Tolerance] = {
+    tolerance_name(name, each.source): of_free
+    for name, entry in QUANTITIES.items()
+    for each in entry.criteria
+    if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
+}
+"""Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
+EVERY = {**FREE, **DEFAULTS}
 
 FORCES = frozenset(named("force"))
 
@@ -103,12 +113,17 @@ class Limit:
     origin: str
 
 
+def numbers_for(errors: Errors) -> Mapping[str, Tolerance]:
+    """The numbers of the default limits of a run."""
+    return DEFAULTS if errors.free is None else FREE
+
+
 def limits(
     scene: Scene, errors: Errors, overrides: Mapping[str, float], option: str = "--tol"
 ) -> dict[str, Limit]:
     """The limit per tolerance name: command line before scene before default."""
     chosen = {}
-    for name, tolerance in DEFAULTS.items():
+    for name, tolerance in numbers_for(errors).items():
         if name in overrides:
             chosen[name] = Limit(overrides[name], option)
         elif name in scene.tolerance:
@@ -126,7 +141,7 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
         return limit
     if name in FORCES:
         return Limit(math.inf, "not judged near a change point")
-    return Limit(passing(DEFAULTS[name], errors), "default near a change point")
+    return Limit(passing(numbers_for(errors)[name], errors), "default near a change point")
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
@@ -166,11 +181,24 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
         )
 
 
+def refuse_of_other_motion(option: str, quantities: Iterable[str], free: Iterable[bool]) -> None:
+    """Refuse limits of what none of the cells has, which are ``free`` or driven. Raises
+    CrankcheckError."""
+    known = {name for each in set(free) for name in (FREE if each else DEFAULTS)}
+    other = [name for name in quantities if name not in known]
+    if other:
+        what = "of free motion; let scenes go with --free" if other[0] in FREE else "of a drive"
+        raise CrankcheckError(
+            f"{option} {other[0]}: it is {what}; or leave {other[0]} out. There is "
+            f"{', '.join(known)}"
+        )
+
+
 def _quantity(name: str, place: str) -> str:
     """The name, or a CrankcheckError that suggests the near ones."""
-    if name in DEFAULTS:
+    if name in EVERY:
         return name
-    hint = suggestion(name, DEFAULTS, "use one of", 2, 0.6)
+    hint = suggestion(name, EVERY, "use one of", 2, 0.6)
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 
