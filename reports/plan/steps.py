@@ -20,6 +20,10 @@ after."""
 MOST_UNLOGGED = 1_000_000_000
 """Some hours of work, where few of the steps are logged."""
 STEPS_PER_TURN = 720.0
+TURNS = 2.0
+"""Of a verification."""
+FREE_STEP_S = 1e-3
+"""The step of what is let go, which has no turns."""
 
 
 def counted(
@@ -77,6 +81,31 @@ def counted(
             "is logged but the start; log more of them, or take more turns"
         )
     return dt_s or period / per_turn, math.ceil(steps)
+
+
+def counted_free(
+    scene: Scene, dt_s: float | None, duration_s: float | None
+) -> tuple[float, int]:
+    """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s) and
+    --duration (default: the scene's own).
+
+    Raises
+    ------
+    CrankcheckError
+        A number that is not above 0, too many or too few steps.
+    """
+    dt_s = FREE_STEP_S if dt_s is None else positive("--dt", dt_s, "seconds, such as 1e-3")
+    lasts_s = scene.driver.law.period_s
+    if duration_s is not None:
+        lasts_s = positive("--duration", duration_s, "seconds, such as 10")
+    steps = lasts_s / dt_s * (1 - 1e-12)  # may be infinite
+    if not LEAST_STEPS - 1 < steps <= MOST_STEPS:
+        raise CrankcheckError(
+            f"--dt {dt_s:g} --duration {lasts_s:g}: {steps:.6g} steps of {scene.name}; a run has "
+            f"{LEAST_STEPS} at least, and {MOST_STEPS} at most, as all are logged: take another "
+            "step, or another duration"
+        )
+    return dt_s, math.ceil(steps)
 
 
 def positive(option: str, value: float, unit: str) -> float:
