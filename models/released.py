@@ -69,7 +69,9 @@ def let_go(scene: Scene, duration_s: float | None = None) -> Scene:
     """
     law = scene.driver.law
     if isinstance(law, Released):
-        return scene if duration_s is None else _with_law(scene, replace(law, duration_s=duration_s))
+        return (
+            scene if duration_s is None else _with_law(scene, replace(law, duration_s=duration_s))
+        )
     theta, omega, _ = (float(each[0]) for each in law.at(np.zeros(1)))
     lasts_s = TURNS * law.period_s if duration_s is None else duration_s
     return _with_law(scene, Released(theta, omega, lasts_s))

@@ -12,12 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.motion import Motion
-from models.scene import Scene
 from reports.compare.beside import Beside
 from reports.compare.error_rows import Instants, instants_of, rate_rows, whole_row
 from reports.compare.errors import Error
-from reports.compare.series import length, rate, second_rate
+from reports.compare.series import rate, second_rate
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import Role
 

@@ -63,6 +63,11 @@ class Cell:
         return truth_of(Same(self.scene))
 
     @property
+    def shown_truth(self) -> Truth:
+        """The same without bounds, which cost time and are not drawn."""
+        return self.truth if self.drive == "free" else Truth(self.scene, bound=False)
+
+    @property
     def label(self) -> str:
         return f"{self.scene.name}, {self.engine}, {self.profile}"
 

@@ -1,7 +1,7 @@
 """Classes of precision of a free cell: those of IFToMM's benchmark library, and our own.
 
-The library asks of a solution that it is within 1e-1 of its reference at all times (low precision)
-or within 1e-3 (high precision): that is the error of phase and place as it is, in radians or longest
+The library asks of a solution that it stays within 1e-1 of its reference (low precision), or within
+1e-3 (high precision): here that is the error of phase and place as it is, in radians or longest
 links, at the same time. Our own are over the sensitivity, and tell engines apart whose errors are
 all within the common limits: ``fine`` is what an engine reaches that integrates with order four and
 holds its joints stiffly.

@@ -34,7 +34,9 @@ FORCE_COLUMNS = frozenset(
     name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("force")
 )
 """Those of cells of which forces were asked for."""
-DRIVE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("drive"))
+DRIVE_COLUMNS = frozenset(
+    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("drive")
+)
 FREE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("free"))
 """Those of cells that were driven, and those of cells that were let go."""
 MOVING = tuple(name for name in DEFAULTS if name not in named("force"))
@@ -94,7 +96,8 @@ def cell_row(checked: Checked) -> dict[str, object]:
         row[f"{column}_limit_pure"] = (
             checked.limits[name].number if name in checked.limits else None
         )
-    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in named("place")))
+    placed = ("phase", *named("place")) if free else named("place")
+    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in placed))
     convergence = checked.convergence
     row |= free_row(checked) if free else {}
     row |= {
@@ -119,7 +122,10 @@ def free_row(checked: Checked) -> dict[str, object]:
         "judged_until_s": facts.until_s if facts else None,
         "left_out": facts.left_out if facts else None,
         "limit_positions": facts.passages if facts else None,
-        **{f"horizon_{name}_s": facts.horizon_s(size) if facts else None for name, size in IFTOMM.items()},
+        **{
+            f"horizon_{name}_s": facts.horizon_s(size) if facts else None
+            for name, size in IFTOMM.items()
+        },
         "horizon_limit_s": facts.judged_horizon_s(limit.number) if facts and limit else None,
     }
 

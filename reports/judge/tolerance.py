@@ -68,7 +68,8 @@ FREE: dict[str, Tolerance] = {
     if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
 }
 """Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
-EVERY = {**FREE, **DEFAULTS}
+EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE)))
+"""All that there may be a limit of."""
 
 FORCES = frozenset(named("force"))
 

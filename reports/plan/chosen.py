@@ -67,6 +67,11 @@ def refuse_unfollowed(scene: Scene) -> None:
         reference, which names group or range.
     """
     check_names(scene)
+    if scene.is_free:
+        raise CrankcheckError(
+            f"{scene.name}: its driver is let go, and follows no law; `crankcheck verify` runs it, "
+            "and `crankcheck sweep --free`"
+        )
     turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     solve(scene, turn, points=(), sliders=(), bound=False)
 

@@ -8,8 +8,10 @@ import numpy as np
 
 from models.errors import CrankcheckError
 from models.files import kinds, shipped
+from models.released import let_go
 from models.scene import Scene
 from reports.judge.tolerance import check_names
+from reports.plan.chosen import chosen_scenes
 
 FREE = "free"
 """The kind of shipped scenes that are let go."""
@@ -24,6 +26,13 @@ def free_names(names: Sequence[str]) -> list[str]:
     if not every:
         raise CrankcheckError(f"--free: no scene of kind free; there is {', '.join(kinds())}")
     return every
+
+
+def scenes_of(names: Sequence[str], *, free: bool) -> list[Scene]:
+    """The scenes of a study, which are all driven, or all let go. Raises CrankcheckError."""
+    if not free:
+        return chosen_scenes(names)
+    return [let_go(scene) for scene in chosen_scenes(free_names(names), check_names)]
 
 
 def refuse_unreleased(scene: Scene, duration_s: float) -> None:

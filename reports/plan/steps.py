@@ -24,6 +24,8 @@ TURNS = 2.0
 """Of a verification."""
 FREE_STEP_S = 1e-3
 """The step of what is let go, which has no turns."""
+FREE_STEPS_S = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
+"""Those of a sweep over it."""
 
 
 def counted(
@@ -83,9 +85,7 @@ def counted(
     return dt_s or period / per_turn, math.ceil(steps)
 
 
-def counted_free(
-    scene: Scene, dt_s: float | None, duration_s: float | None
-) -> tuple[float, int]:
+def counted_free(scene: Scene, dt_s: float | None, duration_s: float | None) -> tuple[float, int]:
     """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s) and
     --duration (default: the scene's own).
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from models.motion import Motion
 from models.scene import Scene
-from reports.quantities.moving import every_place, moving
+from reports.quantities.moving import every_place
 from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance
 from sim.engine import Run
 

@@ -299,8 +299,8 @@ def _free_words(free: Sequence[Checked]) -> list[str]:
 
 
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """What is to be said of forces, and of a truth that ends, once for a scene: counts may differ by
-    a sample."""
+    """What is to be said of forces, and of free motion, once for a scene: counts may differ by a
+    sample."""
     notes = dict[tuple[str, str], str]()
     for one in checked:
         told = one.cell.with_forces or one.cell.drive == "free"

@@ -13,7 +13,6 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files import find_scenes
-from models.released import let_go
 from models.scene import Scene
 from reports.cli.checking import PRESCRIBED, VerifyRequest
 from reports.judge.cell import Cell, Checked
@@ -39,7 +38,12 @@ from reports.plan.chosen import (
     refuse_unfollowed,
 )
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
-from reports.plan.free import free_names, refuse_other_options, refuse_unreleased
+from reports.plan.free import (
+    free_names,
+    refuse_other_options,
+    refuse_unreleased,
+    scenes_of,
+)
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted, counted_free
@@ -149,7 +153,7 @@ def plan(request: VerifyRequest) -> list[Cell]:
 def _scenes(request: VerifyRequest) -> list[Scene]:
     """The scenes, those that are to be let go with a driver that is."""
     if request.free:
-        return [let_go(scene) for scene in chosen_scenes(free_names(request.scenes), check_names)]
+        return scenes_of(request.scenes, free=True)
 
     def check(scene: Scene) -> None:
         check_names(scene)

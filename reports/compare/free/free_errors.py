@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +25,6 @@ from reports.compare.role_rows import differenced_rows, reported_rows, uncertain
 from reports.compare.series import length
 from reports.compare.tracks import Track
 from reports.compare.uneven import uneven, unevenly_turned
-from reports.quantities import named
 from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
@@ -95,9 +93,7 @@ def _same_time(beside: FreeBeside) -> tuple[Track, ...]:
     return (*beside.tracks((PHASE.name,), beside.reference), *beside.places)
 
 
-def _phase_and_places(
-    beside: FreeBeside, tracks: Iterable[Track], at: Instants
-) -> Iterable[Error]:
+def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants) -> Iterable[Error]:
     """Errors at the same time, as they are and over the sensitivity."""
     for track in tracks:
         yield whole_row(beside.judged(track, at.time_s), at)
@@ -146,8 +142,8 @@ def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
     """What is to be told of the truth."""
     if facts.left_out:
         yield (
-            f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a quarter "
-            f"of the limit: {facts.left_out} samples after it are not judged"
+            f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "
+            f"quarter of the limit: {facts.left_out} samples after it are not judged"
         )
     if facts.passages:
         yield f"the driver turns back at {facts.passages} limits of its angle on the way"

@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 LEAST_KNOWN = 0.25
 """What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
 
+BEYOND = 1.01
+"""How much longer than a run is integrated: some velocities belong to half a step after it, and all
+steps of a sweep share one motion."""
+
 
 @lru_cache(maxsize=2)
 def _motion(pickled: bytes, until_s: float) -> FreeMotion:
@@ -40,11 +44,13 @@ def _motion(pickled: bytes, until_s: float) -> FreeMotion:
 def free_truth(
     scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
-    """The truth of a scene that is let go, for so many steps of ``dt_s`` and one more, as some
-    velocities belong to half a step later. Raises CrankcheckError as `analytic.free.release`."""
-    motion = _motion(pickle.dumps(scene), (steps + 1) * dt_s)
+    """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
+    `analytic.free.release`."""
+    motion = _motion(pickle.dumps(scene), float(f"{BEYOND * steps * dt_s:.9g}"))
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
-    law = Released(float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s)
+    law = Released(
+        float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
+    )
     given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
     numbers = PHASE.criteria[0].tolerance
     budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)

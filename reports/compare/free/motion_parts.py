@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.motion import Bound, BodyMotion, Motion
+from models.motion import BodyMotion, Bound, Motion
 
 
 def one_after_another(first: Motion, then: Motion) -> Motion:
     """The samples of both, without forces; what either lacks of the other is left out."""
-    bounds = first.bound, then.bound
     return replace(
         then,
         time_s=np.concatenate([first.time_s, then.time_s]),
@@ -24,7 +23,7 @@ def one_after_another(first: Motion, then: Motion) -> Motion:
             for key, sine in then.conditioning.items()
             if key in first.conditioning
         },
-        bound=_bounds(*bounds) if bounds[0] and bounds[1] else None,
+        bound=_bounds(first.bound, then.bound) if first.bound and then.bound else None,
         forces=None,
     )
 
@@ -42,7 +41,10 @@ def _joined(
 ) -> dict[str, BodyMotion]:
     return {
         name: type(body)(
-            **{key: np.concatenate([vars(first[name])[key], each]) for key, each in vars(body).items()}
+            **{
+                key: np.concatenate([vars(first[name])[key], each])
+                for key, each in vars(body).items()
+            }
         )
         for name, body in then.items()
         if name in first
