@@ -117,6 +117,7 @@ ENERGY = Quantity(
             "energy. An offset that comes and goes with the motion is none.",
             "Shorten the step (--dt); look for what damps or drives the bodies unasked.",
             short="drift",
+            diagram="drift of energy",
             tolerance=Tolerance(
                 "Joints that are closed by impulses, or by springs with dampers, take energy at "
                 "every step, of second order for the longest while.",
