@@ -101,7 +101,9 @@ class Errors:
     largest of its kind, where the engine's forces are those of steps, which start with half a step.
     ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
     change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
-    may have of the largest reaction (`reports.compare.loading`). ``free`` is what else there is to
+    may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
+    that a driver which was let go would turn through at its largest speed, 0 of one that is driven;
+    ``free`` is what else there is to
     know of a run that was let go, None of one that was driven.
     """
 
@@ -128,6 +130,7 @@ class Errors:
     loading: float = 0.0
     load_slopes: Mapping[str, float] = field(default_factory=dict)
     inertia_share: float = 1.0
+    travel_rad: float = 0.0
     free: FreeFacts | None = None
 
     def worst(

@@ -96,6 +96,7 @@ def followed(
         copied=_copied(errors, dt_s, parts, [errors.rows, *(rows for rows, _ in finer)], order)
         if placing == "integrated"
         else (),
+        cancels=errors.free is not None,
     )
     if force is None:
         return Followed(of_places)

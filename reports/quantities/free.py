@@ -50,7 +50,9 @@ PHASE = Quantity(
                 "Second order, for the longest while: a loss of energy makes an error of phase "
                 "that grows with the square of time, and the sensitivity with time alone.",
                 cap=0.1,  # IFToMM's class of low precision, whatever the step
-                coefficient=10.0,
+                coefficient=4.0,
+                power=1.0,
+                lasting=0.016,
             ),
         ),
     ),
@@ -122,7 +124,9 @@ ENERGY = Quantity(
                 "Joints that are closed by impulses, or by springs with dampers, take energy at "
                 "every step, of second order for the longest while.",
                 cap=0.1,
-                coefficient=10.0,
+                coefficient=1.0,
+                power=1.0,
+                lasting=0.0125,
             ),
         ),
     ),

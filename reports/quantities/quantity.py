@@ -47,7 +47,8 @@ class Measure:
 @dataclass(frozen=True)
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``."""
+    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
+    ``lasting`` is of free motion, which is ever further off the longer it lasts."""
 
     reason: str
     cap: float = math.inf
@@ -66,6 +67,7 @@ class Tolerance:
     jump: float = 0.0
     parts: bool = False
     makes_up: bool = False
+    lasting: float = 0.0
 
 
 @dataclass(frozen=True)

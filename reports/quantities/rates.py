@@ -40,9 +40,9 @@ TWICE_DERIVED = Tolerance(
 FREE_RATE = Tolerance(
     "As the phase, which the mechanism passes on to its velocities as their rates say.",
     cap=0.2,
-    coefficient=10.0,
+    coefficient=6.0,
     power=1.5,
-    conditioned=True,
+    lasting=0.024,
     share=OPEN_SHARE,
     share_order=1,
     rate=1,

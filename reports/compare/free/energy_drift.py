@@ -14,6 +14,8 @@ from reports.quantities.free import ENERGY
 
 SHARE = 0.1
 """The least part of a run that a mean is taken over, and half of it the most."""
+WORKED = 1e-9
+"""The least work, over the largest kinetic energy, that is some."""
 
 
 def energy_rows(beside: FreeBeside) -> list[Error]:
@@ -27,14 +29,15 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
     if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
         return []
     time_s = run.velocity_time_s
-    worked = _is_worked(beside.scene)
-    if worked:
+    known = beside.let_go.energy(np.maximum(time_s, 0.0))
+    largest = float(np.max(known.kinetic))
+    if not largest > 0.0:
         return []
-    off, largest = run.energy.total_j, float(np.max(run.energy.kinetic_j))
+    off = run.energy.total_j - known.work
     change = drift(off, time_s, window_s(beside.scene, float(time_s[-1] - time_s[0])))
+    worked = float(np.ptp(known.work)) > WORKED * largest
     size = abs(change) / (beside.pure_growth if worked else 1.0)
     measure = ENERGY.of("mechanism")
-    worst = int(np.argmax(np.abs(off)))
     return [
         Error(
             quantity=ENERGY.name,
@@ -48,17 +51,11 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
             rms=size,
             final=size,
             time_of_maximum_s=float(time_s[-1]),
-            driver_at_maximum_rad=float(beside.driver_rad[worst]),
+            driver_at_maximum_rad=float(beside.driver_rad[-1]),
             bound=0.0,
             samples=int(time_s.size),
         )
     ]
-
-
-def _is_worked(scene: Scene) -> bool:
-    """Whether anything but weight and springs works on a scene."""
-    damped = any(spring.damping for spring in scene.springs.values())
-    return bool(scene.loads) or bool(scene.friction) or damped
 
 
 def window_s(scene: Scene, lasts_s: float) -> float:

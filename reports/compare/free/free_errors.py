@@ -29,6 +29,9 @@ from reports.quantities.free import GEOMETRY, PHASE
 
 COURSE = 400
 """Instants at which the growth of the errors is kept."""
+LEAST_SINE = 0.3
+"""Of a transmission angle, where the driver passes a limit of its own: near it the geometry is that
+of another coordinate, which is not singular there."""
 TWICE = 4.0
 """Roundings of a sum in a sum, see `reports.compare.drive_rounding`."""
 
@@ -57,7 +60,9 @@ def free_errors(beside: FreeBeside) -> Errors:
         not_reported=(*not_reported, *borne.not_reported),
         notes=(*notes, *_notes(beside, facts), *borne.notes),
         curvature=curvature(scene, beside.whole),
-        conditioning=conditioning(reference, at.driver_rad),
+        conditioning=max(
+            conditioning(reference, at.driver_rad), LEAST_SINE if facts.passages else 0.0
+        ),
         step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
         missing=beside.missing,
         incomplete=beside.incomplete or borne.incomplete,
@@ -74,6 +79,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         unbalanced=borne.unbalanced,
         start_load=borne.start_load,
         inertia_share=borne.inertia_share,
+        travel_rad=scene.driver.law.peak_speed_rad_s * float(at.time_s[-1]),
         free=facts,
     )
 
