@@ -102,7 +102,8 @@ class Errors:
     ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
     change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
     may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
-    that a driver which was let go would turn through at its largest speed, 0 of one that is driven;
+    that a driver which was let go turns through, weighed with the square of its speed over the
+    largest, 0 of one that is driven;
     ``free`` is what else there is to
     know of a run that was let go, None of one that was driven.
     """

@@ -150,7 +150,9 @@ def _over(
     texts = []
     for name in quantities:
         full, fine = errors.worst(name), _worst_of(rows, [name])
-        if full is None or fine is None or not full.pure <= before[name].number:
+        if name not in before or full is None or fine is None:
+            continue
+        if not full.pure <= before[name].number:
             continue
         limit = in_force[name].number
         if not fine.pure <= max(limit, rounding):

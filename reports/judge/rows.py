@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
 from reports.judge.precision import IFTOMM, precision
-from reports.judge.tolerance import DEFAULTS, FREE, Limit
+from reports.judge.tolerance import DEFAULTS, FORCES, FREE, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -82,7 +82,9 @@ def cell_row(checked: Checked) -> dict[str, object]:
     }
     errors = checked.errors.rows if checked.errors else ()
     free = checked.cell.drive == "free"
-    wanted = FREE if free else DEFAULTS if checked.cell.with_forces else MOVING
+    wanted: Collection[str] = FREE if free else DEFAULTS
+    if not checked.cell.with_forces:
+        wanted = [name for name in wanted if name not in FORCES]
     others = DRIVE_COLUMNS if free else FREE_COLUMNS
     for name, *key in ERROR_COLUMNS:
         if name in others or (name in FORCE_COLUMNS and not checked.cell.with_forces):

@@ -23,9 +23,10 @@ A change point that the motion goes through is left out of ``conditioning``, wit
 the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
 own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
 
-What was let go is ever further off the longer it lasts, by ``lasting * travel * step^order *
-curvature^1.5`` more: impulses and springs that close joints take energy at every step, of the third
-order in it, and there are as many steps as the driver could turn through radians over ``step``.
+What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
+curvature^1.5`` more: impulses and springs that close joints take energy at every step, which adds
+up to that. ``travel`` [rad] is what the driver turns through, each part of it weighed with the
+square of its speed over the largest: it is fast for a small part of a swing alone.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
@@ -87,7 +88,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.closes:
         bend = max(bend, 2.0 * errors.worst_jolt)
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
-    budget += tolerance.lasting * errors.travel_rad * step**tolerance.order * curvature**1.5
+    lasted = errors.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
+    budget += tolerance.lasting * lasted
     shaken = tolerance.share * curvature + tolerance.load_share * errors.loading
     budget += shaken * step**tolerance.share_order
     budget += _felt(tolerance, errors)

@@ -23,7 +23,9 @@ STEPS_PER_TURN = 720.0
 TURNS = 2.0
 """Of a verification."""
 FREE_STEP_S = 1e-3
-"""The step of what is let go, which has no turns."""
+"""The longest step of what is let go, which has no turns."""
+FREE_STEPS = 5000
+"""The least in what a scene says it is left free for: what is fast is over soon."""
 FREE_STEPS_S = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
 """Those of a sweep over it."""
 
@@ -86,16 +88,18 @@ def counted(
 
 
 def counted_free(scene: Scene, dt_s: float | None, duration_s: float | None) -> tuple[float, int]:
-    """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s) and
-    --duration (default: the scene's own).
+    """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s, or a
+    5000th of the time that the scene says) and --duration (default: that time).
 
     Raises
     ------
     CrankcheckError
         A number that is not above 0, too many or too few steps.
     """
-    dt_s = FREE_STEP_S if dt_s is None else positive("--dt", dt_s, "seconds, such as 1e-3")
-    lasts_s = scene.driver.law.period_s
+    period_s = lasts_s = scene.driver.law.period_s
+    if dt_s is None:
+        dt_s = min(FREE_STEP_S, period_s / FREE_STEPS)
+    dt_s = positive("--dt", dt_s, "seconds, such as 1e-3")
     if duration_s is not None:
         lasts_s = positive("--duration", duration_s, "seconds, such as 10")
     steps = lasts_s / dt_s * (1 - 1e-12)  # may be infinite

@@ -50,9 +50,9 @@ PHASE = Quantity(
                 "Second order, for the longest while: a loss of energy makes an error of phase "
                 "that grows with the square of time, and the sensitivity with time alone.",
                 cap=0.1,  # IFToMM's class of low precision, whatever the step
-                coefficient=4.0,
+                coefficient=6.5,
                 power=1.0,
-                lasting=0.016,
+                lasting=1.2,
             ),
         ),
     ),
@@ -81,7 +81,7 @@ GEOMETRY = Quantity(
                 "curvature to be closed; a dyad passes it on enlarged by 1/sine of its "
                 "transmission angle.",
                 cap=2e-2,
-                coefficient=1.0,
+                coefficient=0.8,
                 power=1.0,
                 conditioned=True,
                 closes=True,
@@ -124,9 +124,9 @@ ENERGY = Quantity(
                 "Joints that are closed by impulses, or by springs with dampers, take energy at "
                 "every step, of second order for the longest while.",
                 cap=0.1,
-                coefficient=1.0,
+                coefficient=0.7,
                 power=1.0,
-                lasting=0.0125,
+                lasting=3.4,
             ),
         ),
     ),

@@ -79,7 +79,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         unbalanced=borne.unbalanced,
         start_load=borne.start_load,
         inertia_share=borne.inertia_share,
-        travel_rad=scene.driver.law.peak_speed_rad_s * float(at.time_s[-1]),
+        travel_rad=_travel(beside),
         free=facts,
     )
 
@@ -116,6 +116,13 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
     except CrankcheckError as error:
         return [], (f"no geometry: the run left the range of its own coordinate ({error})",)
     return [whole_row(track, at) for track in tracks], ()
+
+
+def _travel(beside: FreeBeside) -> float:
+    """What the driver turns through, weighed with the square of its speed over the largest [rad]."""
+    speed = np.abs(beside.reference.links[beside.scene.driver.link].omega)
+    peak = beside.scene.driver.law.peak_speed_rad_s
+    return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
 
 
 def _summed(at: Instants, steps: int) -> float:
