@@ -85,8 +85,7 @@ def run(
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
     refuse_other_model(scene, state, facts, dt_s, drive, open_m)
-    pushed = drive == "free" and (scene.loads or scene.springs)  # how fast, no start shows
-    runaway = math.inf if pushed else RUNAWAY * (pace(scene, state, drive) or math.inf)
+    runaway = RUNAWAY * (pace(scene, state, drive) or math.inf)
     return recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
 
 
