@@ -23,9 +23,10 @@ import numpy as np
 from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from analytic.check.constraints import Constraints
 from analytic.check.friction import rubbing_samples, turning
+from analytic.multibody.reactions import reactions
 from models.array import Array
 from models.errors import CrankcheckError
-from models.forces import Forces, SliderForces
+from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
 
@@ -75,7 +76,13 @@ def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
                 pushed[:, at : at + 2] += force
                 pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
         multipliers = replace(system, applied=pushed).multipliers()
-        found = reactions(scene, system.constraints, motion.time_s, -multipliers)
+        found = reactions(
+            scene,
+            system.constraints.pin_pairs(),
+            motion.time_s,
+            -multipliers[:, :-1],
+            -multipliers[:, -1],
+        )
         before = friction
         friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
         change = [np.abs(friction[joint] - before[joint]) for joint in joints]
@@ -158,20 +165,3 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
     mass_matrix[:, at + 1, at + 2] = mass_matrix[:, at + 2, at + 1] = mass * arm[:, 0]
     mass_matrix[:, at + 2, at + 2] = body.inertia + mass * np.sum(arm**2, axis=1)
     right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
-
-
-def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
-    """What the multipliers mean: pushes along the gradients of the equations, in their order."""
-    pins: dict[str, dict[str, Array]] = {}
-    row = 0
-    for point, first, other in system.pin_pairs():
-        push = pushes[:, row : row + 2]
-        held = pins.setdefault(point, {})
-        held[first] = held.get(first, 0.0) + push
-        held[other] = held.get(other, 0.0) - push
-        row += 2
-    sliders: dict[str, SliderForces] = {}
-    for name in scene.sliders:
-        sliders[name] = SliderForces(pushes[:, row], pushes[:, row + 1])
-        row += 2
-    return Forces(time_s, pins, sliders, pushes[:, row])

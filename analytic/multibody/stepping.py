@@ -1,0 +1,252 @@
+"""Integrate the equations of motion over time, from kink to kink of what acts.
+
+The state is q, q' and the work of loads and dampers, (2 n + 1,). After each step of the adaptive
+method the state is put back onto the constraints, by what its own error has left them open, so that
+the order of the method stays. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations
+II, VII.2 (projection); the same and S. P. Norsett, I, II.5 (the method of order 8).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.integrate import DOP853, OdeSolution  # type: ignore[import-untyped]  # ships no stubs
+from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]
+from scipy.optimize import brentq  # type: ignore[import-untyped]
+
+from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.pushes import Strokes
+from analytic.multibody.switches import Switch, edges, strokes, switches
+from models.array import Array
+from models.errors import CrankcheckError
+
+Course = Callable[[Array], Array]
+"""The state at times [s], (2 n + 1, T)."""
+LARGEST = 1e12
+"""Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
+MOST_STEPS = 1_000_000
+
+
+@dataclass
+class _Steps:
+    """The steps of an integration: the times between them, and what is within."""
+
+    times: list[float]
+    within: list[object] = field(default_factory=list)
+
+    def add(self, solver: DOP853) -> None:
+        self.times.append(float(solver.t))
+        self.within.append(solver.dense_output())
+
+
+@dataclass(frozen=True)
+class Adaptive:
+    """Integrates with steps of a size that keeps to a tolerance, over the largest of what a
+    coordinate has been and its unit; ``projected`` back onto the constraints after each."""
+
+    dynamics: Dynamics
+    tolerance: float
+    projected: bool
+
+    def course(self, q: Array, rates: Array, until_s: float) -> Course:
+        """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
+        pushes = self.dynamics.pushes
+        own, state = switches(pushes), np.concatenate([q, rates, [0.0]])
+        steps = _Steps([0.0])
+        times = edges(pushes, until_s)
+        cells = self._first_cells(own, state)
+        for begin, end in zip(times, times[1:], strict=False):
+            state, cells = self._stretch(steps, own, cells, begin, end, state)
+        solution = OdeSolution(steps.times, steps.within)
+        return lambda time_s: np.asarray(solution(time_s))
+
+    def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
+        """The cells in which the switches are as the motion starts, or into which it moves."""
+        cells = self._cells(own, state)
+        if not any(switch.turning for switch in own):
+            return cells
+        slope = self.dynamics.rates(0.0, state, strokes(own, cells))
+        ahead = self._cells(own, state + 1e-9 * slope)
+        return np.where([switch.turning for switch in own], ahead, cells)
+
+    def _cells(self, own: tuple[Switch, ...], state: Array) -> Array:
+        return np.array([switch.cell(self._coordinate(switch, state)) for switch in own], dtype=int)
+
+    def _coordinate(self, switch: Switch, state: Array) -> float:
+        n = self.dynamics.assembly.size
+        now = self.dynamics.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
+        return switch.coordinate(self.dynamics.pushes, now)
+
+    def _stretch(
+        self,
+        steps: _Steps,
+        own: tuple[Switch, ...],
+        cells: Array,
+        begin: float,
+        end: float,
+        state: Array,
+    ) -> tuple[Array, Array]:
+        """Integrate between two edges over time; the state and the cells at the end."""
+        solver = self._solver(begin, end, state, strokes(own, cells), None)
+        while solver.status == "running":
+            before_s, before = float(solver.t), solver.y
+            self._step(solver, len(steps.times))
+            arrived = self._cells(own, solver.y)
+            if not np.array_equal(arrived, cells):
+                crossing = self._crossing(own, cells, arrived, solver)
+                if crossing is not None:
+                    number, cell, at_s = crossing
+                    if at_s > before_s:
+                        whole = float(solver.t) - before_s
+                        solver = self._solver(
+                            before_s, at_s, before, strokes(own, cells), at_s - before_s
+                        )
+                        while solver.status == "running":
+                            self._step(solver, len(steps.times))
+                            self._take(steps, solver)
+                        before = solver.y
+                    else:
+                        whole = float(solver.t) - before_s
+                    cells = cells.copy()
+                    cells[number] = cell
+                    if at_s < end:
+                        solver = self._solver(at_s, end, before, strokes(own, cells), whole)
+                    continue
+                cells = arrived
+            self._take(steps, solver)
+        return solver.y, cells
+
+    def _solver(
+        self, begin: float, end: float, state: Array, own: Strokes, first_s: float | None
+    ) -> DOP853:
+        # What jumps at an edge has its old value up to it.
+        last = math.nextafter(end, begin)
+
+        def rates(time_s: float, state: Array) -> Array:
+            return self.dynamics.rates(min(max(time_s, begin), last), state, own)
+
+        first = None if first_s is None else min(first_s, end - begin)
+        return DOP853(
+            rates, begin, state, end,
+            rtol=max(self.tolerance, 3e-14), atol=self.tolerance * self._units(), first_step=first,
+        )  # fmt: skip
+
+    def _units(self) -> Array:
+        """What a coordinate, a rate and the work count as one of."""
+        longest = self.dynamics.assembly.scene.longest_m
+        own = np.ones(self.dynamics.assembly.size)
+        for at in self.dynamics.assembly.at.values():
+            own[at : at + 2] = longest
+        return np.concatenate([own, own, [longest**2]])
+
+    def _step(self, solver: DOP853, count: int) -> None:
+        name = self.dynamics.assembly.scene.name
+        with np.errstate(all="ignore"):
+            trouble = solver.step()
+        if solver.status == "failed" or not np.isfinite(solver.y).all():
+            raise CrankcheckError(f"{name}: the integration fails at {solver.t:g} s: {trouble}")
+        if count > MOST_STEPS:
+            raise CrankcheckError(
+                f"{name}: {MOST_STEPS} steps have come to {solver.t:g} s; a load that is switched "
+                "by the motion may hold it in place, or a spring is too stiff"
+            )
+
+    def _take(self, steps: _Steps, solver: DOP853) -> None:
+        """Keep a step, and put the state back onto the constraints."""
+        steps.add(solver)
+        if self.projected:
+            n = self.dynamics.assembly.size
+            q, rates = self.dynamics.closed(solver.y[:n], solver.y[n : 2 * n])
+            solver.y = np.concatenate([q, rates, solver.y[2 * n :]])
+
+    def _crossing(
+        self, own: tuple[Switch, ...], cells: Array, arrived: Array, solver: DOP853
+    ) -> tuple[int, int, float] | None:
+        """The switch that the last step goes over first, the cell after it, and when."""
+        within = solver.dense_output()
+        found: list[tuple[float, int, int]] = []
+        for number, switch in enumerate(own):
+            up = arrived[number] > cells[number]
+            if arrived[number] == cells[number]:
+                continue
+            cell = int(cells[number]) + (1 if up else -1)
+            kink = switch.begin(cell if up else cell + 1)
+
+            def beyond(time_s: float, switch: Switch = switch, kink: float = kink) -> float:
+                return self._coordinate(switch, within(time_s)) - kink
+
+            begin, end = beyond(solver.t_old), beyond(solver.t)
+            if (begin < 0.0) == (end < 0.0) or begin == 0.0:
+                at_s = float(solver.t_old)  # it has begun on the kink, as it is known
+            else:
+                at_s = float(brentq(beyond, solver.t_old, solver.t, xtol=1e-15, rtol=1e-15))
+            found.append((at_s, number, cell))
+        if not found:
+            return None
+        at_s, number, cell = min(found)
+        return number, cell, at_s
+
+
+@dataclass(frozen=True)
+class FixedSteps:
+    """The method of Runge and Kutta of order 4 with steps of one size, as the thesis on elastic
+    mechanisms has it; in between cubics, of the same order. Edges over time are at steps."""
+
+    dynamics: Dynamics
+    step_s: float
+
+    def course(self, q: Array, rates: Array, until_s: float) -> Course:
+        """The motion from a state to a time [s]. Raises CrankcheckError where it comes apart."""
+        own = switches(self.dynamics.pushes)
+        state = np.concatenate([q, rates, [0.0]])
+        times, states, slopes = [], [], []
+        edge = edges(self.dynamics.pushes, until_s)
+        for begin, end in zip(edge, edge[1:], strict=False):
+            count = max(1, math.ceil((end - begin) / self.step_s * (1.0 - 1e-9)))
+            h, last = (end - begin) / count, math.nextafter(end, begin)
+            for i in range(count):
+                at_s = begin + i * h
+                held = strokes(own, self._cells(own, state))
+                slope, state_after = self._step(at_s, h, last, state, held)
+                times.append(at_s)
+                states.append(state)
+                slopes.append(slope)
+                state = state_after
+                self._check(state, at_s + h)
+        held = strokes(own, self._cells(own, state))
+        times.append(until_s)
+        states.append(state)
+        slopes.append(self.dynamics.rates(until_s, state, held))
+        spline = CubicHermiteSpline(np.array(times), np.array(states), np.array(slopes))
+        return lambda time_s: np.asarray(spline(time_s).T)
+
+    def _cells(self, own: tuple[Switch, ...], state: Array) -> Array:
+        assembly = self.dynamics.assembly
+        if not own:
+            return np.zeros(0, dtype=int)
+        n = assembly.size
+        now = assembly.at_rates(state[None, :n], state[None, n : 2 * n])
+        pushes = self.dynamics.pushes
+        return np.array([switch.cell(switch.coordinate(pushes, now)) for switch in own], dtype=int)
+
+    def _step(
+        self, at_s: float, h: float, last: float, state: Array, held: Strokes
+    ) -> tuple[Array, Array]:
+        """The slope at the begin of a step, and the state at its end."""
+        rates = self.dynamics.rates
+        with np.errstate(all="ignore"):
+            k1 = rates(at_s, state, held)
+            k2 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k1, held)
+            k3 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k2, held)
+            k4 = rates(min(at_s + h, last), state + h * k3, held)
+        return k1, state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+
+    def _check(self, state: Array, time_s: float) -> None:
+        if not np.abs(state).max() < LARGEST:
+            raise CrankcheckError(
+                f"{self.dynamics.assembly.scene.name}: with steps of {self.step_s:g} s the motion "
+                f"comes apart at {time_s:g} s; take smaller ones, or a smaller alpha and beta"
+            )
