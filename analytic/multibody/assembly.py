@@ -165,8 +165,9 @@ class Assembly:
         gradient = np.zeros((count, markers, 3, self.size))
         drift = np.zeros_like(place)
         for part, own, marked in self.parts:
-            part.mark(q[:, own], place[:, marked], gradient[:, marked, :, own])
-            drift[:, marked] = part.drift(q[:, own], rates[:, own])
+            each = part.mark(q[:, own], rates[:, own])
+            place[:, marked], gradient[:, marked, :, own] = each.place, each.gradient
+            drift[:, marked] = each.drift
         flat = gradient.reshape(count, 3 * markers, self.size)
         velocity = (flat @ rates[:, :, None]).reshape(place.shape)
         return Configuration(q, rates, place, gradient, velocity, drift)
@@ -230,18 +231,18 @@ class Assembly:
         away = now.place[:, self._tip, :2] - now.place[:, self._guide, :2]
         return np.stack([c, s], axis=2), np.stack([-s, c], axis=2), away
 
-    def mass(self, q: Array) -> Array:
-        """The mass matrix of all bodies, (T, n, n)."""
+    def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
+        """The mass matrix of all bodies (T, n, n); weights, and inertia that goes with the squares
+        of rates, on the right side (T, n)."""
         matrix = np.zeros((len(q), self.size, self.size))
+        right = np.empty_like(q)
         for part, own, _ in self.parts:
-            matrix[:, own, own] = part.mass(q[:, own])
-        return matrix
+            matrix[:, own, own], right[:, own] = part.weigh(q[:, own], rates[:, own])
+        return matrix, right
 
-    def push(self, q: Array, rates: Array) -> Array:
-        """Weights, and inertia that goes with the squares of rates, (T, n)."""
-        return np.concatenate(
-            [part.push(q[:, own], rates[:, own]) for part, own, _ in self.parts], axis=1
-        )
+    def mass(self, q: Array) -> Array:
+        """The mass matrix alone."""
+        return self.weigh(q, np.zeros_like(q))[0]
 
     def height_energy(self, q: Array) -> Array:
         """The potential energy of all bodies [J], (T,)."""

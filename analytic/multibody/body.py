@@ -7,34 +7,36 @@ else; so they need not know what a body is, and a body not what it is joined to.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 from models.array import Array
 
 
-class Body(Protocol):
-    """One body, or several that are worked out together, with a slice of the coordinates.
+@dataclass(frozen=True)
+class Marked:
+    """K markers at T samples: x, y [m] and angle [rad] (T, K, 3), their derivatives by the n
+    coordinates (T, K, 3, n), and their accelerations where the q'' are 0, (T, K, 3)."""
 
-    All arrays are over T samples; n are its own coordinates, K its own markers.
-    """
+    place: Array
+    gradient: Array
+    drift: Array
+
+
+class Body(Protocol):
+    """One body, or several that are worked out together, with a slice of the coordinates: its own
+    n, as its markers are its own K."""
 
     @property
     def size(self) -> int:
-        """n, how many coordinates it has."""
+        """n."""
 
-    def mark(self, q: Array, place: Array, gradient: Array) -> None:
-        """Write places (T, K, 3) of its markers, and their derivatives by q (T, K, 3, n), of which
-        whatever is not written is 0."""
+    def mark(self, q: Array, rates: Array) -> Marked:
+        """Its markers at coordinates and rates (T, n)."""
 
-    def drift(self, q: Array, rates: Array) -> Array:
-        """The accelerations of its markers where q'' is 0, (T, K, 3)."""
-
-    def mass(self, q: Array) -> Array:
-        """Its mass matrix (T, n, n)."""
-
-    def push(self, q: Array, rates: Array) -> Array:
-        """Weights, and what of inertia goes with the squares of rates, on the right side (T, n)."""
+    def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
+        """Its mass matrix (T, n, n); and, on the right side, its weight, what of inertia goes with
+        the squares of rates, and what it does if it is elastic, (T, n)."""
 
     def height_energy(self, q: Array) -> Array:
-        """The potential energy of its weight [J], (T,); with that of its elasticity, if it is
-        elastic."""
+        """The potential energy of its weight [J], (T,), and of its elasticity."""

@@ -57,8 +57,9 @@ class Dynamics:
 
     def _solved(self, time_s: Array, now: Configuration, pushed: Array) -> tuple[Array, Array]:
         assembly = self.assembly
-        jacobian, mass = assembly.jacobian(now), assembly.mass(now.q)
-        top = assembly.push(now.q, now.rates) + pushed
+        jacobian = assembly.jacobian(now)
+        mass, top = assembly.weigh(now.q, now.rates)
+        top += pushed
         bottom = assembly.gamma(now)
         if self.alpha or self.beta:
             open_rate = (jacobian @ now.rates[:, :, None])[:, :, 0]

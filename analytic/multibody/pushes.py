@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -48,7 +49,7 @@ class Pushes:
         self.assembly, self.scene = assembly, assembly.scene
         now = assembly.at_rest(start[None])
         self._turns = {
-            spring.name: float(np.round((self._turned(spring, now) - spring.free) / (2.0 * np.pi)))
+            spring.name: float(np.round((self._turned(spring, now)[0] - spring.free) / math.tau))
             for spring in self.scene.springs.values()
             if isinstance(spring, PinSpring)
         }
@@ -127,7 +128,7 @@ class Pushes:
             elif isinstance(spring, PinSpring):
                 first, second = (self.assembly.frames[body] for body in spring.bodies)
                 gradient = now.gradient[:, second, 2] - now.gradient[:, first, 2]
-                q = self._turned(spring, now) - 2.0 * np.pi * self._turns[spring.name]
+                q = self._turned(spring, now) - math.tau * self._turns[spring.name]
                 yield Stretch(spring, q, (gradient * now.rates).sum(axis=1), gradient)
             else:
                 slide = self.slide(spring.slider, now)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.multibody.body import Marked
 from models.array import Array
 from models.joints import block_name
 from models.scene import Point, Scene
@@ -46,70 +47,70 @@ class RigidBodies:
         markers: Sequence[tuple[int, Point, float]],
         gravity: Point,
     ) -> None:
-        self.size = 3 * len(bodies)
+        self.size = n = 3 * len(bodies)
         self._owner = np.array([body for body, _, _ in markers], dtype=int)
-        self._local = np.array([place for _, place, _ in markers], dtype=float).reshape(-1, 2)
-        self._ahead = np.array([angle for _, _, angle in markers])
-        self._row = np.arange(len(markers))
+        local = np.array([place for _, place, _ in markers]).reshape(-1, 2)
+        self._local_x, self._local_y = local.T
         each = list(bodies.values())
         self._mass = np.array([one.mass for one in each])
-        self._centre = np.array([one.centre for one in each]).reshape(-1, 2)
+        centre = np.array([one.centre for one in each]).reshape(-1, 2)
+        self._centre_x, self._centre_y = centre.T
+        self._gravity = gravity
+        # What does not depend on the coordinates, and the places of what does in flat arrays.
+        row, at = np.arange(len(markers)), 3 * self._owner
+        self._ahead = np.zeros((len(markers), 3))
+        self._ahead[:, 2] = [angle for _, _, angle in markers]
+        self._gradient = np.zeros((len(markers), 3, n))
+        for axis in range(3):
+            self._gradient[row, axis, at + axis] = 1.0
+        self._turned = np.concatenate([(3 * row + axis) * n + at + 2 for axis in (0, 1)])
+        x = 3 * np.arange(len(each))
+        y, turn = x + 1, x + 2
+        self._inertia = np.zeros((n, n))
+        self._inertia[x, x] = self._inertia[y, y] = self._mass
         # By the theorem of Steiner, about the origin of the frame.
-        self._moment = np.array([one.moment for one in each]) + self._mass * np.sum(
-            self._centre**2, axis=1
-        )
-        self._gravity = np.array(gravity)
-        self._first = 3 * np.arange(len(each))
+        moment = np.array([one.moment for one in each])
+        self._inertia[turn, turn] = moment + self._mass * np.sum(centre**2, axis=1)
+        self._coupled = np.concatenate([x * n + turn, turn * n + x, y * n + turn, turn * n + y])
 
-    def _frames(self, q: Array) -> Array:
-        return q.reshape(len(q), -1, 3)
-
-    def _arms(self, q: Array, owner: Array | slice, local: Array) -> tuple[Array, Array]:
-        """From the origin of the frame to places of bodies, x and y, (T, K)."""
-        theta = self._frames(q)[:, owner, 2]
-        c, s = np.cos(theta), np.sin(theta)
-        x, y = local[:, 0], local[:, 1]
-        return c * x - s * y, s * x + c * y
-
-    def mark(self, q: Array, place: Array, gradient: Array) -> None:
-        arm_x, arm_y = self._arms(q, self._owner, self._local)
-        place[:] = self._frames(q)[:, self._owner]
+    def mark(self, q: Array, rates: Array) -> Marked:
+        count, owner = len(q), self._owner
+        theta = q[:, 2::3]
+        c, s = np.cos(theta)[:, owner], np.sin(theta)[:, owner]
+        arm_x = c * self._local_x - s * self._local_y
+        arm_y = s * self._local_x + c * self._local_y
+        place = q.reshape(count, -1, 3)[:, owner] + self._ahead
         place[:, :, 0] += arm_x
         place[:, :, 1] += arm_y
-        place[:, :, 2] += self._ahead
-        row, at = self._row, 3 * self._owner
-        gradient[:, row, 0, at] = gradient[:, row, 1, at + 1] = gradient[:, row, 2, at + 2] = 1.0
-        gradient[:, row, 0, at + 2] = -arm_y
-        gradient[:, row, 1, at + 2] = arm_x
+        gradient = np.repeat(self._gradient[None], count, axis=0)
+        gradient.reshape(count, -1)[:, self._turned] = np.concatenate([-arm_y, arm_x], axis=1)
+        square = (rates[:, 2::3] ** 2)[:, owner]
+        drift = np.zeros_like(place)
+        drift[:, :, 0], drift[:, :, 1] = -square * arm_x, -square * arm_y
+        return Marked(place, gradient, drift)
 
-    def drift(self, q: Array, rates: Array) -> Array:
-        square = rates.reshape(len(q), -1, 3)[:, self._owner, 2] ** 2
-        arm_x, arm_y = self._arms(q, self._owner, self._local)
-        towards = np.zeros((*square.shape, 3))
-        towards[:, :, 0], towards[:, :, 1] = -square * arm_x, -square * arm_y
-        return towards
+    def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
+        count = len(q)
+        first_x, first_y = (self._mass * arm for arm in self._arms(q))  # moments of first order
+        matrix = np.repeat(self._inertia[None], count, axis=0)
+        matrix.reshape(count, -1)[:, self._coupled] = np.concatenate(
+            [-first_y, -first_y, first_x, first_x], axis=1
+        )
+        square, (g_x, g_y) = rates[:, 2::3] ** 2, self._gravity
+        right = np.empty((count, self.size))
+        right[:, 0::3] = self._mass * g_x + square * first_x
+        right[:, 1::3] = self._mass * g_y + square * first_y
+        right[:, 2::3] = first_x * g_y - first_y * g_x
+        return matrix, right
 
-    def mass(self, q: Array) -> Array:
-        arm_x, arm_y = self._arms(q, slice(None), self._centre)
-        matrix, x = np.zeros((len(q), self.size, self.size)), self._first
-        y, turn = x + 1, x + 2
-        matrix[:, x, x] = matrix[:, y, y] = self._mass
-        matrix[:, x, turn] = matrix[:, turn, x] = -self._mass * arm_y
-        matrix[:, y, turn] = matrix[:, turn, y] = self._mass * arm_x
-        matrix[:, turn, turn] = self._moment
-        return matrix
-
-    def push(self, q: Array, rates: Array) -> Array:
-        arm_x, arm_y = self._arms(q, slice(None), self._centre)
-        square = rates[:, 2::3] ** 2
-        g_x, g_y = self._gravity
-        right = np.empty((len(q), self.size))
-        right[:, 0::3] = self._mass * (g_x + square * arm_x)
-        right[:, 1::3] = self._mass * (g_y + square * arm_y)
-        right[:, 2::3] = self._mass * (arm_x * g_y - arm_y * g_x)
-        return right
+    def _arms(self, q: Array) -> tuple[Array, Array]:
+        """From the origin of each frame to the centre of mass, x and y, (T, B)."""
+        theta = q[:, 2::3]
+        c, s = np.cos(theta), np.sin(theta)
+        x, y = self._centre_x, self._centre_y
+        return c * x - s * y, s * x + c * y
 
     def height_energy(self, q: Array) -> Array:
-        arm_x, arm_y = self._arms(q, slice(None), self._centre)
+        arm_x, arm_y = self._arms(q)
         lifted = (q[:, 0::3] + arm_x) * self._gravity[0] + (q[:, 1::3] + arm_y) * self._gravity[1]
         return np.asarray(-lifted @ self._mass)

@@ -43,6 +43,16 @@ class _Steps:
 
 
 @dataclass(frozen=True)
+class _Crossing:
+    """When a switch is gone over, the cells of all after it, and whose switch it is."""
+
+    at_s: float
+    cells: Array
+    load: str
+    slider: str
+
+
+@dataclass(frozen=True)
 class Adaptive:
     """Integrates with steps of a size that keeps to a tolerance, over the largest of what a
     coordinate has been and its unit; ``projected`` back onto the constraints after each."""
@@ -94,30 +104,40 @@ class Adaptive:
         while solver.status == "running":
             before_s, before = float(solver.t), solver.y
             self._step(solver, len(steps.times))
-            arrived = self._cells(own, solver.y)
-            if not np.array_equal(arrived, cells):
-                crossing = self._crossing(own, cells, arrived, solver)
-                if crossing is not None:
-                    number, cell, at_s = crossing
-                    if at_s > before_s:
-                        whole = float(solver.t) - before_s
-                        solver = self._solver(
-                            before_s, at_s, before, strokes(own, cells), at_s - before_s
-                        )
-                        while solver.status == "running":
-                            self._step(solver, len(steps.times))
-                            self._take(steps, solver)
-                        before = solver.y
-                    else:
-                        whole = float(solver.t) - before_s
-                    cells = cells.copy()
-                    cells[number] = cell
-                    if at_s < end:
-                        solver = self._solver(at_s, end, before, strokes(own, cells), whole)
-                    continue
-                cells = arrived
-            self._take(steps, solver)
+            crossing = self._crossing(own, cells, solver)
+            if crossing is None:
+                self._take(steps, solver)
+                continue
+            # Once more, up to the crossing alone; on from there with the step as it was.
+            first_s = float(solver.t) - before_s
+            if crossing.at_s > before_s:
+                solver = self._solver(
+                    before_s, crossing.at_s, before, strokes(own, cells), crossing.at_s - before_s
+                )
+                while solver.status == "running":
+                    self._step(solver, len(steps.times))
+                    self._take(steps, solver)
+                before_s, before = float(solver.t), solver.y
+                cells = crossing.cells
+            else:
+                first_s = self._shortened(crossing, first_s)
+            if before_s < end:
+                solver = self._solver(before_s, end, before, strokes(own, cells), first_s)
         return solver.y, cells
+
+    def _shortened(self, crossing: _Crossing, step_s: float) -> float:
+        """A shorter step from the turn of a slider on, within which it may not turn back.
+
+        Raises CrankcheckError for one that turns back at once: a load that comes on with its stroke
+        drives it back, and it is held where it is.
+        """
+        if step_s > 1e-9 * max(crossing.at_s, 1e-3):
+            return 0.1 * step_s
+        raise CrankcheckError(
+            f"{self.dynamics.assembly.scene.name}: at {crossing.at_s:g} s "
+            f"loads.{crossing.load} holds slider {crossing.slider} in place: it drives it back as "
+            "soon as the stroke begins; let it act on both strokes, or over the displacement"
+        )
 
     def _solver(
         self, begin: float, end: float, state: Array, own: Strokes, first_s: float | None
@@ -163,31 +183,30 @@ class Adaptive:
             solver.y = np.concatenate([q, rates, solver.y[2 * n :]])
 
     def _crossing(
-        self, own: tuple[Switch, ...], cells: Array, arrived: Array, solver: DOP853
-    ) -> tuple[int, int, float] | None:
-        """The switch that the last step goes over first, the cell after it, and when."""
-        within = solver.dense_output()
-        found: list[tuple[float, int, int]] = []
-        for number, switch in enumerate(own):
-            up = arrived[number] > cells[number]
-            if arrived[number] == cells[number]:
-                continue
-            cell = int(cells[number]) + (1 if up else -1)
-            kink = switch.begin(cell if up else cell + 1)
+        self, own: tuple[Switch, ...], cells: Array, solver: DOP853
+    ) -> _Crossing | None:
+        """The switch that the last step goes over first; ``at_s`` is the start of the step for a
+        slider that turned there, and is on its way back at the end."""
+        found: list[_Crossing] = []
+        arrived = self._cells(own, solver.y)
+        within = None if np.array_equal(arrived, cells) else solver.dense_output()
+        for number in np.flatnonzero(arrived != cells):
+            switch, up = own[number], arrived[number] > cells[number]
+            after = cells.copy()
+            after[number] += 1 if up else -1
+            kink = switch.begin(int(max(cells[number], after[number])))
 
             def beyond(time_s: float, switch: Switch = switch, kink: float = kink) -> float:
                 return self._coordinate(switch, within(time_s)) - kink
 
-            begin, end = beyond(solver.t_old), beyond(solver.t)
-            if (begin < 0.0) == (end < 0.0) or begin == 0.0:
-                at_s = float(solver.t_old)  # it has begun on the kink, as it is known
-            else:
+            at_s, begin, end = float(solver.t_old), beyond(solver.t_old), beyond(solver.t)
+            if begin * end < 0.0:
                 at_s = float(brentq(beyond, solver.t_old, solver.t, xtol=1e-15, rtol=1e-15))
-            found.append((at_s, number, cell))
-        if not found:
-            return None
-        at_s, number, cell = min(found)
-        return number, cell, at_s
+            elif not switch.turning:  # from the kink on, whose side was rounding
+                cells[number] = arrived[number]
+                continue
+            found.append(_Crossing(at_s, after, switch.load.name, str(switch.load.slider)))
+        return min(found, key=lambda one: one.at_s, default=None)
 
 
 @dataclass(frozen=True)
