@@ -23,7 +23,7 @@ import numpy as np
 from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from analytic.check.constraints import Constraints
 from analytic.check.friction import rubbing_samples, turning
-from analytic.multibody.reactions import reactions
+from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.errors import CrankcheckError
 from models.forces import Forces
@@ -76,13 +76,7 @@ def _settled(scene: Scene, system: Equations, motion: Motion) -> Forces:
                 pushed[:, at : at + 2] += force
                 pushed[:, at + 2] += torque + turning(bodies[name], own.place, force)
         multipliers = replace(system, applied=pushed).multipliers()
-        found = reactions(
-            scene,
-            system.constraints.pin_pairs(),
-            motion.time_s,
-            -multipliers[:, :-1],
-            -multipliers[:, -1],
-        )
+        found = reactions(scene, system.constraints, motion.time_s, -multipliers)
         before = friction
         friction = {joint: own.friction(scene, joint, found) for joint, own in joints.items()}
         change = [np.abs(friction[joint] - before[joint]) for joint in joints]
@@ -165,3 +159,9 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
     mass_matrix[:, at + 1, at + 2] = mass_matrix[:, at + 2, at + 1] = mass * arm[:, 0]
     mass_matrix[:, at + 2, at + 2] = body.inertia + mass * np.sum(arm**2, axis=1)
     right[:, at : at + 2] += mass * body.omega[:, None] ** 2 * arm
+
+
+def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
+    """What the multipliers mean: pushes along the gradients of the equations, in their order, the
+    driver's last."""
+    return joint_forces(scene, system.pin_pairs(), time_s, pushes[:, :-1], pushes[:, -1])

@@ -9,17 +9,15 @@ from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 
 
-def as_motion(
-    assembly: Assembly, time_s: Array, now: Configuration, seconds: Array
-) -> Motion:
+def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Array) -> Motion:
     """The motion at times [s] (T,), with accelerations q'' (T, n)."""
     flat = now.gradient.reshape(len(time_s), -1, assembly.size)
     gained = (flat @ seconds[:, :, None]).reshape(now.drift.shape) + now.drift
     scene = assembly.scene
     links = {
-        name: LinkMotion(*(own[:, assembly.frames[name], 2] for own in (
-            now.place, now.velocity, gained
-        )))
+        name: LinkMotion(
+            *(own[:, assembly.frames[name], 2] for own in (now.place, now.velocity, gained))
+        )
         for name in scene.links
     }
     points = {

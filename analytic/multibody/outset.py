@@ -250,9 +250,9 @@ class Outset:
     def freedoms(self, q: Array) -> Array:
         """Directions of q that all joints allow, one a row, each of the largest entry 1 in the
         units of coordinates, (f, n)."""
-        _, sizes, directions = np.linalg.svd(self._scaled(self.assembly.jacobian(
-            self.assembly.at_rest(q[None])
-        )[0]))
+        _, sizes, directions = np.linalg.svd(
+            self._scaled(self.assembly.jacobian(self.assembly.at_rest(q[None]))[0])
+        )
         rank = int((sizes > INDEPENDENT).sum())
         free = directions[rank:]
         return np.asarray(free / np.abs(free).max(axis=1, keepdims=True) * self.units)

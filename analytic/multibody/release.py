@@ -13,7 +13,7 @@ from analytic.multibody.assembly import Assembly, Configuration
 from analytic.multibody.dynamics import Dynamics, Energies
 from analytic.multibody.outset import Outset
 from analytic.multibody.pushes import Pushes
-from analytic.multibody.reactions import reactions
+from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.stepping import Adaptive, Course, FixedSteps
 from models.array import Array
 from models.errors import CrankcheckError
@@ -92,7 +92,7 @@ class MultibodyMotion:
         for some, now, _ in self._configurations(instants):
             seconds, multipliers = self._dynamics.solve(some, now)
             motion = as_motion(self.dynamics.assembly, some, now, seconds)
-            forces = reactions(
+            forces = joint_forces(
                 self.scene, self.dynamics.assembly.pin_pairs(), some, -multipliers,
                 np.zeros_like(some),
             )  # fmt: skip
@@ -111,8 +111,7 @@ class MultibodyMotion:
         """The energies at times [s], (T,)."""
         instants = samples(time_s, "time_s")
         parts = [
-            self.dynamics.energies(now, work)
-            for _, now, work in self._configurations(instants)
+            self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
         ]
         return Energies(
             *(np.concatenate(own) for own in zip(*(vars(p).values() for p in parts), strict=True))

@@ -182,9 +182,7 @@ class Adaptive:
             q, rates = self.dynamics.closed(solver.y[:n], solver.y[n : 2 * n])
             solver.y = np.concatenate([q, rates, solver.y[2 * n :]])
 
-    def _crossing(
-        self, own: tuple[Switch, ...], cells: Array, solver: DOP853
-    ) -> _Crossing | None:
+    def _crossing(self, own: tuple[Switch, ...], cells: Array, solver: DOP853) -> _Crossing | None:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a
         slider that turned there, and is on its way back at the end."""
         found: list[_Crossing] = []

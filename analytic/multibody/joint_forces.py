@@ -9,7 +9,7 @@ from models.forces import Forces, SliderForces
 from models.scene import Scene
 
 
-def reactions(
+def joint_forces(
     scene: Scene,
     pin_pairs: Iterable[tuple[str, str, str]],
     time_s: Array,
