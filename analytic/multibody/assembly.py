@@ -21,7 +21,7 @@ import numpy as np
 
 from analytic.multibody.body import Body
 from analytic.multibody.rigid import RigidBodies, inertias
-from models.array import Array
+from models.array import Array, Mask
 from models.joints import joined_at, local_point, sliding_angle, sliding_body
 from models.scene import GROUND, Point, Scene, Slider
 
@@ -39,9 +39,9 @@ class Configuration:
     velocity: Array
     drift: Array
 
-    def point(self, marker: int) -> tuple[Array, Array]:
-        """Position and velocity of a marker, (T, 2)."""
-        return self.place[:, marker, :2], self.velocity[:, marker, :2]
+    def some(self, samples: Mask) -> Configuration:
+        """Those of some of the samples."""
+        return Configuration(*(own[samples] for own in vars(self).values()))
 
 
 @dataclass
@@ -239,6 +239,21 @@ class Assembly:
         for part, own, _ in self.parts:
             matrix[:, own, own], right[:, own] = part.weigh(q[:, own], rates[:, own])
         return matrix, right
+
+    @property
+    def units(self) -> Array:
+        """What each coordinate counts as one of: the longest link [m], or a radian."""
+        unit = np.ones(self.size)
+        for at in self.at.values():
+            unit[at : at + 2] = self.scene.longest_m
+        return unit
+
+    def scaled(self, rows: Array) -> Array:
+        """Rows of derivatives by coordinates (m, n) that count in their units, each of the largest
+        entry 1."""
+        scaled = rows * self.units
+        size = np.abs(scaled).max(axis=1, keepdims=True, initial=0.0)
+        return np.asarray(scaled / np.where(size > 0.0, size, 1.0))
 
     def mass(self, q: Array) -> Array:
         """The mass matrix alone."""

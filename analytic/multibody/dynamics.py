@@ -19,6 +19,8 @@ from analytic.multibody.saddle import Saddle
 from models.array import Array
 from models.errors import CrankcheckError
 
+WEAK = 1e-2
+"""A singular value over the largest below which, in a change point, it counts as 0."""
 MOST_PROJECTIONS = 20
 NEAR = 1e-9
 """A step of a projection, over the longest link or in radians, whose square is below rounding."""
@@ -41,14 +43,19 @@ class Energies:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """An assembly that nothing drives, with what acts on it; ``redundant`` if some of its
-    constraints follow from others; ``alpha``, ``beta`` [1/s] of Baumgarte."""
+    """An assembly that nothing drives, with what acts on it; ``rank`` is how many of its
+    constraints do not follow from others; ``alpha``, ``beta`` [1/s] of Baumgarte."""
 
     assembly: Assembly
     pushes: Pushes
-    redundant: bool = False
+    rank: int
     alpha: float = 0.0
     beta: float = 0.0
+
+    @property
+    def redundant(self) -> bool:
+        """Whether some of the constraints follow from others."""
+        return self.rank < self.assembly.equations
 
     def solve(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
         """q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where they
@@ -69,6 +76,14 @@ class Dynamics:
             saddle = self._saddle(mass[i], jacobian[i], float(time_s[i]))
             seconds[i], multipliers[i] = saddle.solve(top[i], bottom[i])
         return seconds, multipliers
+
+    def multipliers(self, time_s: Array, now: Configuration, seconds: Array) -> Array:
+        """The multipliers (T, m) that go with accelerations q'' (T, n), the smallest ones."""
+        mass, right = self.assembly.weigh(now.q, now.rates)
+        right += self.pushes.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
+        rows = np.swapaxes(self.assembly.jacobian(now), 1, 2)
+        each = zip(rows, right, strict=True)
+        return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
 
     def _saddle(self, mass: Array, jacobian: Array, time_s: float) -> Saddle:
         try:

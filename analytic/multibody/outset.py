@@ -165,7 +165,7 @@ class Outset:
     def _closed(self, rough: Array, counting: list[str]) -> Array:
         """Newton's method from a rough position, by least squares. Raises CrankcheckError."""
         assembly, q = self.assembly, rough
-        unit, last = self.units, math.inf
+        unit, last = self.assembly.units, math.inf
         for _ in range(MOST_STEPS):
             now = assembly.at_rest(q[None])
             rows, left = [assembly.jacobian(now)[0]], [assembly.gaps(now)[0]]
@@ -222,40 +222,26 @@ class Outset:
             )
         return rates
 
-    @property
-    def units(self) -> Array:
-        """What a coordinate counts as one of: the longest link, or a radian."""
-        unit = np.ones(self.assembly.size)
-        for at in self.assembly.at.values():
-            unit[at : at + 2] = self.assembly.scene.longest_m
-        return unit
-
-    def _scaled(self, rows: Array) -> Array:
-        """Rows by coordinates that count in their units, each of the size 1."""
-        scaled = rows * self.units
-        size = np.abs(scaled).max(axis=1, keepdims=True, initial=0.0)
-        return np.asarray(scaled / np.where(size > 0.0, size, 1.0))
-
     def _rank(self, rows: Array) -> int:
-        return int(np.linalg.matrix_rank(self._scaled(rows), tol=INDEPENDENT))
+        return int(np.linalg.matrix_rank(self.assembly.scaled(rows), tol=INDEPENDENT))
 
     def _least(self, rows: Array, right: Array) -> Array:
         """The smallest of the solutions, or of the nearest to one."""
-        scaled = rows * self.units
+        scaled = rows * self.assembly.units
         size = np.abs(scaled).max(axis=1, initial=0.0)
         size[size == 0.0] = 1.0
         found = np.linalg.lstsq(scaled / size[:, None], right / size, rcond=INDEPENDENT)[0]
-        return np.asarray(found * self.units)
+        return np.asarray(found * self.assembly.units)
 
     def freedoms(self, q: Array) -> Array:
         """Directions of q that all joints allow, one a row, each of the largest entry 1 in the
         units of coordinates, (f, n)."""
         _, sizes, directions = np.linalg.svd(
-            self._scaled(self.assembly.jacobian(self.assembly.at_rest(q[None]))[0])
+            self.assembly.scaled(self.assembly.jacobian(self.assembly.at_rest(q[None]))[0])
         )
         rank = int((sizes > INDEPENDENT).sum())
         free = directions[rank:]
-        return np.asarray(free / np.abs(free).max(axis=1, keepdims=True) * self.units)
+        return np.asarray(free / np.abs(free).max(axis=1, keepdims=True) * self.assembly.units)
 
 
 class _Placing:

@@ -12,10 +12,11 @@ from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly, Configuration
 from analytic.multibody.dynamics import Dynamics, Energies
 from analytic.multibody.outset import Outset
+from analytic.multibody.passage import Passage
 from analytic.multibody.pushes import Pushes
 from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.stepping import Adaptive, Course, FixedSteps
-from models.array import Array
+from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Motion, State
 from models.samples import samples
@@ -90,7 +91,7 @@ class MultibodyMotion:
         instants = samples(time_s, "time_s")
         parts = []
         for some, now, _ in self._configurations(instants):
-            seconds, multipliers = self._dynamics.solve(some, now)
+            seconds, multipliers = self._solved(some, now)
             motion = as_motion(self.dynamics.assembly, some, now, seconds)
             forces = joint_forces(
                 self.scene, self.dynamics.assembly.pin_pairs(), some, -multipliers,
@@ -98,6 +99,36 @@ class MultibodyMotion:
             )  # fmt: skip
             parts.append(replace(motion, forces=forces))
         return _joined(parts)
+
+    @property
+    def change_points_s(self) -> tuple[float, ...]:
+        """When it has gone through a change point [s]."""
+        return tuple(passage.at_s for passage in self._course.passages)
+
+    def _passing(self, time_s: Array) -> Iterator[tuple[Passage, Mask]]:
+        """The passages through change points, and which of the times [s] are in each."""
+        for passage in self._course.passages:
+            yield passage, (passage.begin_s < time_s) & (time_s < passage.end_s)
+
+    def _solved(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
+        """q'' (T, n) and the multipliers (T, m); in a change point, where the equations do not say
+        them, those of the motion before and after it, and the smallest multipliers."""
+        n, passed = now.q.shape[1], np.zeros(len(time_s), dtype=bool)
+        for _, within in self._passing(time_s):
+            passed |= within
+        if not passed.any():
+            return self._dynamics.solve(time_s, now)
+        seconds = np.empty_like(now.q)
+        multipliers = np.empty((len(time_s), self.dynamics.assembly.equations))
+        if not passed.all():
+            found = self._dynamics.solve(time_s[~passed], now.some(~passed))
+            seconds[~passed], multipliers[~passed] = found
+        for passage, within in self._passing(time_s):
+            seconds[within] = passage.slope(time_s[within])[n : 2 * n].T
+        multipliers[passed] = self._dynamics.multipliers(
+            time_s[passed], now.some(passed), seconds[passed]
+        )
+        return seconds, multipliers
 
     @property
     def _dynamics(self) -> Dynamics:
@@ -138,11 +169,14 @@ class MultibodyMotion:
         at_once = max(1, MOST_NUMBERS // (3 * n * assembly.markers))
         for first in range(0, len(time_s), at_once):
             some = time_s[first : first + at_once]
-            state = self._course(np.minimum(some, self.until_s)).T
+            state = self._course.state(np.minimum(some, self.until_s)).T
             q, rates = state[:, :n], state[:, n : 2 * n]
             if isinstance(self.method, Projection):  # between steps too
-                closed = [self.dynamics.closed(*each) for each in zip(q, rates, strict=True)]
-                q, rates = (np.array(own) for own in zip(*closed, strict=True))
+                passed = np.zeros(len(some), dtype=bool)
+                for _, within in self._passing(some):
+                    passed |= within
+                for i in np.flatnonzero(~passed):
+                    q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
             yield some, assembly.at_rates(q, rates), state[:, -1]
 
     def sensitivity(self, time_s: Array) -> Array:
@@ -156,12 +190,12 @@ class MultibodyMotion:
         rough, outset = Projection(1e-10), Outset(self.dynamics.assembly)
         q, rates = self.start
         n = len(q)
-        near = self._integrated(q, rates, rough)(time_s)[:n]
+        near = self._integrated(q, rates, rough).state(time_s)[:n]
         growth = np.ones(LOOKS)
         for direction in outset.freedoms(q):
             nudged = self.dynamics.closed(q + NUDGE * direction, rates)
-            far = self._integrated(*nudged, rough)(time_s)[:n]
-            grown = np.abs((far - near) / outset.units[:, None]).max(axis=0) / NUDGE
+            far = self._integrated(*nudged, rough).state(time_s)[:n]
+            grown = np.abs((far - near) / self.dynamics.assembly.units[:, None]).max(axis=0) / NUDGE
             growth = np.maximum(growth, grown)
         return time_s, np.maximum.accumulate(growth)
 
@@ -239,18 +273,15 @@ def _ready(scene: Scene, near: State | None) -> tuple[Dynamics, Array, Array]:
         )
     assembly = Assembly(scene)
     q, rates = Outset(assembly).find(near)
-    dynamics = Dynamics(assembly, Pushes(assembly, q))
-    return replace(dynamics, redundant=_redundant(dynamics, q)), q, rates
+    free = Outset(assembly).freedoms(q)
+    dynamics = Dynamics(assembly, Pushes(assembly, q), assembly.size - len(free))
+    _check_start(dynamics, q, free)
+    return dynamics, q, rates
 
 
-def _redundant(dynamics: Dynamics, q: Array) -> bool:
-    """Whether constraints follow from others, in the start and beside it.
-
-    Raises CrankcheckError for a start in a change point, and for a freedom without mass.
-    """
-    assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
-    free = outset.freedoms(q)
-    count = len(free)
+def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
+    """Raises CrankcheckError for a start in a change point, and for a freedom without mass."""
+    assembly, count = dynamics.assembly, len(free)
     if count == 0:
         raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
     mass = assembly.mass(q[None])[0]
@@ -260,20 +291,18 @@ def _redundant(dynamics: Dynamics, q: Array) -> bool:
             f"{assembly.scene.name}: {int((masses <= LIGHT * masses[-1]).sum()) or 1} of its "
             f"{count} freedoms moves nothing that has a mass; give links or sliders a mass"
         )
-    redundant = assembly.equations > assembly.size - count
-    if redundant and _freer(dynamics, outset, q, free):
+    if dynamics.redundant and _freer(dynamics, q, free):
         raise CrankcheckError(
             f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
             "several ways, and its accelerations are not determined; let it go beside it"
         )
-    return redundant
 
 
-def _freer(dynamics: Dynamics, outset: Outset, q: Array, free: Array) -> bool:
+def _freer(dynamics: Dynamics, q: Array, free: Array) -> bool:
     """Whether a position has more freedoms than those next to it."""
-    softened = replace(dynamics, redundant=True)
+    outset = Outset(dynamics.assembly)
     for direction in free:
-        beside, _ = softened.closed(q + 1e-3 * direction, np.zeros_like(q))
+        beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
         if len(outset.freedoms(beside)) < len(free):
             return True
     return False

@@ -8,6 +8,7 @@ II, VII.2 (projection); the same and S. P. Norsett, I, II.5 (the method of order
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,28 +19,43 @@ from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.passage import Passage, passage_ahead
 from analytic.multibody.pushes import Strokes
 from analytic.multibody.switches import Switch, edges, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
 
-Course = Callable[[Array], Array]
-"""The state at times [s], (2 n + 1, T)."""
 LARGEST = 1e12
 """Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
 MOST_STEPS = 1_000_000
 
 
+@dataclass(frozen=True)
+class Course:
+    """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
+
+    state: Callable[[Array], Array]
+    steps: int
+    passages: tuple[Passage, ...] = ()
+
+
 @dataclass
 class _Steps:
-    """The steps of an integration: the times between them, and what is within."""
+    """The steps of an integration: the times between them, and what is within; ``clear_s`` is the
+    time since which nothing has jumped."""
 
     times: list[float]
-    within: list[object] = field(default_factory=list)
+    within: list[Callable[[Array], Array]] = field(default_factory=list)
+    passages: list[Passage] = field(default_factory=list)
+    clear_s: float = 0.0
 
-    def add(self, solver: DOP853) -> None:
-        self.times.append(float(solver.t))
-        self.within.append(solver.dense_output())
+    def add(self, end_s: float, within: Callable[[Array], Array]) -> None:
+        self.times.append(end_s)
+        self.within.append(within)
+
+    @property
+    def solution(self) -> OdeSolution:
+        return OdeSolution(self.times, self.within)
 
 
 @dataclass(frozen=True)
@@ -68,10 +84,9 @@ class Adaptive:
         steps = _Steps([0.0])
         times = edges(pushes, until_s)
         cells = self._first_cells(own, state)
-        for begin, end in zip(times, times[1:], strict=False):
+        for begin, end in itertools.pairwise(times):
             state, cells = self._stretch(steps, own, cells, begin, end, state)
-        solution = OdeSolution(steps.times, steps.within)
-        return lambda time_s: np.asarray(solution(time_s))
+        return Course(steps.solution, len(steps.within), tuple(steps.passages))
 
     def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
         """The cells in which the switches are as the motion starts, or into which it moves."""
@@ -101,12 +116,14 @@ class Adaptive:
     ) -> tuple[Array, Array]:
         """Integrate between two edges over time; the state and the cells at the end."""
         solver = self._solver(begin, end, state, strokes(own, cells), None)
+        steps.clear_s = begin
         while solver.status == "running":
             before_s, before = float(solver.t), solver.y
             self._step(solver, len(steps.times))
             crossing = self._crossing(own, cells, solver)
             if crossing is None:
                 self._take(steps, solver)
+                solver = self._passed(steps, solver, strokes(own, cells))
                 continue
             # Once more, up to the crossing alone; on from there with the step as it was.
             first_s = float(solver.t) - before_s
@@ -121,9 +138,26 @@ class Adaptive:
                 cells = crossing.cells
             else:
                 first_s = self._shortened(crossing, first_s)
+            steps.clear_s = before_s
             if before_s < end:
                 solver = self._solver(before_s, end, before, strokes(own, cells), first_s)
         return solver.y, cells
+
+    def _passed(self, steps: _Steps, solver: DOP853, own: Strokes) -> DOP853:
+        """The integration on the other side of a change point, if one is just ahead."""
+        if not self.projected or solver.status != "running":
+            return solver
+        passage = passage_ahead(self.dynamics, steps.solution, steps.clear_s, float(solver.t))
+        if passage is None or passage.end_s >= solver.t_bound:
+            return solver
+        n = self.dynamics.assembly.size
+        state = passage.state(np.array([passage.end_s]))[:, 0]
+        q, rates = self.dynamics.closed(state[:n], state[n : 2 * n])
+        steps.add(passage.end_s, passage.state)
+        steps.passages.append(passage)
+        steps.clear_s = passage.end_s
+        state = np.concatenate([q, rates, state[2 * n :]])
+        return self._solver(passage.end_s, float(solver.t_bound), state, own, None)
 
     def _shortened(self, crossing: _Crossing, step_s: float) -> float:
         """A shorter step from the turn of a slider on, within which it may not turn back.
@@ -156,11 +190,8 @@ class Adaptive:
 
     def _units(self) -> Array:
         """What a coordinate, a rate and the work count as one of."""
-        longest = self.dynamics.assembly.scene.longest_m
-        own = np.ones(self.dynamics.assembly.size)
-        for at in self.dynamics.assembly.at.values():
-            own[at : at + 2] = longest
-        return np.concatenate([own, own, [longest**2]])
+        own = self.dynamics.assembly.units
+        return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m ** 2]])
 
     def _step(self, solver: DOP853, count: int) -> None:
         name = self.dynamics.assembly.scene.name
@@ -176,7 +207,7 @@ class Adaptive:
 
     def _take(self, steps: _Steps, solver: DOP853) -> None:
         """Keep a step, and put the state back onto the constraints."""
-        steps.add(solver)
+        steps.add(float(solver.t), solver.dense_output())
         if self.projected:
             n = self.dynamics.assembly.size
             q, rates = self.dynamics.closed(solver.y[:n], solver.y[n : 2 * n])
@@ -187,7 +218,9 @@ class Adaptive:
         slider that turned there, and is on its way back at the end."""
         found: list[_Crossing] = []
         arrived = self._cells(own, solver.y)
-        within = None if np.array_equal(arrived, cells) else solver.dense_output()
+        if np.array_equal(arrived, cells):
+            return None
+        within = solver.dense_output()
         for number in np.flatnonzero(arrived != cells):
             switch, up = own[number], arrived[number] > cells[number]
             after = cells.copy()
@@ -221,7 +254,7 @@ class FixedSteps:
         state = np.concatenate([q, rates, [0.0]])
         times, states, slopes = [], [], []
         edge = edges(self.dynamics.pushes, until_s)
-        for begin, end in zip(edge, edge[1:], strict=False):
+        for begin, end in itertools.pairwise(edge):
             count = max(1, math.ceil((end - begin) / self.step_s * (1.0 - 1e-9)))
             h, last = (end - begin) / count, math.nextafter(end, begin)
             for i in range(count):
@@ -238,7 +271,7 @@ class FixedSteps:
         states.append(state)
         slopes.append(self.dynamics.rates(until_s, state, held))
         spline = CubicHermiteSpline(np.array(times), np.array(states), np.array(slopes))
-        return lambda time_s: np.asarray(spline(time_s).T)
+        return Course(lambda time_s: np.asarray(spline(time_s).T), len(times) - 1)
 
     def _cells(self, own: tuple[Switch, ...], state: Array) -> Array:
         assembly = self.dynamics.assembly
