@@ -25,9 +25,9 @@ from analytic.dyads.riding import (
     without_lead,
 )
 from analytic.structure.groups import Bridge, Group
-from analytic.structure.mobility import Structure, sliding_body
+from analytic.structure.mobility import Structure
 from models.array import Array
-from models.joints import less, turned
+from models.joints import less, sliding_body, turned
 from models.scene import GROUND, Scene
 
 

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 from mpmath import matrix, mp, mpf
 
-from analytic.structure.mobility import sliding_body
 from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
-from models.joints import block_name, local_point
+from models.joints import block_name, local_point, sliding_body
 from models.loads import Load
 from models.scene import GROUND, Point, Scene
 from tests.analytic.chain import Solved, law_at
