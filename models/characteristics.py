@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -188,6 +189,7 @@ class Tabulated(Characteristic):
     def kinks(self) -> tuple[float, ...]:
         return self.places
 
+    @cached_property  # asked for at every step of an engine
     def _knots(self) -> tuple[Array, Array]:
         """Places and values, those of a period closed by the first row of the next."""
         x, y = np.array(self.places), np.array(self.values)
@@ -195,14 +197,18 @@ class Tabulated(Characteristic):
             x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
         return x, y
 
+    @cached_property  # as the knots
+    def _slopes(self) -> Array:
+        return slopes(*self._knots, closed=self.period is not None)
+
     def at(self, x: Array) -> Array:
-        knots, values = self._knots()
+        knots, values = self._knots
         if self.period is None:
             self._check_within(x)
         x = np.clip(self._folded(x), knots[0], knots[-1])
         if self.interpolation == "linear":
             return np.interp(x, knots, values)
-        return spline(x, knots, values, slopes(knots, values, closed=self.period is not None))
+        return spline(x, knots, values, self._slopes)
 
     def _folded(self, x: Array) -> Array:
         """``x`` without whole periods."""
@@ -215,16 +221,17 @@ class Tabulated(Characteristic):
 
     def _check_within(self, x: Array) -> None:
         first, last = self.places[0], self.places[-1]
-        off = np.maximum(first - x, x - last)
-        k = int(np.nanargmax(off)) if np.any(off == off) else 0
-        if off[k] > END * (last - first):
+        slack = END * (last - first)
+        off = (x < first - slack) | (x > last + slack)
+        if off.any():
+            beyond = np.where(off, np.maximum(first - x, x - last), 0.0)
             raise ValueError(
-                f"the table goes from {first:g} to {last:g}, and {x[k]:g} is asked for; give it "
-                "rows up to there"
+                f"the table goes from {first:g} to {last:g}, and {x[np.argmax(beyond)]:g} is asked "
+                "for; give it rows up to there"
             )
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
-        knots, values = self._knots()
+        knots, values = self._knots
         # A cubic without overshoot is nowhere steeper than three times its chord.
         factor = 1.0 if self.interpolation == "linear" else 3.0
         steep = factor * np.abs(np.diff(values) / np.diff(knots))
@@ -237,7 +244,7 @@ class Tabulated(Characteristic):
         return np.where(over, np.max(steep), near)
 
     def rounding(self, x: Array) -> Array | float:
-        knots, values = self._knots()
+        knots, values = self._knots
         sizes = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
         # Whole periods are taken off the argument, and one is added to the first place.
         reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)
