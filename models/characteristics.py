@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -29,6 +30,10 @@ class Characteristic(ABC):
     @abstractmethod
     def at(self, x: Array) -> Array:
         """The magnitude, shape of ``x``. Raises ValueError where there is none."""
+
+    def at_one(self, x: float) -> float:
+        """As `at`, to the bit, of one place: what an engine asks for at every step."""
+        return float(self.at(np.array([x]))[0])
 
     def nearest(self, x: float) -> float:
         """The place next to ``x`` that has a magnitude."""
@@ -61,6 +66,9 @@ class Constant(Characteristic):
 
     def at(self, x: Array) -> Array:
         return np.full_like(x, self.value)
+
+    def at_one(self, x: float) -> float:
+        return float(self.value)
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         return 0.0
@@ -113,6 +121,12 @@ class Polynomial(Characteristic):
 
     def at(self, x: Array) -> Array:
         return np.asarray(np.polynomial.polynomial.polyval(x, self.coefficients))
+
+    def at_one(self, x: float) -> float:
+        *lower, total = self.coefficients
+        for coefficient in reversed(lower):
+            total = coefficient + total * x
+        return total
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         slope = [k * abs(c) for k, c in enumerate(self.coefficients)][1:] or [0.0]
@@ -201,6 +215,12 @@ class Tabulated(Characteristic):
     def _slopes(self) -> Array:
         return slopes(*self._knots, closed=self.period is not None)
 
+    @cached_property  # as the knots
+    def _rows(self) -> tuple[list[float], list[float], list[float]]:
+        """Places, values and slopes, as numbers: those of an array are read ten times as slowly."""
+        places, values = self._knots
+        return places.tolist(), values.tolist(), self._slopes.tolist()
+
     def at(self, x: Array) -> Array:
         knots, values = self._knots
         if self.period is None:
@@ -209,6 +229,21 @@ class Tabulated(Characteristic):
         if self.interpolation == "linear":
             return np.interp(x, knots, values)
         return spline(x, knots, values, self._slopes)
+
+    def at_one(self, x: float) -> float:
+        places, values, slope = self._rows
+        if self.period is None:
+            if not places[0] <= x <= places[-1]:
+                self._check_within(np.array([x]))
+        else:
+            x = self.places[0] + (x - self.places[0]) % self.period
+        x = min(max(x, places[0]), places[-1])
+        k = min(bisect_right(places, x), len(places) - 1) - 1
+        h, rise = places[k + 1] - places[k], values[k + 1] - values[k]
+        if self.interpolation == "linear":
+            return values[k + 1] if x == places[k + 1] else rise / h * (x - places[k]) + values[k]
+        t, d0, d1 = (x - places[k]) / h, h * slope[k], h * slope[k + 1]  # as `spline`
+        return values[k] + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
 
     def _folded(self, x: Array) -> Array:
         """``x`` without whole periods."""

@@ -70,9 +70,7 @@ class Load:
         try:
             magnitude = self.characteristic.at(x)
         except ValueError as error:
-            raise CrankcheckError(
-                f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
-            ) from None
+            raise self._beyond(error) from None
         if self.stroke == "both" or speed is None:
             return magnitude
         return np.where(speed > 0.0 if self.stroke == "forward" else speed < 0.0, magnitude, 0.0)
@@ -93,15 +91,27 @@ class Load:
         Raises CrankcheckError as `magnitude`, but for that.
         """
         displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
-        near = self.characteristic.nearest(displacement)
+        if (self.stroke == "forward" and not speed > 0.0) or (
+            self.stroke == "backward" and not speed < 0.0
+        ):
+            return 0.0
         x = {
             "time": time_s,
             "angle": driver_rad,
-            "displacement": near,
+            "displacement": self.characteristic.nearest(displacement),
             "speed": speed,
             "omega": omega_rad_s,
         }[self.over]
-        return float(self.magnitude(np.array([x]), np.array([speed]))[0])
+        try:
+            return self.characteristic.at_one(x)
+        except ValueError as error:
+            raise self._beyond(error) from None
+
+    def _beyond(self, error: ValueError) -> CrankcheckError:
+        """That the characteristic does not reach as far."""
+        return CrankcheckError(
+            f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
+        )
 
     def uncertain(
         self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float
