@@ -79,7 +79,7 @@ class MujocoSession(SteppedModel):
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            **held_iterations(self._scene, self._settings, int(opt.iterations)),
+            **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:

@@ -221,6 +221,17 @@ def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
     assert np.abs(forces.torque - torque).max() < 1e-3 * np.abs(torque).max()
 
 
+def test_springs_under_the_servo_s_integrator_have_the_iterations_that_they_need() -> None:
+    """With two of them `discrete` gives the run up at its first step."""
+    scene = replace(load_scene(FOURBAR), springs=SCENES["where a loop closes"].springs)
+    state, dt_s = solve(scene, np.zeros(1)).state(), scene.driver.law.period_s / 720
+    done = run(scene, state, "mujoco", dt_s=dt_s, steps=20, drive="servo")
+    assert (done.status, done.warnings) == ("ok", ())
+    assert (done.settings["iterations"], done.settings["iterations_of_springs"]) == (2, 20)
+    driven = run(scene, state, "mujoco", dt_s=dt_s, steps=20)
+    assert "iterations_of_springs" not in driven.settings
+
+
 def test_springs_add_lines_to_the_text_and_change_none() -> None:
     scene = SCENES["between points"]
     state, _ = start_of(scene)
