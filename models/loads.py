@@ -85,25 +85,23 @@ class Load:
         """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
         with speeds [m/s], the body at an angular velocity.
 
-        Past its end a table over the displacement keeps its last value: an engine whose slider goes
-        further than the mechanism can is to be judged by where it goes.
+        Past its end a table over a displacement or a speed keeps its last value: an engine whose
+        slider goes further than the mechanism can is to be judged by where it goes.
 
         Raises CrankcheckError as `magnitude`, but for that.
         """
         displacement, speed = (0.0, 0.0) if self.slider is None else sliders[self.slider]
-        if (self.stroke == "forward" and not speed > 0.0) or (
-            self.stroke == "backward" and not speed < 0.0
-        ):
-            return 0.0
+        near = self.characteristic.nearest(displacement)
         x = {
             "time": time_s,
             "angle": driver_rad,
-            "displacement": self.characteristic.nearest(displacement),
-            "speed": speed,
-            "omega": omega_rad_s,
+            "displacement": near,
+            "speed": self.characteristic.nearest(speed),
+            "omega": self.characteristic.nearest(omega_rad_s),
         }[self.over]
+        acts = self.stroke == "both" or (speed > 0.0 if self.stroke == "forward" else speed < 0.0)
         try:
-            return self.characteristic.at_one(x)
+            return self.characteristic.at_one(x) if acts else 0.0
         except ValueError as error:
             raise self._beyond(error) from None
 
