@@ -27,7 +27,7 @@ from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.forces_by_body import forces_by_body
 from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
-from sim.pymunk.load_steps import Push
+from sim.pymunk.pushes import Push
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (
