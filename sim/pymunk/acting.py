@@ -8,7 +8,7 @@ from models.motion import State
 from models.scene import GROUND, Scene
 from sim.engine import Drive
 from sim.pymunk.load_steps import LoadSteps
-from sim.pymunk.pushes import Push, Pushes
+from sim.pymunk.pushes import NONE, Pushes
 from sim.pymunk.slider_friction import SliderFriction
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.spring_steps import SpringSteps
@@ -37,16 +37,21 @@ class Acting:
         self._loads = LoadSteps(scene, model, slots, tracks, dt_s, drive)
         self._springs = SpringSteps(scene, model, tracks, dt_s)
         self._friction = SliderFriction(scene, model, tracks, drive)
-        self._any = bool(scene.loads or scene.springs or self._friction)
+        self._any = bool(scene.loads or self._springs or self._friction)
         self._bodies = (GROUND, *model.bodies)
         self._blocks = tuple(slot.slider.name for slot in slots.values())
-        self.on_blocks: dict[str, Push] = {}
-        """What the last step had on slider blocks without mass, by slider."""
+        self.on_blocks = dict.fromkeys(self._blocks, NONE)
+        """What the last step was given on slider blocks without mass, by slider."""
         self.rubbed: dict[str, float] = {}
         """The friction of each slider's guide on what slides in the last step [N]."""
 
     def __bool__(self) -> bool:
         return self._any
+
+    def springs(self) -> dict[str, tuple[float, float, float]]:
+        """The springs that act, by name: rate, damping and the length at which each is slack."""
+        own = {name: spring.numbers for name, spring in self._model.springs.items()}
+        return own | self._springs.numbers
 
     def look_ahead(self, times: Array) -> None:
         """Work out what is known before the next steps, which end at these times [s]."""
@@ -65,3 +70,14 @@ class Acting:
         for name, body in self._model.bodies.items():
             fx, fy, moment = pushes.on_bodies[name]
             body.force, body.torque = (fx, fy), moment
+
+    def pulled(self) -> Pushes:
+        """What the space's own springs did in the step that was made, and with it all that acted on
+        blocks without mass."""
+        pushes = Pushes(self._bodies, self._blocks)
+        pushes.on_blocks = dict(self.on_blocks)
+        if self._model.springs:
+            frames = frames_at_end(self._model, 0.0)
+            for spring in self._model.springs.values():
+                spring.push(self._dt, frames, pushes)
+        return pushes

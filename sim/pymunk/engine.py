@@ -18,7 +18,14 @@ from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
 from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
 from sim.pymunk.reactions import BEFORE, Reactions
-from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
+from sim.pymunk.settings import (
+    AS_SHIPPED,
+    TUNED,
+    checked,
+    exact_lines,
+    in_seconds,
+    springs_as_forces,
+)
 from sim.pymunk.space import SpaceModel, build
 
 ROOM = 64
@@ -43,6 +50,7 @@ class PymunkSession:
             servo=drive == "servo",
             free=drive == "free",
             exact_lines=exact_lines(settings),
+            with_springs=not springs_as_forces(settings),
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
@@ -85,6 +93,7 @@ class PymunkSession:
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,
+            springs=self._acting.springs(),
         )
 
     def step(self, steps: int) -> None:
@@ -219,7 +228,7 @@ class PymunkSession:
             if logged:
                 self._log()
                 if reactions is not None:
-                    reactions.read(self._acting.on_blocks, self._acting.rubbed)
+                    reactions.read(self._acting.pulled(), self._acting.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""

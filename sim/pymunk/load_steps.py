@@ -100,10 +100,8 @@ class LoadSteps:
         before, here = course.rate_before, course.rate
         after = 2.0 * here - before
         low, high = min(before, after), max(before, after)
-        if low >= 0.0 or high <= 0.0:
-            forward = float(here > 0.0)
-        else:
-            forward = high / (high - low)
+        turns = low < 0.0 < high
+        forward = high / (high - low) if turns else float(here > 0.0)
         return forward if load.stroke == "forward" else 1.0 - forward
 
     def _on_body(self, load: Load, size: float, frames: Frames, pushes: Pushes) -> None:

@@ -26,18 +26,14 @@ class SliderFriction:
         self, scene: Scene, model: SpaceModel, tracks: Mapping[str, Track], drive: Drive
     ) -> None:
         slides = {slide.slider.name: slide for slide in joints(scene).slides}
-        self._tracks = tracks
+        self._scene, self._model, self._tracks = scene, model, tracks
         self._rubbing = [
-            (
-                slides[one.joint],
-                one.size,
-                anchor_of(scene, model, riding_body(slides[one.joint]), slides[one.joint].slider.point),
-            )
+            (slides[one.joint], one.size)
             for one in scene.friction.values()
             if isinstance(one, ConstantFriction) and one.joint in slides
         ]
         if drive == "free" and self._rubbing:
-            names = ", ".join(f"friction.{slide.slider.name}" for slide, _, _ in self._rubbing)
+            names = ", ".join(f"friction.{slide.slider.name}" for slide, _ in self._rubbing)
             raise EngineError(
                 f"{scene.name}: {names}: pymunk has no friction that holds a slider at rest, and "
                 "free motion may bring it there; drive the mechanism, or take the friction out"
@@ -49,7 +45,7 @@ class SliderFriction:
     def push(self, frames: Frames, pushes: Pushes) -> dict[str, float]:
         """Have it act on what slides, and the opposite on the guide: its size by slider [N]."""
         rubbed = {}
-        for slide, size, anchor in self._rubbing:
+        for slide, size in self._rubbing:
             slider, rider = slide.slider, riding_body(slide)
             speed = self._tracks[slider.name].course.rate
             against = -math.copysign(size, speed) if speed else 0.0
@@ -57,7 +53,7 @@ class SliderFriction:
             fx, fy = turned((against, 0.0), frames[slider.on].theta + slider.direction_rad)
             if isinstance(slide, Slot):
                 pushes.note(slider.name, (fx, fy, 0.0))
-            place = frames[rider].at(anchor)
+            place = frames[rider].at(anchor_of(self._scene, self._model, rider, slider.point))
             pushes.force(rider, frames[rider], place, (fx, fy))
             pushes.force(slider.on, frames[slider.on], place, (-fx, -fy))
         return rubbed

@@ -7,8 +7,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.joints import Prism, Slot, joints, riding_body, turned
-from models.scene import GROUND, Point, Scene
+from models.joints import Prism, Slot, joints, less, riding_body, turned
+from models.scene import Point, Scene
+from models.spring_ends import line_ends, whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
@@ -16,7 +17,7 @@ from sim.pymunk.step_end import Course, Frames, Track, anchor_of, frames_at_end
 
 
 class SpringSteps:
-    """The springs of a scene in a space."""
+    """The springs of a scene that its space has not of its own."""
 
     def __init__(
         self, scene: Scene, model: SpaceModel, tracks: Mapping[str, Track], dt_s: float
@@ -24,7 +25,9 @@ class SpringSteps:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
         slides = {slide.slider.name: slide for slide in joints(scene).slides}
-        for spring in scene.springs.values():
+        for name, spring in scene.springs.items():
+            if name in model.springs:
+                continue
             if isinstance(spring, LineSpring):
                 self._steps.append(_OnLine(scene, model, spring, start, dt_s))
             elif isinstance(spring, PinSpring):
@@ -32,6 +35,15 @@ class SpringSteps:
             else:
                 slide, track = slides[spring.slider], tracks[spring.slider]
                 self._steps.append(_OnSlide(scene, model, spring, slide, track))
+
+    def __bool__(self) -> bool:
+        return bool(self._steps)
+
+    @property
+    def numbers(self) -> dict[str, tuple[float, float, float]]:
+        """Rate, damping and the length at which it is slack, of each by name."""
+        springs = (step.spring for step in self._steps)
+        return {one.name: (one.rate, one.damping, one.free) for one in springs}
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
         """Have them act."""
@@ -45,52 +57,48 @@ class _OnLine:
     def __init__(
         self, scene: Scene, model: SpaceModel, spring: LineSpring, start: Frames, dt_s: float
     ) -> None:
-        self._spring = spring
-        self._bodies = tuple(body_at(scene, point) for point in spring.points)
-        self._anchors = tuple(
-            anchor_of(scene, model, body, point)
-            for body, point in zip(self._bodies, spring.points, strict=True)
+        self.spring = spring
+        self._ends = tuple(
+            (body, less(place, model.centre[body])) for body, place in line_ends(scene, spring)
         )
         self._course = Course(math.dist(*self._places(start)), dt_s)
 
     def _places(self, frames: Frames) -> tuple[Point, Point]:
-        first, second = (
-            frames[body].at(anchor)
-            for body, anchor in zip(self._bodies, self._anchors, strict=True)
-        )
+        first, second = (frames[body].at(anchor) for body, anchor in self._ends)
         return first, second
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
+        """At the end of the step; of a length of 0 it is open where it would pull."""
         first, second = self._places(frames)
         length = math.dist(first, second)
         self._course.go_on(length)
         if length == 0.0:
             return
-        pull = self._spring.pull(length, self._course.rate) / length
+        pull = self.spring.pull(length, self._course.rate) / length
         fx, fy = pull * (second[0] - first[0]), pull * (second[1] - first[1])
-        pushes.force(self._bodies[0], frames[self._bodies[0]], first, (fx, fy))
-        pushes.force(self._bodies[1], frames[self._bodies[1]], second, (-fx, -fy))
+        (one, _), (other, _) = self._ends
+        pushes.force(one, frames[one], first, (fx, fy))
+        pushes.force(other, frames[other], second, (-fx, -fy))
 
 
 class _InPin:
     """A spring between two bodies that meet in a pin."""
 
     def __init__(self, spring: PinSpring, start: Frames, dt_s: float) -> None:
-        self._spring = spring
+        self.spring = spring
         opened = self._opened(start)
-        # The angles of links are counted each for itself; the spring's is that next to its free one.
-        self._whole = -math.tau * round((opened - spring.free) / math.tau)
+        self._whole = whole_turns(spring, opened)
         self._course = Course(opened + self._whole, dt_s)
 
     def _opened(self, frames: Frames) -> float:
-        first, second = self._spring.bodies
+        first, second = self.spring.bodies
         return frames[second].theta - frames[first].theta
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
         q = self._opened(frames) + self._whole
         self._course.go_on(q)
-        pull = self._spring.pull(q, self._course.rate)
-        first, second = self._spring.bodies
+        pull = self.spring.pull(q, self._course.rate)
+        first, second = self.spring.bodies
         pushes.torque(first, pull)
         pushes.torque(second, -pull)
 
@@ -106,23 +114,16 @@ class _OnSlide:
         slide: Prism | Slot,
         track: Track,
     ) -> None:
-        self._spring, self._slide, self._track = spring, slide, track
+        self.spring, self._slide, self._track = spring, slide, track
         self._rider = riding_body(slide)
         self._anchor = anchor_of(scene, model, self._rider, slide.slider.point)
 
     def push(self, frames: Frames, pushes: Pushes) -> None:
         slider, rider = self._slide.slider, self._rider
-        pull = self._spring.pull(self._track.course.value, self._track.course.rate)
+        pull = self.spring.pull(self._track.course.value, self._track.course.rate)
         fx, fy = turned((-pull, 0.0), frames[slider.on].theta + slider.direction_rad)
         if isinstance(self._slide, Slot):
             pushes.note(slider.name, (fx, fy, 0.0))
         place = frames[rider].at(self._anchor)
         pushes.force(rider, frames[rider], place, (fx, fy))
         pushes.force(slider.on, frames[slider.on], place, (-fx, -fy))
-
-
-def body_at(scene: Scene, point: str) -> str:
-    """tbd"""
-    from models.joints import carriers
-    bodies = carriers(scene)[point]
-    return next((one for one in bodies if one != GROUND), GROUND)
