@@ -46,9 +46,9 @@ much further than any link is long. Chipmunk rounds at 1e-13 of the lengths then
 class SpaceModel:
     """A space, its moving bodies by name in the order they were added, and the crank.
 
-        ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
-        ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
-        made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
+    ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
+    ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
+    made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
     line, ``gears`` an angle. ``rubs`` is what rubs in pins; ``springs`` are the space's own.
     """
 
