@@ -87,8 +87,8 @@ class Load:
         """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
         with speeds [m/s], the body at an angular velocity.
 
-        Past its end a table over the displacement keeps its last value: an engine whose slider goes
-        further than the mechanism can is to be judged by where it goes.
+        Past its end a table over a displacement or a speed keeps its last value: an engine whose
+        slider goes further than the mechanism can is to be judged by where it goes.
 
         Raises CrankcheckError as `magnitude`, but for that.
         """
@@ -98,8 +98,8 @@ class Load:
             "time": time_s,
             "angle": driver_rad,
             "displacement": near,
-            "speed": speed,
-            "omega": omega_rad_s,
+            "speed": self.characteristic.nearest(speed),
+            "omega": self.characteristic.nearest(omega_rad_s),
         }[self.over]
         return float(self.magnitude(np.array([x]), np.array([speed]))[0])
 

@@ -46,12 +46,8 @@ class NativeSpring:
         """What it did in the step that was made, in which the bodies came to these frames."""
         own, impulse = self.constraint, float(self.constraint.impulse)
         if isinstance(own, pymunk.DampedRotarySpring):
-            # Chipmunk adds up the impulses of spring and damper with opposite signs.
-            opened = frames[self.second].theta - frames[self.first].theta
-            of_spring = own.stiffness * (opened - own.rest_angle)
-            torque = 2.0 * of_spring - impulse / dt_s
-            pushes.torque(self.first, torque)
-            pushes.torque(self.second, -torque)
+            pushes.torque(self.first, impulse / dt_s)
+            pushes.torque(self.second, -impulse / dt_s)
             return
         here = frames[self.first].at((own.anchor_a.x, own.anchor_a.y))
         there = frames[self.second].at((own.anchor_b.x, own.anchor_b.y))

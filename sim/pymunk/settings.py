@@ -43,8 +43,8 @@ TUNED = Profile(
             "pymunk's own springs pull as these do, but what they damp is the velocity before the "
             "joints have corrected it, so errors of dampers fall as dt: of a slider-crank that one "
             "brings to rest in 10 s the crank is off by 1.0e-3 rad at 1 ms, and by 3.9e-5 rad with "
-            "forces of the end of each step, whose errors fall as dt^2; those explode where damping over mass "
-            "exceeds 1 / dt, which pymunk's own never do",
+            "forces of the end of each step, whose errors fall as dt^2; those explode where "
+            "damping over mass exceeds 1 / dt, which pymunk's own never do",
         ),
     },
 )
