@@ -42,7 +42,7 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
-        free
+        free regulation
         mechanism forces
         nearness kinematics
         change_points check reach result

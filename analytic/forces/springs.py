@@ -34,7 +34,7 @@ def spring_lengths(scene: Scene, chunk: Chunk) -> Iterator[tuple[Spring, Array, 
         if isinstance(spring, LineSpring):
             q, rate = _line_stretch(*_way(scene, chunk, spring))
         elif isinstance(spring, PinSpring):
-            q, rate = _pin_stretch(scene, chunk, spring)
+            q, rate = _pin_stretch(chunk, spring)
         else:
             q, rate = _slide_stretch(chunk, spring)
         yield spring, like + q.value, like + rate.value
@@ -46,7 +46,7 @@ def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> N
         if isinstance(spring, LineSpring):
             _pull_points(scene, chunk, spring, free)
         elif isinstance(spring, PinSpring):
-            couple = _pull(spring, *_pin_stretch(scene, chunk, spring))
+            couple = _pull(spring, *_pin_stretch(chunk, spring))
             for body, own in zip(spring.bodies, (couple, -couple), strict=True):
                 if body != GROUND:
                     free[body].moment = free[body].moment + own
@@ -105,11 +105,11 @@ def _line_stretch(way: BoundedVec, drift: BoundedVec) -> Stretch:
     return length, way.dot(drift) * length.inverse()
 
 
-def _pin_stretch(scene: Scene, chunk: Chunk, spring: PinSpring) -> Stretch:
+def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
     """The angle between two bodies; at the start within half a turn of the free one."""
     first, second = (chunk.bodies[name] for name in spring.bodies)
-    one, other = (_angle(scene, chunk, name) for name in spring.bodies)
-    q = other - one - math.tau * _turns_at_start(Same(scene), spring)
+    one, other = (_angle(chunk, name) for name in spring.bodies)
+    q = other - one - math.tau * _turns_at_start(Same(chunk.scene), spring)
     rate = np.asarray(second.omega - first.omega)
     if first.error is None or second.error is None:
         return Bounded(q, None), Bounded(rate, None)
@@ -120,9 +120,9 @@ def _pin_stretch(scene: Scene, chunk: Chunk, spring: PinSpring) -> Stretch:
     )
 
 
-def _angle(scene: Scene, chunk: Chunk, body: str) -> Array:
+def _angle(chunk: Chunk, body: str) -> Array:
     """The angle of a link, or of the ground, with its whole turns [rad], (T,)."""
-    return np.zeros_like(chunk.theta) if body == GROUND else counted_angle(scene, chunk, body)
+    return np.zeros_like(chunk.theta) if body == GROUND else counted_angle(chunk, body)
 
 
 @lru_cache(maxsize=4 * KEPT)
@@ -130,7 +130,7 @@ def _turns_at_start(same: Same, spring: PinSpring) -> float:
     """The whole turns by which the angle between the bodies is off its free one at time 0."""
     start = same.scene.driver.law.at(np.zeros(1))[0]
     chunk = unit_chunk(same.scene, start, bound=False)
-    one, other = (_angle(same.scene, chunk, name) for name in spring.bodies)
+    one, other = (_angle(chunk, name) for name in spring.bodies)
     return float(np.round((other - one - spring.free) / math.tau)[0])
 
 
