@@ -6,7 +6,6 @@ first link in the order of the scene, else a block.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -21,6 +20,7 @@ from analytic.kinematics import counted_angle, unit_chunk
 from models.array import Array
 from models.joints import block_name, local_point
 from models.scene import GROUND, KEPT, Same, Scene
+from models.spring_ends import whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 
 Stretch = tuple[Bounded, Bounded]
@@ -109,7 +109,7 @@ def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
     """The angle between two bodies; at the start within half a turn of the free one."""
     first, second = (chunk.bodies[name] for name in spring.bodies)
     one, other = (_angle(chunk, name) for name in spring.bodies)
-    q = other - one - math.tau * _turns_at_start(Same(chunk.scene), spring)
+    q = other - one + _turns_at_start(Same(chunk.scene), spring)
     rate = np.asarray(second.omega - first.omega)
     if first.error is None or second.error is None:
         return Bounded(q, None), Bounded(rate, None)
@@ -127,11 +127,11 @@ def _angle(chunk: Chunk, body: str) -> Array:
 
 @lru_cache(maxsize=4 * KEPT)
 def _turns_at_start(same: Same, spring: PinSpring) -> float:
-    """The whole turns by which the angle between the bodies is off its free one at time 0."""
+    """The whole turns [rad] that bring the angle between the bodies near its free one at time 0."""
     start = same.scene.driver.law.at(np.zeros(1))[0]
     chunk = unit_chunk(same.scene, start, bound=False)
     one, other = (_angle(chunk, name) for name in spring.bodies)
-    return float(np.round((other - one - spring.free) / math.tau)[0])
+    return whole_turns(spring, float((other - one)[0]))
 
 
 def _slide_stretch(chunk: Chunk, spring: SlideSpring) -> Stretch:

@@ -32,6 +32,8 @@ ROUNDS = 6
 """Searches for the places of the extremes."""
 ROUGHLY, CLOSELY = 18, 40
 """Halvings of an interval of nodes for them: speeds do not change there to first order."""
+NO_WORK = 1e-12
+"""A work of the cycle below this, over all that is turned over in it, is rounding."""
 STILL = 1e-11
 """A fluctuation below this is rounding."""
 SAMPLES = 720
@@ -54,10 +56,20 @@ class SteadyCycle:
     def machine(self) -> TurningMachine:
         return self.course.machine
 
-    @property
+    @cached_property
+    def turnover_j(self) -> float:
+        """The work of all torques over the cycle, whatever its sign: what rounding is measured
+        by."""
+        return self.course.cells.integral(np.abs(self.course.torque))
+
+    @cached_property
     def drive_n_m(self) -> float:
         """The constant torque of the drive, along the motion; 0 of a machine that is let go."""
-        return self.course.drive
+        return self._clean(self.course.drive * self.machine.cycle_rad) / self.machine.cycle_rad
+
+    def _clean(self, work: float) -> float:
+        """A work of the cycle [J], 0 where it is rounding."""
+        return work if abs(work) > NO_WORK * self.turnover_j else 0.0
 
     @cached_property
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
@@ -98,7 +110,7 @@ class SteadyCycle:
         file, weights, and the drive."""
         cells, speed = self.course.cells, self.course.speed
         torques = self.machine.torques_by_source(cells.nodes, speed)
-        works = {name: cells.integral(torque) for name, torque in torques.items()}
+        works = {n: self._clean(cells.integral(torque)) for n, torque in torques.items()}
         if self.drive_n_m:
             works["drive"] = self.drive_n_m * self.machine.cycle_rad
         return works

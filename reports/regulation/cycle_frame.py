@@ -14,7 +14,7 @@ from analytic.regulation.steady_cycle import SteadyCycle
 from models.array import Array
 from reports.output.numbers import finite
 from reports.output.provenance import crankcheck_version
-from reports.regulation.cycle_rows import EVEN, number_rows, work_rows
+from reports.regulation.cycle_rows import number_rows, work_rows
 from reports.regulation.flywheel_rows import way_rows
 
 if TYPE_CHECKING:
@@ -52,11 +52,11 @@ def cycle_series(cycle: SteadyCycle) -> CycleSeries:
     sources = machine.torques_by_source(u, speed)
     if cycle.drive_n_m:
         sources["drive"] = np.full_like(u, cycle.drive_n_m)
-    least, works = EVEN * cycle.work_j, cycle.works_j
+    works = cycle.works_j
     groups = {
-        "driving": [n for n in sources if works[n] > least],
-        "resisting": [n for n in sources if works[n] < -least],
-        "returning": [n for n in sources if abs(works[n]) <= least],
+        "driving": [n for n in sources if works[n] > 0.0],
+        "resisting": [n for n in sources if works[n] < 0.0],
+        "returning": [n for n in sources if works[n] == 0.0],
     }
     sums = {
         group: sum((sources[n] for n in names), np.zeros_like(u)) for group, names in groups.items()

@@ -9,7 +9,7 @@ from analytic.regulation.steady_cycle import SteadyCycle
 from reports.output.numbers import readable
 
 EVEN = 1e-9
-"""A fluctuation below this has no place, and a work below this share of what drives is none."""
+"""A fluctuation below this has no place."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +60,11 @@ def number_rows(cycle: SteadyCycle) -> list[NumberRow]:
 
 
 def work_rows(cycle: SteadyCycle) -> list[WorkRow]:
-    """The works of a cycle, what drives most first; rounding is 0."""
-    angle, least = cycle.machine.cycle_rad, EVEN * cycle.work_j
-    works = {name: work if abs(work) > least else 0.0 for name, work in cycle.works_j.items()}
+    """The works of a cycle, what drives most first."""
+    angle = cycle.machine.cycle_rad
     return [
         WorkRow(name, work, work / angle)
-        for name, work in sorted(works.items(), key=lambda each: -each[1])
+        for name, work in sorted(cycle.works_j.items(), key=lambda each: -each[1])
     ]
 
 
@@ -87,9 +86,8 @@ def notes(cycle: SteadyCycle) -> list[str]:
     scene = cycle.machine.scene
     if not scene.is_free:
         does = "gives" if cycle.drive_n_m > 0.0 else "takes"
-        closing = f"; here it {does} {readable(abs(cycle.drive_n_m), 6)} N m" * bool(
-            abs(cycle.drive_n_m) * cycle.machine.cycle_rad > EVEN * cycle.work_j
-        )
+        size = readable(abs(cycle.drive_n_m), 6)
+        closing = f"; here it {does} {size} N m" if cycle.drive_n_m else ""
         told.append(
             "The driver's law is taken as the mean speed, kept by a constant torque of the drive "
             f"that closes the balance of work{closing}."
