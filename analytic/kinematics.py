@@ -140,6 +140,16 @@ def driven_chunk(scene: Scene, theta: Array, omega: Array) -> Chunk:
     return prepared(scene).chunk(theta, omega, STEADY, None)
 
 
+def counted_angle(chunk: Chunk, link: str) -> Array:
+    """The angle of a link of a solved chunk [rad], (T,), its whole turns counted as in a motion."""
+    body = chunk.bodies[link]
+    if body.theta is not None:
+        return np.broadcast_to(body.theta, chunk.theta.shape)
+    angle = np.broadcast_to(np.arctan2(body.turn.y, body.turn.x), chunk.theta.shape).copy()
+    Counter(_prepared(Same(chunk.scene)).turns, chunk.theta).count(link, angle)
+    return angle
+
+
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
     return ranges(prepared(scene).stretched)

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from reports.face.comparison import Comparison, compare
     from reports.face.log_verdict import LogVerdict, judge
     from reports.face.model_verdict import ModelVerdict, check_model
+    from reports.face.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from reports.face.report import report
     from reports.face.simulation import Simulation, run
     from reports.face.solution import Solution, solve, solve_driven
@@ -87,6 +88,8 @@ __all__ = [
     "Finding",
     "Forces",
     "LogVerdict",
+    "MachineCycle",
+    "MachineFlywheel",
     "ModelVerdict",
     "Motion",
     "ReachError",
@@ -102,6 +105,8 @@ __all__ = [
     "check",
     "check_model",
     "compare",
+    "cycle",
+    "flywheel",
     "judge",
     "load_scene",
     "report",
@@ -139,6 +144,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import log_verdict as home
             case "ModelVerdict" | "check_model":
                 from reports.face import model_verdict as home
+            case "MachineCycle" | "MachineFlywheel" | "cycle" | "flywheel":
+                from reports.face import regulation as home
             case "report":
                 from reports.face import report as home
             case "Simulation" | "run":

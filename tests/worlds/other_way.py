@@ -8,6 +8,7 @@ from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating, SpeedChange
 from models.loads import Load, Stroke
 from models.scene import Driver, Scene
+from models.springs import Spring
 
 OPPOSITE: dict[Stroke, Stroke] = {"both": "both", "forward": "backward", "backward": "forward"}
 
@@ -31,8 +32,9 @@ def faster_law(law: Law, factor: float) -> Law:
 def sped_up(scene: Scene, factor: float) -> Scene:
     """The scene driven ``factor`` times as fast through the same angles, in similar motion.
 
-    Loads and constant friction grow as inertia does. Where the factor is below 0 a stroke forward
-    becomes one backward; friction turns round with the motion, so forces with it are others then.
+    Loads, springs and constant friction grow as inertia does. Where the factor is below 0 a stroke
+    forward becomes one backward; friction turns round with the motion, and dampers do, so forces
+    with them are others then.
     """
     g = scene.gravity_m_s2
 
@@ -47,10 +49,14 @@ def sped_up(scene: Scene, factor: float) -> Scene:
     def rubbing(old: Friction) -> Friction:
         return replace(old, size=old.size * factor**2) if isinstance(old, ConstantFriction) else old
 
+    def spring(old: Spring) -> Spring:
+        return replace(old, rate=old.rate * factor**2, damping=old.damping * abs(factor))
+
     return replace(
         scene,
         driver=Driver(scene.driver.link, faster_law(scene.driver.law, factor)),
         gravity_m_s2=(g[0] * factor**2, g[1] * factor**2),
         loads={name: load(old) for name, old in scene.loads.items()},
         friction={name: rubbing(old) for name, old in scene.friction.items()},
+        springs={name: spring(old) for name, old in scene.springs.items()},
     )
