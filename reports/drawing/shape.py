@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.forces.kinetostatics import forces
-from analytic.kinematics import solve
 from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.beside_locking import clear_of_locking
+from reports.drawing.true_motion import true_motion
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
@@ -34,7 +34,7 @@ def turn_of(
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
-    motion = solve(scene, time_s, bound=False)
+    motion = true_motion(scene, time_s)
     if not with_forces:
         return motion
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
