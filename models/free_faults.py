@@ -26,8 +26,8 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
             f"friction.{joint}: friction by mu follows from the reactions, and free motion is not "
             "worked out with it; give torque_n_m of a pin, or force_n of a slider"
         )
-    bodies = (*scene.links.values(), *scene.sliders.values())
-    if not any(body.mass_kg > 0.0 or body.inertia_kg_m2 > 0.0 for body in bodies):
+    links, blocks = scene.links.values(), scene.sliders.values()
+    if not any(link.mass_kg > 0.0 for link in links) and not any(b.mass_kg > 0.0 for b in blocks):
         yield (
             "links: no body has a mass, and nothing says how fast it would move; give mass_kg, or "
             "leave it out for slender rods"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from analytic.free.free_motion import FreeMotion
+
+Bodies = TypeVar("Bodies", Motion, Bound)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -70,18 +72,17 @@ def free_solution(scene: Scene, time_s: Array, wanted: Selection, *, bound: bool
 
     law = scene.driver.law
     free = release(scene, float(np.max(time_s)) if np.max(time_s) > 0.0 else law.period_s)
-    motion = free.at(time_s, bound=bound)
+    motion = _chosen(free.at(time_s, bound=bound), wanted)
     if motion.bound is not None:
-        motion = replace(motion, bound=Bound(*_chosen(motion.bound, wanted)))
-    links, points, sliders = _chosen(motion, wanted)
-    motion = replace(motion, links=links, points=points, sliders=sliders)
+        motion = replace(motion, bound=_chosen(motion.bound, wanted))
     return FreeSolution(**vars(motion), scene=scene, free=free)
 
 
-def _chosen(of: Motion | Bound, wanted: Selection) -> tuple[dict, dict, dict]:
-    """Links, points and sliders that were asked for."""
-    return (
-        {name: of.links[name] for name in wanted.links},
-        {name: of.points[name] for name in wanted.points},
-        {name: of.sliders[name] for name in wanted.sliders},
+def _chosen(of: Bodies, wanted: Selection) -> Bodies:
+    """The links, points and sliders that were asked for."""
+    return replace(
+        of,
+        links={name: of.links[name] for name in wanted.links},
+        points={name: of.points[name] for name in wanted.points},
+        sliders={name: of.sliders[name] for name in wanted.sliders},
     )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +13,7 @@ from reports.figures.free.free_course import SIDES, FreeCourse, mark_zero
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN
 
-LOOK = {"color": "#1f5f9e", "linewidth": 1.0}
+LOOK: Mapping[str, Any] = {"color": "#1f5f9e", "linewidth": 1.0}
 
 
 def draw(course: FreeCourse) -> Figure:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,8 +15,13 @@ from reports.figures.free.free_course import SIDES, FreeCourse, mark_zero, short
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN
 
-LOOK = {"color": "#1f5f9e", "linewidth": 0.8}
-START = {"color": "#c04a1d", "marker": "o", "markersize": 3.5, "linestyle": "none"}
+LOOK: Mapping[str, Any] = {"color": "#1f5f9e", "linewidth": 0.8}
+START: Mapping[str, Any] = {
+    "color": "#c04a1d",
+    "marker": "o",
+    "markersize": 3.5,
+    "linestyle": "none",
+}
 
 
 def draw(course: FreeCourse) -> Figure:
@@ -30,7 +37,7 @@ def draw(course: FreeCourse) -> Figure:
     figure, (axes,) = sheet(COLUMN_IN, panels, title, [], notes)
     mark_zero(axes, course.driver.omega)
     axes.plot(degrees, omega, **LOOK)
-    axes.plot(degrees[:1], omega[:1], **START)  # type: ignore[arg-type]  # looks of a line
+    axes.plot(degrees[:1], omega[:1], **START)
     axes.set_xlabel(f"{label} {course.scene.driver.link} [deg]")
     axes.set_ylabel("angular velocity [rad/s]")
     shorten(axes)
