@@ -28,9 +28,10 @@ from hypothesis import strategies as st
 from models.files import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
-from tests.worlds.fuzzing import COMMANDS, QUICK, VERIFY, Ended, attempt
+from tests.worlds.free_files import free_mechanisms
+from tests.worlds.fuzzing import COMMANDS, LET_GO, QUICK, VERIFY, Ended, attempt
 from tests.worlds.mutation import mutant, retied, stretched
-from tests.worlds.scene_files import scene_files, toml
+from tests.worlds.scene_files import Tree, scene_files, toml
 
 LIMITS = Limits(time_s=60.0, memory_gb=1.0)
 """Memory is that beyond a child with all engines in it, which has 0.2 GB in use."""
@@ -40,7 +41,7 @@ MOST_BYTES = 1_000_000_000
 SEED = 20260
 FAST, EACH, PARTS = 100, 250, 20
 """Files of either kind: in the fast test, in each part of the slow ones, and the parts of those."""
-KINDS = ("made", "changed")
+KINDS = ("made", "free", "changed")
 HOME = Path(tempfile.gettempdir()) / f"crankcheck-misdeed-{os.getpid()}"
 
 
@@ -88,7 +89,19 @@ def try_changed(bench: Bench, first: int, count: int, commands: tuple[str, ...])
         assert not faults, f"{faults}: {command} of mutant({number}):\n{raw[:3000]!r}"
 
 
-def try_made(bench: Bench, number: int, count: int, commands: tuple[str, ...]) -> None:
+def try_free(bench: Bench, number: int, count: int, commands: tuple[str, ...]) -> None:
+    """Files of every shape whose mechanisms are let go, with commands of their own."""
+    del commands
+    try_made(bench, number, count, LET_GO, free_mechanisms())
+
+
+def try_made(
+    bench: Bench,
+    number: int,
+    count: int,
+    commands: tuple[str, ...],
+    made: st.SearchStrategy[Tree] | None = None,
+) -> None:
     """Files of every shape; the smallest that fails is shown."""
 
     @seed(number)
@@ -99,7 +112,7 @@ def try_made(bench: Bench, number: int, count: int, commands: tuple[str, ...]) -
         phases=[Phase.generate, Phase.shrink],
         suppress_health_check=list(HealthCheck),
     )
-    @given(scene_files(), st.sampled_from(commands))
+    @given(scene_files(made), st.sampled_from(commands))
     def holds(text: str, command: str) -> None:
         faults = bench.try_out(text.encode(), command)
         assert not faults, f"{faults}: {command} of seed {number}:\n{text[:3000]}"
@@ -107,7 +120,7 @@ def try_made(bench: Bench, number: int, count: int, commands: tuple[str, ...]) -
     holds()
 
 
-TRY = {"made": try_made, "changed": try_changed}
+TRY = {"made": try_made, "free": try_free, "changed": try_changed}
 
 
 @pytest.mark.parametrize("kind", KINDS)

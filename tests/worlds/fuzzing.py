@@ -46,6 +46,8 @@ COMMANDS = (
     "solve FILE --at-deg 1e300",
     "solve FILE --turns 1e300",
     "solve FILE --turns 3 --steps-per-turn 100 -o OUT.csv",
+    "solve FILE --duration 0.05 --steps 4",
+    "solve FILE --duration 1e300",
     "solve FILE -o OUT.xlsx",
     "export FILE",
     "export FILE --close C -o OUT.xml",
@@ -53,6 +55,13 @@ COMMANDS = (
 )
 """What files are tried with."""
 _SHORT = "--turns 0.12 --no-convergence --profile tuned -o OUT"
+LET_GO = (
+    "solve FILE",
+    "solve FILE --duration 0.05 --steps 4",
+    "solve FILE -o OUT.csv",
+    "view FILE -o OUT.png",
+)
+"""What files of mechanisms that are let go are tried with."""
 QUICK = (
     f"verify FILE --engine mujoco {_SHORT}",
     f"verify FILE --engine pymunk {_SHORT}",
