@@ -191,7 +191,7 @@ class Adaptive:
     def _units(self) -> Array:
         """What a coordinate, a rate and the work count as one of."""
         own = self.dynamics.assembly.units
-        return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m ** 2]])
+        return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m**2]])
 
     def _step(self, solver: DOP853, count: int) -> None:
         name = self.dynamics.assembly.scene.name
