@@ -11,10 +11,10 @@ import numpy as np
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly, Configuration
 from analytic.multibody.dynamics import Dynamics, Energies
+from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.outset import Outset
 from analytic.multibody.passage import Passage
 from analytic.multibody.pushes import Pushes
-from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.stepping import Adaptive, Course, FixedSteps
 from models.array import Array, Mask
 from models.errors import CrankcheckError
