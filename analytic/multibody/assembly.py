@@ -225,7 +225,7 @@ class Assembly:
         return rows
 
     def _lines(self, now: Configuration) -> tuple[Array, Array, Array]:
-        """Along and across the line of each slider, and from its guide to what slides (T, S, 2)."""
+        """Along and across the line of every slider, and from guide to what slides (T, S, 2)."""
         angle = now.place[:, self._guide, 2]
         c, s = np.cos(angle), np.sin(angle)
         away = now.place[:, self._tip, :2] - now.place[:, self._guide, :2]

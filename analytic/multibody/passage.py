@@ -51,7 +51,11 @@ class Passage:
 
 
 def passage_ahead(
-    dynamics: Dynamics, solution: Callable[[Array], Array], clear_s: float, now_s: float
+    dynamics: Dynamics,
+    solution: Callable[[Array], Array],
+    clear_s: float,
+    now_s: float,
+    smallest: float,
 ) -> Passage | None:
     """The passage that begins about now, if the motion goes through a change point.
 
@@ -63,12 +67,14 @@ def passage_ahead(
         The state at times up to now.
     clear_s, now_s : float
         Since when nothing has jumped, and now [s].
+    smallest : float
+        The smallest singular value of now.
     """
-    smallest = _smallest(dynamics, solution, now_s)
     if not smallest < NEAR or now_s <= clear_s:
         return None
     back_s = 0.02 * (now_s - clear_s)
-    slope = (smallest - _smallest(dynamics, solution, now_s - back_s)) / back_s
+    before = solution(np.array([now_s - back_s]))[: dynamics.assembly.size, 0]
+    slope = (smallest - smallest_singular(dynamics, before)) / back_s
     if slope >= 0.0:
         return None
     at_s = now_s - smallest / slope
@@ -87,11 +93,10 @@ def passage_ahead(
     return passage if _closes(dynamics, passage) else None
 
 
-def _smallest(dynamics: Dynamics, solution: Callable[[Array], Array], time_s: float) -> float:
-    """The smallest singular value of the constraints that count."""
+def smallest_singular(dynamics: Dynamics, q: Array) -> float:
+    """The smallest singular value of the constraints that count at coordinates (n,)."""
     assembly = dynamics.assembly
-    q = solution(np.array([time_s]))[: assembly.size].T
-    rows = assembly.scaled(assembly.jacobian(assembly.at_rest(q))[0])
+    rows = assembly.scaled(assembly.jacobian(assembly.at_rest(q[None]))[0])
     return float(np.linalg.svd(rows, compute_uv=False)[dynamics.rank - 1])
 
 

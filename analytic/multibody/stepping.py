@@ -19,7 +19,7 @@ from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.passage import Passage, passage_ahead
+from analytic.multibody.passage import NEAR, Passage, passage_ahead, smallest_singular
 from analytic.multibody.pushes import Strokes
 from analytic.multibody.switches import Switch, edges, strokes, switches
 from models.array import Array
@@ -28,6 +28,10 @@ from models.errors import CrankcheckError
 LARGEST = 1e12
 """Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
 MOST_STEPS = 1_000_000
+CAREFUL = 0.1
+"""The smallest singular value of the constraints, of rows of the largest entry 1, below which the
+stages of a step are put back onto the constraints as well: what they are off by, which is more than
+the step is, counts there over that value."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +46,13 @@ class Course:
 @dataclass
 class _Steps:
     """The steps of an integration: the times between them, and what is within; ``clear_s`` is the
-    time since which nothing has jumped."""
+    time since which nothing has jumped. ``careful`` if a change point may be near."""
 
     times: list[float]
     within: list[Callable[[Array], Array]] = field(default_factory=list)
     passages: list[Passage] = field(default_factory=list)
     clear_s: float = 0.0
+    careful: bool = False
 
     def add(self, end_s: float, within: Callable[[Array], Array]) -> None:
         self.times.append(end_s)
@@ -115,7 +120,7 @@ class Adaptive:
         state: Array,
     ) -> tuple[Array, Array]:
         """Integrate between two edges over time; the state and the cells at the end."""
-        solver = self._solver(begin, end, state, strokes(own, cells), None)
+        solver = self._solver(steps, begin, end, state, strokes(own, cells), None)
         steps.clear_s = begin
         while solver.status == "running":
             before_s, before = float(solver.t), solver.y
@@ -129,7 +134,7 @@ class Adaptive:
             first_s = float(solver.t) - before_s
             if crossing.at_s > before_s:
                 solver = self._solver(
-                    before_s, crossing.at_s, before, strokes(own, cells), crossing.at_s - before_s
+                    steps, before_s, crossing.at_s, before, strokes(own, cells), first_s
                 )
                 while solver.status == "running":
                     self._step(solver, len(steps.times))
@@ -140,24 +145,26 @@ class Adaptive:
                 first_s = self._shortened(crossing, first_s)
             steps.clear_s = before_s
             if before_s < end:
-                solver = self._solver(before_s, end, before, strokes(own, cells), first_s)
+                solver = self._solver(steps, before_s, end, before, strokes(own, cells), first_s)
         return solver.y, cells
 
     def _passed(self, steps: _Steps, solver: DOP853, own: Strokes) -> DOP853:
         """The integration on the other side of a change point, if one is just ahead."""
-        if not self.projected or solver.status != "running":
+        if not self.projected or self.dynamics.rank == 0 or solver.status != "running":
             return solver
-        passage = passage_ahead(self.dynamics, steps.solution, steps.clear_s, float(solver.t))
+        n, now_s = self.dynamics.assembly.size, float(solver.t)
+        smallest = smallest_singular(self.dynamics, solver.y[:n])
+        steps.careful = smallest < CAREFUL
+        if smallest >= NEAR:
+            return solver
+        passage = passage_ahead(self.dynamics, steps.solution, steps.clear_s, now_s, smallest)
         if passage is None or passage.end_s >= solver.t_bound:
             return solver
-        n = self.dynamics.assembly.size
-        state = passage.state(np.array([passage.end_s]))[:, 0]
-        q, rates = self.dynamics.closed(state[:n], state[n : 2 * n])
+        state = self._closed(passage.state(np.array([passage.end_s]))[:, 0])
         steps.add(passage.end_s, passage.state)
         steps.passages.append(passage)
         steps.clear_s = passage.end_s
-        state = np.concatenate([q, rates, state[2 * n :]])
-        return self._solver(passage.end_s, float(solver.t_bound), state, own, None)
+        return self._solver(steps, passage.end_s, float(solver.t_bound), state, own, None)
 
     def _shortened(self, crossing: _Crossing, step_s: float) -> float:
         """A shorter step from the turn of a slider on, within which it may not turn back.
@@ -174,12 +181,20 @@ class Adaptive:
         )
 
     def _solver(
-        self, begin: float, end: float, state: Array, own: Strokes, first_s: float | None
+        self,
+        steps: _Steps,
+        begin: float,
+        end: float,
+        state: Array,
+        own: Strokes,
+        first_s: float | None,
     ) -> DOP853:
         # What jumps at an edge has its old value up to it.
         last = math.nextafter(end, begin)
 
         def rates(time_s: float, state: Array) -> Array:
+            if steps.careful:
+                state = self._closed(state)
             return self.dynamics.rates(min(max(time_s, begin), last), state, own)
 
         first = None if first_s is None else min(first_s, end - begin)
@@ -209,9 +224,13 @@ class Adaptive:
         """Keep a step, and put the state back onto the constraints."""
         steps.add(float(solver.t), solver.dense_output())
         if self.projected:
-            n = self.dynamics.assembly.size
-            q, rates = self.dynamics.closed(solver.y[:n], solver.y[n : 2 * n])
-            solver.y = np.concatenate([q, rates, solver.y[2 * n :]])
+            solver.y = self._closed(solver.y)
+
+    def _closed(self, state: Array) -> Array:
+        """A state on the constraints."""
+        n = self.dynamics.assembly.size
+        q, rates = self.dynamics.closed(state[:n], state[n : 2 * n])
+        return np.concatenate([q, rates, state[2 * n :]])
 
     def _crossing(self, own: tuple[Switch, ...], cells: Array, solver: DOP853) -> _Crossing | None:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a
