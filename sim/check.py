@@ -12,6 +12,7 @@ from models.joints import bodies
 from models.motion import State
 from models.poses import centre_of, frames, mass_of
 from models.scene import Scene
+from models.springs import PinSpring
 from sim.drive import pace, start_speed
 from sim.engine import Drive, Engine, Facts
 from sim.measure import gaps
@@ -27,12 +28,13 @@ def refuse_other_model(
 ) -> None:
     """Raise EngineError, naming everything that differs, unless the engine holds the scene.
 
-    Compared are mass, inertia, gravity, position and angle of every body, loop gaps, and the
-    velocities at the instant that the engine's own belong to. A prescribed crank need not have a
-    mass, nor a body that cannot turn an inertia; a free one has both, and nothing beside.
+    Compared are mass, inertia, gravity, springs, position and angle of every body, loop gaps, and
+    the velocities at the instant that the engine's own belong to. A prescribed crank need not have
+    a mass, nor a body that cannot turn an inertia; a free one has both, and nothing beside.
     """
     faults = [
         *_matter(scene, facts, drive),
+        *_springs(scene, facts),
         *_state(scene, state, facts, dt_s, drive),
         *_gaps(scene, facts, open_m),
     ]
@@ -86,6 +88,28 @@ def _matter(scene: Scene, facts: Facts, drive: Drive) -> Iterator[str]:
             yield f"{body} has inertia_kg_m2 {own:g}, not {inertia:g}"
     if math.dist(facts.gravity_m_s2, scene.gravity_m_s2) > SAME * math.hypot(*scene.gravity_m_s2):
         yield f"gravity is {facts.gravity_m_s2}, not {scene.gravity_m_s2} m/s^2"
+
+
+def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
+    """Differences of springs; a free length of 0 has no relative one."""
+    for name, spring in scene.springs.items():
+        if name not in facts.springs:
+            yield f"springs.{name} is not there"
+            continue
+        turning = isinstance(spring, PinSpring)
+        length = 1.0 if turning else scene.longest_m
+        for what, found, wanted, scale in zip(
+            ("rate", "damping", "free"),
+            facts.springs[name],
+            (spring.rate, spring.damping, spring.free),
+            (0.0, 0.0, length),
+            strict=True,
+        ):
+            if not abs(found - wanted) <= SAME * max(abs(wanted), scale):
+                yield f"springs.{name} has {what} {found:g}, not {wanted:g}"
+    for name in facts.springs:
+        if name not in scene.springs:
+            yield f"springs.{name} is none of the scene"
 
 
 def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The mechanical energy of an engine's bodies, from the masses of the scene and their motion."""
+"""The mechanical energy of an engine's bodies and springs, from the scene's and their motion."""
 
 from __future__ import annotations
 
@@ -9,14 +9,17 @@ from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.engine import Energy, Poses
 from sim.measure import BodyPath, PointPath, at_velocities
+from sim.spring_lengths import spring_lengths
 
 
 def energy(scene: Scene, poses: Poses) -> Energy:
-    """Kinetic and potential energy of all bodies [J], both at the instants of the velocities.
+    """Kinetic and potential energy [J] of all bodies and springs, both at the instants of the
+    velocities.
 
     Where velocities lag, the positions are moved on to them, which is good to the second order of
     the step. Heights count from the origin against gravity. A crank that a drive carries counts
-    with the mass of its link.
+    with the mass of its link. What loads put in and dampers and friction take out is in neither: of
+    a scene that has any the total changes.
     """
     then = at_velocities(poses)
     kinetic, potential = np.zeros(len(poses.time_s)), np.zeros(len(poses.time_s))
@@ -28,4 +31,7 @@ def energy(scene: Scene, poses: Poses) -> Energy:
             square = (centre.velocity**2).sum(axis=1)
             kinetic += 0.5 * mass * square + 0.5 * inertia * pose.omega**2
             potential -= mass * centre.position @ gravity
+        for name, length in spring_lengths(scene, then).items():
+            spring = scene.springs[name]
+            potential += 0.5 * spring.rate * (length - spring.free) ** 2
     return Energy(kinetic, potential)

@@ -88,7 +88,9 @@ class Facts:
     Mass, inertia about the centre of mass, and that centre in the link's own frame, by body.
     ``velocity_shift`` and ``acceleration_shift`` say, in steps, to which instant the reported
     quantities belong: a velocity logged with the positions of time t belongs to
-    t + velocity_shift * dt.
+    t + velocity_shift * dt. ``springs`` are those of the scene by name, as far as the engine is
+    given them: rate [N/m or N m/rad], damping [N s/m or N m s] and the length or angle at which
+    they are slack [m or rad].
     """
 
     version: str
@@ -100,6 +102,7 @@ class Facts:
     settings: Settings
     velocity_shift: float
     acceleration_shift: float
+    springs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -165,7 +168,7 @@ class Engine:
     the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
     sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported,
     without ``applies_constant_friction`` those with friction that is constant, without
-    ``applies_springs`` those with springs.
+    ``applies_springs`` those with springs; with it `Facts.springs` tells of each.
     """
 
     name: str
@@ -186,7 +189,8 @@ class Engine:
 
 @dataclass(frozen=True)
 class Energy:
-    """Kinetic and potential energy [J], (T,), both at the instants that velocities belong to."""
+    """Kinetic and potential energy [J], (T,), both at the instants that velocities belong to; the
+    potential one is that of weights and springs."""
 
     kinetic_j: Array
     potential_j: Array
@@ -238,8 +242,9 @@ class Run:
     is the last time that was reached. Commanded were ``steps`` of ``dt_s`` from ``start_s`` on,
     logged every ``every``-th: what the log is held to. ``asked`` is the complete set of settings
     that the run was given, and takes to be run again; ``settings`` what the engine then held.
-    ``energy`` is kept of free motion, where nothing adds to it. ``with_forces`` says that forces
-    were asked for; they are in ``motion``, and of what ``forces_of`` the engine says.
+    ``energy`` is kept of free motion, without what loads, dampers and friction do to it.
+    ``with_forces`` says that forces were asked for; they are in ``motion``, and of what
+    ``forces_of`` the engine says.
     """
 
     scene: str

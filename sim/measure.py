@@ -202,12 +202,18 @@ def gaps(scene: Scene, poses: Poses) -> Mapping[str, Array]:
 
 def _tracks(scene: Scene, poses: Poses) -> dict[str, dict[str, PointPath]]:
     """Every point as each of the bodies that list it carries it."""
-    bodies = {name: BodyPath(pose) for name, pose in poses.bodies.items()}
-    bodies[GROUND] = BodyPath(_still(len(poses.time_s)))
+    bodies = body_paths(poses)
     return {
         point: {body: PointPath(bodies[body], local) for body, local in copies.items()}
         for point, copies in _copies(Same(scene)).items()
     }
+
+
+def body_paths(poses: Poses) -> dict[str, BodyPath]:
+    """Every body and the ground."""
+    paths = {name: BodyPath(pose) for name, pose in poses.bodies.items()}
+    paths[GROUND] = BodyPath(_still(len(poses.time_s)))
+    return paths
 
 
 @lru_cache(maxsize=KEPT)

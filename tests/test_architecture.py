@@ -57,6 +57,7 @@ FLOORS: Mapping[str, str] = {
         remedies run snippets tuning viewing own_models force_recipes
         recording
         check energy registry forces_by_body
+        spring_lengths
         measure drive tree_poses settings own_engine load_magnitudes momentum_balance
         engine
     """,

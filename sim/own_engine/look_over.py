@@ -17,6 +17,13 @@ NEEDED = tuple(
     for each in fields(Engine)
     if each.default is MISSING and each.default_factory is MISSING
 )
+SAYS = (
+    "reports_accelerations",
+    "applies_loads",
+    "applies_constant_friction",
+    "applies_springs",
+)
+"""What is yes or no."""
 CALLED = ("version", "check", "open", "holds", "placing", "in_seconds")
 
 
@@ -75,7 +82,7 @@ def _faults(given: Mapping[str, Any]) -> Iterator[str]:
             yield f"{name} is {_kind(given[name])}; give a function"
     if type(given.get("order", 1)) is not int or given.get("order", 1) < 1:
         yield f"order is {shown(given['order'])}; give a whole number above 0"
-    for name in ("reports_accelerations", "applies_loads", "applies_constant_friction"):
+    for name in SAYS:
         if not isinstance(said := given.get(name, True), bool):
             yield f"{name} is {shown(said)}; give True or False"
     if (said := given.get("forces_of", "nothing")) not in get_args(ForcesOf):

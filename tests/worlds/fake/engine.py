@@ -62,6 +62,7 @@ class FakeEngine:
     forces_of: ForcesOf = "nothing"
     applies_loads: bool = False
     applies_constant_friction: bool = False
+    applies_springs: bool = False
     profiles: Mapping[str, Profile] = field(
         default_factory=lambda: {"tuned": TUNED, "as-shipped": replace(TUNED, name="as-shipped")}
     )
@@ -132,6 +133,7 @@ class FakeSession:
                 settings=dict(self._settings),
                 velocity_shift=self._engine.velocity_shift,
                 acceleration_shift=0.0,
+                springs={n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()},
             )
         )
 
