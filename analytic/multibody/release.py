@@ -22,7 +22,7 @@ from models.motion import Motion, State
 from models.samples import samples
 from models.scene import Scene
 
-TOLERANCE = 1e-12
+TOLERANCE = 1e-13
 NUDGE = 1e-6
 """What the start is changed by to see it grow [rad, or of the longest link]."""
 LOOKS = 2001
@@ -237,7 +237,7 @@ def release_multibody(
     until_s : float
         For how long [s].
     method : Method
-        `Projection` is to about 1e-11; `Baumgarte` shows what that costs.
+        `Projection` is to about 1e-11 times the sensitivity; `Baumgarte` shows what that costs.
     near : State or None
         Where to look for the position of the start; None for a scene that names the angles of its
         links in ``[start]``.
