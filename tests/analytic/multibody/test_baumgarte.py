@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from analytic.multibody.baumgarte_table import STABLE, baumgarte_table
-from analytic.multibody.release import Baumgarte, release_multibody
+from analytic.multibody.multibody_motion import Baumgarte
+from analytic.multibody.release import release_multibody
+from models.errors import CrankcheckError
 from tests.analytic.multibody.scenes import THESIS, scene
 
 SWING = scene(THESIS.replace("start_deg", "speed_rad_s = 6.0\nstart_deg"))
@@ -33,3 +35,9 @@ def test_the_table_shows_the_order_the_best_and_where_it_fails() -> None:
     for row in rows:
         assert row.stable == (row.alpha * row.step_s <= STABLE)
         assert math.isinf(row.error) == (not row.stable)
+
+
+@pytest.mark.parametrize("wrong", [(-1.0, 0.0, None), (1.0, 1.0, 0.0), (math.nan, 0.0, 1e-3)])
+def test_numbers_that_let_nothing_decay_are_refused(wrong: tuple[float, float, float]) -> None:
+    with pytest.raises(CrankcheckError, match="give rates .* of 0 or more, and a step"):
+        Baumgarte(*wrong)
