@@ -39,5 +39,5 @@ def test_the_table_shows_the_order_the_best_and_where_it_fails() -> None:
 
 @pytest.mark.parametrize("wrong", [(-1.0, 0.0, None), (1.0, 1.0, 0.0), (math.nan, 0.0, 1e-3)])
 def test_numbers_that_let_nothing_decay_are_refused(wrong: tuple[float, float, float]) -> None:
-    with pytest.raises(CrankcheckError, match="give rates .* of 0 or more, and a step"):
+    with pytest.raises(CrankcheckError, match=r"give rates .* of 0 or more, and a step"):
         Baumgarte(*wrong)
