@@ -34,6 +34,12 @@ class Switch:
             return float(pushes.slide(self.load.slider, now).speed[0])
         return float(pushes.over(self.load, np.zeros(1), now)[0])
 
+    def of_state(self, pushes: Pushes, state: Array) -> float:
+        """That of a state, of q, q' and what else, (2 n + 1,)."""
+        n = pushes.assembly.size
+        now = pushes.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
+        return self.coordinate(pushes, now)
+
     def cell(self, x: float) -> int:
         """The number of the cell that a coordinate is in."""
         if self.period is None:
@@ -64,6 +70,11 @@ def _switches(pushes: Pushes) -> Iterator[Switch]:
             yield Switch(load, kinks, period, turning=False)
         if load.stroke != "both":
             yield Switch(load, (0.0,), None, turning=True)
+
+
+def state_cells(own: tuple[Switch, ...], pushes: Pushes, state: Array) -> Array:
+    """The cells that the switches are in at a state (2 n + 1,)."""
+    return np.array([switch.cell(switch.of_state(pushes, state)) for switch in own], dtype=int)
 
 
 def strokes(own: tuple[Switch, ...], cells: Array) -> Strokes:

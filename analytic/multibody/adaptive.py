@@ -15,32 +15,21 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.integrate import DOP853, OdeSolution  # type: ignore[import-untyped]  # ships no stubs
-from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
+from analytic.multibody.course import Course
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.passage import NEAR, Passage, passage_ahead, smallest_singular
 from analytic.multibody.pushes import Strokes
-from analytic.multibody.switches import Switch, edges, strokes, switches
+from analytic.multibody.switches import Switch, edges, state_cells, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
 
-LARGEST = 1e12
-"""Of a coordinate or rate, over what it counts as one of: beyond it a motion has come apart."""
 MOST_STEPS = 1_000_000
 CAREFUL = 0.1
 """The smallest singular value of the constraints, of rows of the largest entry 1, below which the
 stages of a step are put back onto the constraints as well: what they are off by, which is more than
 the step is, counts there over that value."""
-
-
-@dataclass(frozen=True)
-class Course:
-    """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
-
-    state: Callable[[Array], Array]
-    steps: int
-    passages: tuple[Passage, ...] = ()
 
 
 @dataclass
@@ -95,20 +84,12 @@ class Adaptive:
 
     def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
         """The cells in which the switches are as the motion starts, or into which it moves."""
-        cells = self._cells(own, state)
+        cells = state_cells(own, self.dynamics.pushes, state)
         if not any(switch.turning for switch in own):
             return cells
         slope = self.dynamics.rates(0.0, state, strokes(own, cells))
-        ahead = self._cells(own, state + 1e-9 * slope)
+        ahead = state_cells(own, self.dynamics.pushes, state + 1e-9 * slope)
         return np.where([switch.turning for switch in own], ahead, cells)
-
-    def _cells(self, own: tuple[Switch, ...], state: Array) -> Array:
-        return np.array([switch.cell(self._coordinate(switch, state)) for switch in own], dtype=int)
-
-    def _coordinate(self, switch: Switch, state: Array) -> float:
-        n = self.dynamics.assembly.size
-        now = self.dynamics.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
-        return switch.coordinate(self.dynamics.pushes, now)
 
     def _stretch(
         self,
@@ -236,7 +217,8 @@ class Adaptive:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a
         slider that turned there, and is on its way back at the end."""
         found: list[_Crossing] = []
-        arrived = self._cells(own, solver.y)
+        pushes = self.dynamics.pushes
+        arrived = state_cells(own, self.dynamics.pushes, solver.y)
         if np.array_equal(arrived, cells):
             return None
         within = solver.dense_output()
@@ -247,7 +229,7 @@ class Adaptive:
             kink = switch.begin(int(max(cells[number], after[number])))
 
             def beyond(time_s: float, switch: Switch = switch, kink: float = kink) -> float:
-                return self._coordinate(switch, within(time_s)) - kink
+                return switch.of_state(pushes, within(time_s)) - kink
 
             at_s, begin, end = float(solver.t_old), beyond(solver.t_old), beyond(solver.t)
             if begin * end < 0.0:
@@ -257,65 +239,3 @@ class Adaptive:
                 continue
             found.append(_Crossing(at_s, after, switch.load.name, str(switch.load.slider)))
         return min(found, key=lambda one: one.at_s, default=None)
-
-
-@dataclass(frozen=True)
-class FixedSteps:
-    """The method of Runge and Kutta of order 4 with steps of one size, as the thesis on elastic
-    mechanisms has it; in between cubics, of the same order. Edges over time are at steps."""
-
-    dynamics: Dynamics
-    step_s: float
-
-    def course(self, q: Array, rates: Array, until_s: float) -> Course:
-        """The motion from a state to a time [s]. Raises CrankcheckError where it comes apart."""
-        own = switches(self.dynamics.pushes)
-        state = np.concatenate([q, rates, [0.0]])
-        times, states, slopes = [], [], []
-        edge = edges(self.dynamics.pushes, until_s)
-        for begin, end in itertools.pairwise(edge):
-            count = max(1, math.ceil((end - begin) / self.step_s * (1.0 - 1e-9)))
-            h, last = (end - begin) / count, math.nextafter(end, begin)
-            for i in range(count):
-                at_s = begin + i * h
-                held = strokes(own, self._cells(own, state))
-                slope, state_after = self._step(at_s, h, last, state, held)
-                times.append(at_s)
-                states.append(state)
-                slopes.append(slope)
-                state = state_after
-                self._check(state, at_s + h)
-        held = strokes(own, self._cells(own, state))
-        times.append(until_s)
-        states.append(state)
-        slopes.append(self.dynamics.rates(until_s, state, held))
-        spline = CubicHermiteSpline(np.array(times), np.array(states), np.array(slopes))
-        return Course(lambda time_s: np.asarray(spline(time_s).T), len(times) - 1)
-
-    def _cells(self, own: tuple[Switch, ...], state: Array) -> Array:
-        assembly = self.dynamics.assembly
-        if not own:
-            return np.zeros(0, dtype=int)
-        n = assembly.size
-        now = assembly.at_rates(state[None, :n], state[None, n : 2 * n])
-        pushes = self.dynamics.pushes
-        return np.array([switch.cell(switch.coordinate(pushes, now)) for switch in own], dtype=int)
-
-    def _step(
-        self, at_s: float, h: float, last: float, state: Array, held: Strokes
-    ) -> tuple[Array, Array]:
-        """The slope at the begin of a step, and the state at its end."""
-        rates = self.dynamics.rates
-        with np.errstate(all="ignore"):
-            k1 = rates(at_s, state, held)
-            k2 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k1, held)
-            k3 = rates(min(at_s + 0.5 * h, last), state + 0.5 * h * k2, held)
-            k4 = rates(min(at_s + h, last), state + h * k3, held)
-        return k1, state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-
-    def _check(self, state: Array, time_s: float) -> None:
-        if not np.abs(state).max() < LARGEST:
-            raise CrankcheckError(
-                f"{self.dynamics.assembly.scene.name}: with steps of {self.step_s:g} s the motion "
-                f"comes apart at {time_s:g} s; take smaller ones, or a smaller alpha and beta"
-            )
