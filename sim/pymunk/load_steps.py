@@ -49,6 +49,11 @@ class LoadSteps:
             for load in scene.loads.values()
             if load.over == "omega"
         }
+        self._of_strokes = {
+            name: replace(load, stroke="both")
+            for name, load in scene.loads.items()
+            if load.stroke != "both" and drive == "free"
+        }
         self._begun = False
         self._times: list[float] = []
         self._known: dict[str, list[float]] = {}
@@ -89,14 +94,14 @@ class LoadSteps:
         }
         omega = self._turning[load.body].rate if load.over == "omega" else 0.0
         now = self._times[step], crank.angle + self._dt * crank.angular_velocity, sliders, omega
-        if load.stroke == "both" or self._drive != "free":
-            return load.size(*now)
-        assert load.slider is not None
-        return self._share_of_stroke(load) * replace(load, stroke="both").size(*now)
+        if load.name in self._of_strokes:
+            return self._share_of_stroke(load) * self._of_strokes[load.name].size(*now)
+        return load.size(*now)
 
     def _share_of_stroke(self, load: Load) -> float:
         """The share of the step about its end in which the slider is on the stroke of the load."""
-        course = self._tracks[str(load.slider)].course
+        assert load.slider is not None
+        course = self._tracks[load.slider].course
         before, here = course.rate_before, course.rate
         after = 2.0 * here - before
         low, high = min(before, after), max(before, after)

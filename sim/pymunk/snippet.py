@@ -13,9 +13,9 @@ DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: the crank is a kinematic body with its origin on its pivot and a "
     "constant angular_velocity; the others start with the velocities that go with it.",
     "servo": "Drive: a SimpleMotor between the crank and the ground, rate = speed.",
-    "free": "Drive: none. Every link is dynamic, the crank pinned to the ground like others; "
-    "positions are those of the start, velocities those of half a step later, v + a dt / 2 and "
-    "omega + alpha dt / 2: with those of the start itself errors fall as dt. What acts is set "
+    "free": "Drive: none. Every link is a dynamic body, the crank pinned to the ground as well. "
+    "Positions are those of the start, velocities those of half a step later, v + a dt / 2 and "
+    "omega + alpha dt / 2; with those of the start itself errors fall as dt. What acts is set "
     "before each step, with the size and the place of its end.",
 }
 """How the crank of the measured runs was driven."""
@@ -45,11 +45,8 @@ def pymunk_snippet(
             f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
             "contacts' too"
         )
-    lines += [
-        *_alone(complete, defaults),
-        *_steps(stepping, drive),
-        *comment([DRIVES[drive]], WIDTH),
-    ]
+    lines += [*_alone(complete, defaults), *_steps(stepping, drive)]
+    lines += comment([DRIVES[drive]], WIDTH)
     return "\n".join(lines) + "\n"
 
 
