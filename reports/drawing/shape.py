@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
 from reports.drawing.beside_locking import clear_of_locking
-from reports.drawing.true_motion import true_motion
 
 PATH_SAMPLES = 361
 MARGIN = 0.14
@@ -38,7 +38,7 @@ def turn_of(
         return _free(scene, time_s, with_forces=with_forces)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
-    motion = true_motion(scene, time_s)
+    motion = solve(scene, time_s, bound=False)
     if not with_forces:
         return motion
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)

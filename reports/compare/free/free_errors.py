@@ -119,7 +119,7 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
 
 
 def _travel(beside: FreeBeside) -> float:
-    """What the driver turns through, weighed with the square of speed over peak speed [rad]."""
+    """The angle that the driver turns through, weighed as `Errors.travel_rad` says."""
     speed = np.abs(beside.reference.links[beside.scene.driver.link].omega)
     peak = beside.scene.driver.law.peak_speed_rad_s
     return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))

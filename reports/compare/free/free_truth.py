@@ -81,9 +81,9 @@ class FreeTruth(Truth):
         """The motion that leads to the start, within a step of it: there some engines have the
         velocities of their first sample. The third rate of the driver is taken as constant."""
         link, h = self.scene.driver.link, -float(time_s[0])
-        early = self.let_go.at(np.array([0.0, h])).links[link]
+        early = self.let_go.at(np.array([0.0, h, 2.0 * h])).links[link]
         theta, omega, alpha = early.theta[0], early.omega[0], early.alpha[0]
-        jerk = (early.alpha[1] - alpha) / h
+        jerk = (4.0 * early.alpha[1] - 3.0 * alpha - early.alpha[2]) / (2.0 * h)
         t = time_s
         return solve_driven(
             self.scene,
