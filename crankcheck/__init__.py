@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from reports.compare.errors import Error, Errors
     from reports.face.cell_verdict import CellVerdict, check
     from reports.face.comparison import Comparison, compare
+    from reports.face.free_solution import FreeSolution
     from reports.face.log_verdict import LogVerdict, judge
     from reports.face.model_verdict import ModelVerdict, check_model
     from reports.face.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
@@ -87,6 +88,7 @@ __all__ = [
     "Errors",
     "Finding",
     "Forces",
+    "FreeSolution",
     "LogVerdict",
     "MachineCycle",
     "MachineFlywheel",
@@ -140,6 +142,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import cell_verdict as home
             case "Comparison" | "compare":
                 from reports.face import comparison as home
+            case "FreeSolution":
+                from reports.face import free_solution as home
             case "LogVerdict" | "judge":
                 from reports.face import log_verdict as home
             case "ModelVerdict" | "check_model":

@@ -37,6 +37,8 @@ from models.loads import Load
 from models.motion import State
 from models.poses import Frame, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider
+from models.spring_ends import line_ends, whole_turns
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim import drive, load_magnitudes
 from sim.engine import (
     BodyPose,
@@ -70,9 +72,11 @@ __all__ = [
     "ForcesOf",
     "Frame",
     "Joints",
+    "LineSpring",
     "Load",
     "Log",
     "Pin",
+    "PinSpring",
     "Placing",
     "Point",
     "Poses",
@@ -84,9 +88,11 @@ __all__ = [
     "SettingError",
     "SettingValue",
     "Settings",
+    "SlideSpring",
     "Slider",
     "SliderForces",
     "Slot",
+    "Spring",
     "State",
     "block_name",
     "blocks",
@@ -100,9 +106,11 @@ __all__ = [
     "frames",
     "joined_at",
     "joints",
+    "line_ends",
     "load_magnitudes",
     "local_point",
     "mass_of",
     "sliding_angle",
     "tree",
+    "whole_turns",
 ]

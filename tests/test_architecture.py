@@ -48,7 +48,7 @@ FLOORS: Mapping[str, str] = {
         change_points check reach result
         turns
         dyads
-        structure
+        structure multibody
     """,
     "sim": f"""
         {" ".join(ENGINES)}

@@ -147,4 +147,4 @@ def test_pip_installs_it_from_its_folder_and_it_holds_the_contract(tmp_path: Pat
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "HOLDS THE CONTRACT: penalty 1.0, 23 of 23 clauses" in done.stdout
+    assert "HOLDS THE CONTRACT: penalty 1.0, 24 of 24 clauses" in done.stdout

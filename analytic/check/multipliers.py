@@ -25,9 +25,10 @@ from analytic.check.body_samples import BodySamples, body_samples, cross, weight
 from analytic.check.constraints import Constraints
 from analytic.check.friction import rubbing_samples, turning
 from analytic.check.spring_samples import springs_on_bodies
+from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.errors import CrankcheckError
-from models.forces import Forces, SliderForces
+from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
 
@@ -164,17 +165,6 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
 
 
 def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
-    """What the multipliers mean: pushes along the gradients of the equations, in their order."""
-    pins: dict[str, dict[str, Array]] = {}
-    row = 0
-    for point, first, other in system.pin_pairs():
-        push = pushes[:, row : row + 2]
-        held = pins.setdefault(point, {})
-        held[first] = held.get(first, 0.0) + push
-        held[other] = held.get(other, 0.0) - push
-        row += 2
-    sliders: dict[str, SliderForces] = {}
-    for name in scene.sliders:
-        sliders[name] = SliderForces(pushes[:, row], pushes[:, row + 1])
-        row += 2
-    return Forces(time_s, pins, sliders, pushes[:, row])
+    """What the multipliers mean: pushes along the gradients of the equations, in their order, the
+    driver's last."""
+    return joint_forces(scene, system.pin_pairs(), time_s, pushes[:, :-1], pushes[:, -1])

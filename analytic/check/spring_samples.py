@@ -11,9 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from analytic.check.body_samples import body_samples, cross
-from analytic.structure.mobility import sliding_body
 from models.array import Array
-from models.joints import block_name, local_point
+from models.joints import block_name, local_point, sliding_body
 from models.motion import Motion
 from models.scene import GROUND, Point, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring

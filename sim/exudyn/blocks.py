@@ -1,6 +1,7 @@
 """What acts on slider blocks without mass, which exudyn has no body for: read off the motion.
 
-Nothing is left in such a block: what its guide, its loads and friction give it goes to its pin.
+Nothing is left in such a block: what its guide, its loads, springs and friction give it goes to its
+pin.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from models.friction import ConstantFriction
 from models.joints import block_name, joined_at, sliding_angle
 from models.loads import Load
 from models.scene import GROUND, Scene, Slider
+from models.springs import SlideSpring
 from sim.engine import Poses
 from sim.exudyn.friction import against, still_rad_s
 from sim.measure import motion
@@ -30,7 +32,7 @@ class BlockLoads:
         return zero if body == GROUND else self._poses.bodies[body].theta
 
     def force(self, slider: Slider) -> Array:
-        """All forces on the block, friction of its line among them."""
+        """All forces on the block, friction and springs of its line among them."""
         line = self.theta(slider.on) + slider.direction_rad
         total = np.zeros((len(line), 2))
         for load in self._of(slider):
@@ -42,6 +44,11 @@ class BlockLoads:
             still = still_rad_s(self._scene) * self._scene.longest_m
             speed = self._motion.sliders[slider.name].speed
             total += against(friction.size, speed, still)[:, None] * unit(line)
+        for spring in self._scene.springs.values():
+            if isinstance(spring, SlideSpring) and spring.slider == slider.name:
+                slid = self._motion.sliders[slider.name]
+                pull = spring.rate * (slid.displacement - spring.free)
+                total -= (pull + spring.damping * slid.speed)[:, None] * unit(line)
         return total
 
     def torque(self, slider: Slider) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sim.engine import Engine
 from sim.exudyn.library import VERSION
 from sim.exudyn.session import ExudynSession
-from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, placing
+from sim.exudyn.settings import AS_SHIPPED, TUNED, checked, of_drive, placing
 
 ENGINE = Engine(
     "exudyn",
@@ -13,9 +13,11 @@ ENGINE = Engine(
     version=lambda: VERSION,
     check=checked,
     open=ExudynSession,
+    holds=lambda settings, dt_s, drive: of_drive(settings, drive),
     placing=placing,
     in_seconds=lambda settings: (),
     forces_of="states",
     applies_loads=True,
     applies_constant_friction=True,
+    applies_springs=True,
 )

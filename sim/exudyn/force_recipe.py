@@ -130,12 +130,14 @@ for k, (time_s, against) in enumerate(driving[:, :2]):
 
 
 def exudyn_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """The program; of scenes without loads and friction, at constant speed. See `ForceRecipe`."""
+    """The program; of scenes without loads, springs and friction, at constant speed. See
+    `ForceRecipe`."""
     law = scene.driver.law
     lacking = [
         what
         for what, there in (
             ("loads", scene.loads),
+            ("springs", scene.springs),
             ("friction", scene.friction),
             ("a driver whose speed changes", not isinstance(law, ConstantSpeed)),
         )

@@ -13,14 +13,16 @@ from models.joints import bodies, sliding_angle
 from models.loads import Load
 from models.motion import State
 from models.scene import Point, Scene
+from models.staircase import Staircase
 from sim.engine import Drive
 from sim.exudyn.applied import Applied, Size, massless_blocks
+from sim.exudyn.jumps import StepMeans
 from sim.exudyn.present import Present
 from sim.load_magnitudes import ahead, known_ahead
 
 
 def apply_loads(
-    scene: Scene, state: State, drive: Drive, applied: Applied, present: Present
+    scene: Scene, state: State, drive: Drive, dt_s: float, applied: Applied, present: Present
 ) -> None:
     """Add all loads. Raises EngineError for one on a body that the scene has not."""
     massless = massless_blocks(scene)
@@ -30,7 +32,7 @@ def apply_loads(
             raise EngineError(
                 f"loads.{load.name}: found body {load.body}; use one of {few(known, 12)}"
             )
-        size = _size(scene, load, state.time_s, drive, present)
+        size = _size(scene, load, state.time_s, drive, dt_s, present)
         if load.point is None:
             applied.torque(load.body, size)
             continue
@@ -44,11 +46,27 @@ def apply_loads(
             applied.force(marker, _along(size, load.direction_rad), in_body=in_body)
 
 
-def _size(scene: Scene, load: Load, start_s: float, drive: Drive, present: Present) -> Size | float:
-    """How large a load is: a number where it is always the same."""
+def follows_rates(scene: Scene, drive: Drive) -> bool:
+    """Whether a load is by a speed that is not known before the step."""
+    return drive != "prescribed" and any(
+        load.over in ("omega", "speed") for load in scene.loads.values()
+    )
+
+
+def _size(
+    scene: Scene, load: Load, start_s: float, drive: Drive, dt_s: float, present: Present
+) -> Size | float:
+    """How large a load is: a number where it is always the same.
+
+    Where it moves the mechanism, what jumps at a time is as its impulse wants it (`StepMeans`); of
+    a crank that is moved all forces are those of the instant.
+    """
     if isinstance(load.characteristic, Constant) and load.stroke == "both":
         return load.characteristic.value
     if known_ahead(load, drive):
+        if isinstance(load.characteristic, Staircase) and drive != "prescribed":
+            means = StepMeans(load.characteristic, start_s, dt_s)
+            return lambda _, time_s: means.at(start_s + time_s)
         return _told(scene, load, start_s)
 
     def of_present(system: Any, time_s: float) -> float:

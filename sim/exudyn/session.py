@@ -19,11 +19,12 @@ from sim.exudyn.crank import CrankCourse
 from sim.exudyn.crank_drive import CrankDrive
 from sim.exudyn.friction import apply_friction
 from sim.exudyn.library import VERSION, exu, items, plain, quiet
-from sim.exudyn.loads import apply_loads
+from sim.exudyn.loads import apply_loads, follows_rates
 from sim.exudyn.present import Present
 from sim.exudyn.reactions import reactions
-from sim.exudyn.settings import checked
+from sim.exudyn.settings import checked, of_drive
 from sim.exudyn.solver import constraints, held, initialized, multipliers, simulation
+from sim.exudyn.springs import Springs
 from sim.exudyn.step_multipliers import Multipliers
 from sim.exudyn.system import build, masses
 
@@ -43,6 +44,7 @@ class ExudynSession:
                 f"dt: found {dt_s:g} s; exudyn ends a step to 1e-10 s, so it takes "
                 f"{LEAST_DT_S:g} s or more"
             )
+        settings = of_drive(settings, drive)
         self._scene, self._settings, self._dt, self._drive = scene, settings, dt_s, drive
         self._start_s, self._done = state.time_s, 0
         self._heard: list[str] = []
@@ -50,10 +52,11 @@ class ExudynSession:
             self._model = build(scene, state, prescribed=drive == "prescribed")
             self._system = self._model.system
             self._applied = self._loaded(state, drive)
+            self._springs = Springs(scene, state, self._model, self._applied.turning)
             self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
             self._sensors = self._sense()
             self._system.Assemble()
-            self._asked = simulation(settings, dt_s)
+            self._asked = simulation(settings, dt_s, of_rates=follows_rates(scene, drive))
             self._solver = self._initialized()
             course = self._crank.course
             first = None if course is None else self._set_off(course)
@@ -64,7 +67,7 @@ class ExudynSession:
         scene, applied = self._scene, Applied(self._scene, self._model)
         if scene.loads or scene.friction:
             present = Present(scene, state, self._model)
-            apply_loads(scene, state, drive, applied, present)
+            apply_loads(scene, state, drive, self._dt, applied, present)
             apply_friction(scene, drive, self._model, applied, present)
         return applied
 
@@ -137,6 +140,7 @@ class ExudynSession:
             settings=dict(self._settings) | held(self._asked, self._solver),
             velocity_shift=0.0,
             acceleration_shift=0.0,
+            springs=self._springs.held(),
         )
 
     def step(self, steps: int) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sim.engine import Drive, Settings
-from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE
+from sim.exudyn.settings import AS_SHIPPED, BY_NEED, MOST_DENSE, of_drive
 from sim.snippets import SnippetWriter, Stepping, comment
 
 WIDTH = 96
@@ -31,7 +31,7 @@ def exudyn_snippet(
     rest of a user's system and stands in a comment; see `sim.snippets.snippet`.
     """
     defaults = {name: setting.value for name, setting in AS_SHIPPED.settings.items()}
-    complete = defaults | dict(settings)
+    complete = of_drive(defaults | dict(settings), drive)
     lines = [
         *comment(head, WIDTH),
         "stepping = simulationSettings.timeIntegration",

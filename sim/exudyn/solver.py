@@ -12,10 +12,12 @@ from sim.exudyn.library import exu, quiet
 from sim.exudyn.settings import BY_NEED, MOST_DENSE
 
 
-def simulation(settings: Settings, dt_s: float) -> Any:
+def simulation(settings: Settings, dt_s: float, *, of_rates: bool = False) -> Any:
     """exudyn's settings of a simulation that writes no files and prints nothing of its own.
 
-    Its sensors keep every step, and no step is longer than ``dt_s``.
+    Its sensors keep every step, and no step is longer than ``dt_s``. With loads ``of_rates``
+    Newton's method takes into account how these change in a step: without, it does not converge
+    where a motor is steep.
     """
     asked = exu.SimulationSettings()
     asked.solution.file.write = False
@@ -23,6 +25,7 @@ def simulation(settings: Settings, dt_s: float) -> Any:
     stepping = asked.timeIntegration
     stepping.verboseMode = 0
     stepping.numberOfSteps, stepping.endTime = 1, dt_s
+    stepping.computeLoadsJacobian = 2 if of_rates else 0
     stepping.adaptiveStep = settings["adaptive_step"] == "enable"
     trapezoidal = settings["integrator"] == "TrapezoidalIndex2"
     stepping.generalizedAlpha.useNewmark = trapezoidal  # as exudyn's own SolveDynamic sets both
@@ -88,12 +91,13 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
 def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
     """The settings by our names, as the solver and what it is given hold them.
 
-    What ``linear_solver`` came to is ``linear_solver_used``.
+    What ``linear_solver`` came to is ``linear_solver_used``; ``loads_jacobian_used`` is there where
+    loads go by speeds.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
     per_step = "each-step" if newton.modifiedNewtonJacUpdatePerStep else "as-needed"
-    return {
+    told: dict[str, SettingValue] = {
         "timestep_s": float(solver.it.maxStepSize),
         "integrator": "TrapezoidalIndex2" if trapezoidal else "GeneralizedAlpha",
         "spectral_radius": float(asked.timeIntegration.generalizedAlpha.spectralRadius),
@@ -105,3 +109,6 @@ def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
         "linear_solver_used": str(linear.solverType.name),
         "ignore_singular": "enable" if linear.ignoreSingularJacobian else "disable",
     }
+    if asked.timeIntegration.computeLoadsJacobian:
+        told["loads_jacobian_used"] = "enable"
+    return told

@@ -68,13 +68,17 @@ class PlaneSystem:
 
     def crank_markers(self, link: str) -> list[Index]:
         """New markers of an angle of the ground and of that of a body."""
-        still = self.system.AddNode(items.NodePointGround())
-        return [
-            self.system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=still, coordinate=0)),
-            self.system.AddMarker(
-                items.MarkerNodeCoordinate(nodeNumber=self.node[link], coordinate=ANGLE)
-            ),
-        ]
+        return [self.angle_marker(GROUND), self.angle_marker(link)]
+
+    def angle_marker(self, name: str) -> Index:
+        """A new marker of the angle of a body or of the ground, which both count from the start."""
+        if name == GROUND:
+            node, coordinate = self.system.AddNode(items.NodePointGround()), 0
+        else:
+            node, coordinate = self.node[name], ANGLE
+        return self.system.AddMarker(
+            items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
+        )
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:

@@ -191,14 +191,21 @@ def _pose(pose: object, size: int) -> str:
 
 def _facts(facts: Facts) -> Iterator[str]:
     """What is of a wrong kind in facts."""
-    for name in ("mass_kg", "inertia_kg_m2", "centre_m", "settings"):
+    for name in ("mass_kg", "inertia_kg_m2", "centre_m", "settings", "springs"):
         if not isinstance(getattr(facts, name), Mapping):
             yield f"gave {shown(getattr(facts, name))} for {name}, and has to give a dict"
     for name in ("velocity_shift", "acceleration_shift"):
         value = getattr(facts, name)
-        if not isinstance(value, int | float) or not math.isfinite(value):
+        if not _is_number(value):
             yield f"gave {shown(value)} for {name}, and has to give a number of steps"
+    for name, spring in facts.springs.items() if isinstance(facts.springs, Mapping) else ():
+        if not (isinstance(spring, tuple) and len(spring) == 3 and all(map(_is_number, spring))):
+            yield f"gave {shown(spring)} for spring {name}, and has to give (rate, damping, free)"
     for what, pairs in (("gravity_m_s2", [facts.gravity_m_s2]), ("centre_m", facts.centre_m)):
         each = pairs.values() if isinstance(pairs, Mapping) else pairs
         if not all(isinstance(pair, tuple) and len(pair) == 2 for pair in each):
             yield f"gave {shown(list(each))} for {what}, and has to give pairs (x, y)"
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)

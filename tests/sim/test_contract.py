@@ -21,9 +21,14 @@ from sim.settings import resolved
 
 DT_S = 1e-3
 FAKE = ("fake", "fake-staggered")
-NOT_OF_FAKES = {"EC52": "placing is solved", "EC55": "told to refuse drive free"}
+NOT_OF_FAKES = {
+    "EC52": "placing is solved",
+    "EC55": "told to refuse drive free",
+    "EC93": "told to refuse drive free",
+}
 """What the fake engines do not promise."""
 OF_FORCES = {"EC81", "EC82", "EC83", "EC84", "EC85", "EC86"}
+OF_LOADS, OF_SPRINGS = {"EC85", "EC94"}, {"EC91", "EC92"}
 """Clauses of what an engine need not declare."""
 REFUSED = {("mujoco", "EC86"): "slotted-lever"}
 """A scene that an engine refuses in one clause alone: friction in the pin that closes its loop."""
@@ -48,7 +53,7 @@ def test_every_engine_holds_the_contract(adapter: Engine, clause: str) -> None:
     ruling = put_to(adapter, CLAUSES[clause], scenes)
     assert ruling.breaches == ()
     untried = NOT_OF_SOLVERS if adapter.name in SOLVERS else {} if ours else NOT_OF_FAKES
-    if clause in OF_FORCES and not declares(adapter, clause):
+    if clause in OF_FORCES | OF_LOADS | OF_SPRINGS and not declares(adapter, clause):
         assert ruling.answer == "not tried"
     elif clause in untried:
         assert untried[clause] in ruling.untried[0]
@@ -58,8 +63,10 @@ def test_every_engine_holds_the_contract(adapter: Engine, clause: str) -> None:
 
 
 def declares(adapter: Engine, clause: str) -> bool:
-    """Whether an engine declares what a clause of forces is of."""
-    if clause == "EC85":
+    """Whether an engine declares what a clause of forces, loads or springs is of."""
+    if clause in OF_SPRINGS:
+        return adapter.applies_springs
+    if clause in OF_LOADS:
         return adapter.applies_loads
     return adapter.forces_of != "nothing" and (
         adapter.applies_constant_friction or clause != "EC86"

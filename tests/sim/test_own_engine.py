@@ -120,6 +120,7 @@ def test_a_module_that_fails_is_told_in_one_line(folder: Path, line: str, words:
         ("reports_accelerations=False", "order=0", "order is 0; give a whole number above 0"),
         ("reports_accelerations=False", "reports_accelerations=0", "give True or False"),
         ("reports_accelerations=False", "applies_loads=1", "applies_loads is 1; give True or"),
+        ("reports_accelerations=False", "applies_springs=None", "applies_springs is None; give"),
         ("reports_accelerations=False", "forces_of='all'", "forces_of is 'all'; give nothing or s"),
     ],
 )
@@ -186,6 +187,12 @@ READ = "return self._poses([self._row()])"
         ),
         ("velocity_shift=SHIFT", "velocity_shift=None", "facts gave None for velocity_shift"),
         ("gravity_m_s2=self.scene", "gravity_m_s2=[0.0] or self.scene", "gravity_m_s2, and has to"),
+        (
+            "settings={**self",
+            "springs={'s': (1.0, None, 0.0)}, settings={**self",
+            r"gave \(1.0, None, 0.0\) for spring s, and has to give \(rate, damping, free\)",
+        ),
+        ("settings={**self", "springs=[], settings={**self", r"gave \[\] for springs, and has"),
         (READ, "return None", "facts gave None for poses, and has to give Poses"),
         (", omega, none, none[:, 0].copy())", ", omega, none, none)", r"alpha as float64 of shape"),
         ("theta, speed, omega", "theta.astype('f'), speed, omega", "crank theta as float32"),

@@ -11,12 +11,13 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Sine
+from models.characteristics import Constant, Sine
 from models.forces import Forces
 from models.friction import ConstantFriction
 from models.loads import Load
 from models.motion import State
 from models.scene import Scene
+from models.springs import LineSpring, Spring
 from sim.engine import (
     BodyPose,
     Drive,
@@ -438,6 +439,52 @@ def _rubbing_less(scene: Scene) -> Scene:
     return replace(scene, friction=friction)
 
 
+def of_springs(change: Callable[[Spring], Spring | None]) -> Callable[[Engine], Engine]:
+    """An engine that has other springs, or none, and says that it has those of the scene."""
+
+    def meddle(_: Engine) -> Engine:
+        sound = engine("exudyn")
+
+        def opened(scene: Scene, *asked: Any) -> Session:
+            own = {name: change(spring) for name, spring in scene.springs.items()}
+            springs = {name: spring for name, spring in own.items() if spring is not None}
+            session = sound.open(replace(scene, springs=springs), *asked)
+            told = {n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()}
+            return Meddled(session, facts_=lambda facts: replace(facts, springs=told))
+
+        return replace(sound, open=opened)
+
+    return meddle
+
+
+def _elsewhere(spring: Spring) -> Spring:
+    """A spring between points at the first point of the ground, and not at its own."""
+    if not isinstance(spring, LineSpring):
+        return spring
+    return replace(spring, points=("A", spring.points[1]))
+
+
+def _deaf_load(scene: Scene) -> Scene:
+    """Loads over a speed as they are at a speed of 1."""
+    loads = {
+        name: load
+        if load.over not in ("omega", "speed")
+        else replace(
+            load, over="time", slider=None, characteristic=Constant(load.magnitude(np.ones(1))[0])
+        )
+        for name, load in scene.loads.items()
+    }
+    return replace(scene, loads=loads)
+
+
+def _leaking(
+    scene: Scene, state: State, settings: Settings, dt_s: float, drive: Drive
+) -> tuple[Any, ...]:
+    """Free, it loses half its speed in a second."""
+    lossy = {**settings, "damping": 0.5} if drive == "free" else settings
+    return scene, state, lossy, dt_s, drive
+
+
 def _weightless_loads(_: Engine) -> Engine:
     """It reports no forces, says that it takes loads, and leaves them out."""
     own = engine("pymunk")
@@ -531,7 +578,7 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         "EC41",
         "is not that of its places",
         lambda e: meddled(e, record_=of_log(_slow_one(1.08), 700)),
-        set(),
+        {"EC93"},
     ),
     "lag unsaid": (
         "EC41",
@@ -554,15 +601,15 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
     ),
     "handed back": ("EC53", "placing is integrated with order 2", _exact, set()),
     "in seconds": ("EC54", "a thousandth as fast", _in_seconds, {"EC52", "EC53"}),
-    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), set()),
-    "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), set()),
-    "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), set()),
-    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), set()),
+    "weightless": ("EC55", "free, gravity along y moves", _pulled(0.0, 0.0), {"EC93"}),
+    "nearly weightless": ("EC55", "free, gravity along y moves", _pulled(0.01, 0.01), {"EC93"}),
+    "too heavy": ("EC55", "free, gravity along y moves", _pulled(10.0, 10.0), {"EC93"}),
+    "pulled down alone": ("EC55", "free, gravity along x moves", _pulled(0.0, 1.0), {"EC93"}),
     "slowed": (
         "EC55",
         "without gravity, the centres of mass move",
         lambda e: opening(e, _slowed),
-        set(),
+        {"EC93", "EC94"},
     ),
     "at home": ("EC61", "moved by (3, -2) m", _at_home, set()),
     "another motion": ("EC81", "logs another motion", _shaken, set()),
@@ -613,7 +660,7 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         "EC85",
         "a force over time in the ground's frame on rocker",
         of_scene(lambda scene: replace(scene, loads={})),
-        set(),
+        {"EC94"},
     ),
     "load's frame": (
         "EC85",
@@ -627,8 +674,50 @@ FAULTS: Mapping[str, tuple[str, str, Callable[[Engine], Any], set[str]]] = {
         of_scene(_each_load(characteristic=_late_load)),
         set(),
     ),
-    "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads, set()),
+    "loads not felt": ("EC85", "free, loads like its weight", _weightless_loads, {"EC94"}),
     "rubs less": ("EC86", "friction in C", of_scene(_rubbing_less), set()),
+    "springs unsaid": (
+        "EC91",
+        "a spring in a pin: the engine does not hold rod: springs.pin is not there",
+        lambda _: meddled(engine("exudyn"), facts_=lambda f: replace(f, springs={})),
+        set(),
+    ),
+    "without springs": (
+        "EC92",
+        "a spring between two points: the body does not swing",
+        of_springs(lambda spring: None),
+        set(),
+    ),
+    "slack at nothing": (
+        "EC92",
+        "a spring between two points: the body swings about 1.712 rad, not 0.7",
+        of_springs(lambda spring: replace(spring, free=0.0)),
+        set(),
+    ),
+    "damped twice": (
+        "EC92",
+        "a spring in a pin: the body dies away by 1 1/s, not 0.5",
+        of_springs(lambda spring: replace(spring, damping=2.0 * spring.damping)),
+        set(),
+    ),
+    "fastened elsewhere": (
+        "EC92",
+        "a spring between a point and a slider: the body swings about",
+        of_springs(_elsewhere),
+        set(),
+    ),
+    "leaking": (
+        "EC93",
+        "of the energy that goes back and forth is gained or lost",
+        lambda e: opening(e, _leaking),
+        {"EC94"},
+    ),
+    "deaf to its speed": (
+        "EC94",
+        "a torque over the angular velocity of its link: after",
+        of_scene(_deaf_load),
+        set(),
+    ),
     "blunt": ("EC71", "open raised KeyError: 'motor'", _blunt, set()),
 }
 

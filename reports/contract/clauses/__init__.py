@@ -7,6 +7,7 @@ from reports.contract.clauses import (
     declared,
     elsewhere,
     felt,
+    freed,
     physics,
     rates,
     reactions,
@@ -27,6 +28,7 @@ CLAUSES: dict[str, Clause] = {
         refusals,
         reactions,
         felt,
+        freed,
     )
     for clause in room.CLAUSES
 }

@@ -15,9 +15,8 @@ import numpy as np
 from mpmath import matrix, mp, mpf
 
 from analytic.kinematics import solve
-from analytic.structure.mobility import sliding_body
 from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
-from models.joints import block_name, local_point
+from models.joints import block_name, local_point, sliding_body
 from models.loads import Load
 from models.scene import GROUND, Point, Scene, Slider
 from models.springs import PinSpring, SlideSpring, Spring

@@ -1,0 +1,187 @@
+"""Springs that hold one body each, whose motion is the damped oscillation of the textbooks.
+
+::
+
+    q'' + 2 decay q' + pace^2 (q - rest) = 0
+
+A rod on a pin, with a spring in the pin, or between its end and a point across its way; a block on
+a line, with a spring along it, or to a point of it. Without weight; let go at rest. What an engine
+makes of it is read back from samples at even times: q(n + 1) = a q(n) + b q(n - 1) + c holds of
+each such motion to the last digit, and a, b, c tell pace, decay and rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from models.array import Array
+from models.motion import State
+from models.released import Released
+from models.scene import GROUND, Driver, Link, Point, Scene, Slider
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+from sim.engine import Poses
+from sim.measure import motion
+
+PACE, DECAY = 10.0, 0.5
+"""Of all of them, in rad/s and 1/s."""
+PERIODS, SAMPLES, STEPS = 3, 16, 40
+"""Periods that are looked at, samples in each, and steps between two samples."""
+DURATION_S = PERIODS * math.tau / PACE
+LENGTH_M, MASS_KG, BLOCK_KG = 0.5, 1.2, 0.8
+BASE_RAD = 0.7
+"""Where the rod stands when nothing turns it, where that is to be chosen."""
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """One body at a spring, as it is let go: ``body`` is the link, or the slider, whose angle or
+    displacement q is."""
+
+    words: str
+    scene: Scene
+    state: State
+    body: str
+    rest: float
+    amplitude: float
+
+    @property
+    def unit(self) -> str:
+        return "rad" if self.body in self.scene.links else "m"
+
+    def read(self, poses: Poses) -> Swing:
+        """The oscillation in the poses."""
+        seen = motion(self.scene, poses)
+        if self.body in seen.links:
+            return Swing.of(seen.links[self.body].theta, seen.time_s)
+        return Swing.of(seen.sliders[self.body].displacement, seen.time_s)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Natural angular velocity [rad/s], decay [1/s] and place of rest; NaN where none swings."""
+
+    pace: float
+    decay: float
+    rest: float
+
+    @staticmethod
+    def of(q: Array, time_s: Array) -> Swing:
+        """That of samples at even times."""
+        step_s = float(time_s[1] - time_s[0])
+        if not np.isfinite(q).all():
+            return Swing(math.nan, math.nan, math.nan)
+        rows = np.stack([q[1:-1], q[:-2], np.ones(len(q) - 2)], axis=1)
+        a, b, c = np.linalg.lstsq(rows, q[2:], rcond=None)[0]
+        still = not np.ptp(q) > 1e-9 * np.abs(q).max()
+        if still or not -b > 0.0 or not abs(0.5 * a / math.sqrt(-b)) < 1.0:
+            return Swing(math.nan, math.nan, math.nan)
+        decay = -math.log(-b) / (2.0 * step_s)
+        damped = math.acos(0.5 * a / math.sqrt(-b)) / step_s
+        return Swing(math.hypot(damped, decay), decay, float(c / (1.0 - a - b)))
+
+
+def oscillators() -> Iterator[Oscillator]:
+    """One for each kind of spring, those of rods first."""
+    inertia = MASS_KG * LENGTH_M**2 / 3.0
+    stiff, damping = inertia * PACE**2, 2.0 * DECAY * inertia
+    # The free angle lies beyond half a turn, so that a wrapped angle is not where it has to be.
+    turned = PinSpring("pin", stiff, damping, math.pi + 0.2, "A", (GROUND, "rod"))
+    yield _rod("a spring in a pin", turned, rest=math.pi + 0.2, amplitude=-0.5)
+    # At rest the spring is slack and stands square on the rod.
+    gap = 0.8
+    c, s = math.cos(BASE_RAD), math.sin(BASE_RAD)
+    far = LENGTH_M * c - gap * s, LENGTH_M * s + gap * c
+    across = LineSpring("line", stiff / LENGTH_M**2, damping / LENGTH_M**2, gap, ("D", "B"))
+    yield _rod("a spring between two points", across, BASE_RAD, 0.04, {"D": far})
+    stiff, damping = BLOCK_KG * PACE**2, 2.0 * DECAY * BLOCK_KG
+    along = SlideSpring("slider", stiff, damping, 0.1, "C")
+    yield _block("a spring along a slider", along, rest=0.1, amplitude=0.15)
+    to_point = LineSpring("block", stiff, damping, 0.5, ("E", "C"))
+    yield _block("a spring between a point and a slider", to_point, rest=-0.1, amplitude=0.15)
+
+
+def rod_scene(points: dict[str, Point] | None = None) -> Scene:
+    """A rod from A to B on a pin, without weight; with other points of the ground."""
+    rod = Link(
+        "rod",
+        {"A": (0.0, 0.0), "B": (LENGTH_M, 0.0)},
+        MASS_KG,
+        (LENGTH_M / 2.0, 0.0),
+        MASS_KG * LENGTH_M**2 / 12.0,
+    )
+    law = Released(BASE_RAD, 0.0, DURATION_S)
+    ground = {"A": (0.0, 0.0), **(points or {})}
+    return Scene("rod", "contract", ground, {"rod": rod}, {}, Driver("rod", law))
+
+
+def block_scene() -> Scene:
+    """A block on a line beside a rod that nothing moves; E lies on the line, 0.6 m before it."""
+    through, direction = (0.1, -0.2), 0.5
+    behind = through[0] - 0.6 * math.cos(direction), through[1] - 0.6 * math.sin(direction)
+    slider = Slider("C", "C", GROUND, through, direction, mass_kg=BLOCK_KG, inertia_kg_m2=0.01)
+    return replace(rod_scene({"E": behind}), name="block", sliders={"C": slider})
+
+
+def rod_state(scene: Scene, theta: float, omega: float, alpha: float) -> State:
+    """The rod at an angle."""
+    c, s = math.cos(theta), math.sin(theta)
+    tip = LENGTH_M * c, LENGTH_M * s
+    return State(
+        time_s=0.0,
+        theta={"rod": theta},
+        omega={"rod": omega},
+        alpha={"rod": alpha},
+        position={**scene.ground, "B": tip},
+        velocity={
+            **dict.fromkeys(scene.ground, (0.0, 0.0)),
+            "B": (-omega * tip[1], omega * tip[0]),
+        },
+        acceleration={
+            **dict.fromkeys(scene.ground, (0.0, 0.0)),
+            "B": (
+                -alpha * tip[1] - omega**2 * tip[0],
+                alpha * tip[0] - omega**2 * tip[1],
+            ),
+        },
+        displacement={},
+        speed={},
+    )
+
+
+def block_state(scene: Scene, place_m: float, speed_m_s: float, push_m_s2: float) -> State:
+    """The block at a displacement, and the rod at rest."""
+    slider, rod = scene.sliders["C"], rod_state(scene, BASE_RAD, 0.0, 0.0)
+    c, s = math.cos(slider.direction_rad), math.sin(slider.direction_rad)
+    x, y = slider.through_m
+    return replace(
+        rod,
+        position={**rod.position, "C": (x + place_m * c, y + place_m * s)},
+        velocity={**rod.velocity, "C": (speed_m_s * c, speed_m_s * s)},
+        acceleration={**rod.acceleration, "C": (push_m_s2 * c, push_m_s2 * s)},
+        displacement={"C": place_m},
+        speed={"C": speed_m_s},
+    )
+
+
+def _rod(
+    words: str,
+    spring: Spring,
+    rest: float,
+    amplitude: float,
+    points: dict[str, Point] | None = None,
+) -> Oscillator:
+    bare = rod_scene(points)
+    law = Released(rest + amplitude, 0.0, DURATION_S)
+    scene = replace(bare, springs={spring.name: spring}, driver=Driver("rod", law))
+    state = rod_state(scene, rest + amplitude, 0.0, -(PACE**2) * amplitude)
+    return Oscillator(words, scene, state, "rod", rest, amplitude)
+
+
+def _block(words: str, spring: Spring, rest: float, amplitude: float) -> Oscillator:
+    scene = replace(block_scene(), springs={spring.name: spring})
+    state = block_state(scene, rest + amplitude, 0.0, -(PACE**2) * amplitude)
+    return Oscillator(words, scene, state, "C", rest, amplitude)
