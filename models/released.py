@@ -9,6 +9,9 @@ import numpy as np
 from models.array import Array
 from models.laws import Law
 
+LONGEST_S = 1e6
+"""For which a mechanism may be left free [s]."""
+
 
 @dataclass(frozen=True)
 class Released(Law):
