@@ -15,10 +15,12 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import get_args
+from unittest import mock
 
 from typer.main import get_command
 from typer.testing import CliRunner
 
+from analytic.free import integration
 from sim.engine import Status
 
 ACTING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -62,6 +64,8 @@ LET_GO = (
     "view FILE -o OUT.png",
 )
 """What files of mechanisms that are let go for a moment are tried with."""
+MOST_WINDOWS = 400
+"""Of an integration: as many as a user may wait for take minutes."""
 MOMENT = "solve FILE --duration 0.01 --steps 4"
 QUICK = (
     f"verify FILE --engine mujoco {_SHORT}",
@@ -146,6 +150,7 @@ def attempt(
             contextlib.chdir(home / "work"),
             _native_errors(home / "native") as native,
             _watched(home) as elsewhere,
+            mock.patch.object(integration, "MOST_WINDOWS", MOST_WINDOWS),
             warnings.catch_warnings(record=True) as caught,
         ):
             warnings.simplefilter("always")
