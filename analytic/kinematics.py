@@ -19,7 +19,7 @@ import numpy as np
 
 from analytic.change_points.find import passages, passed
 from analytic.change_points.sign import ChangePoints
-from analytic.dyads.chunk import Chunk
+from analytic.dyads.chunk import Chunk, Passage
 from analytic.dyads.parts import OpenError
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.dyads.steps import Step, prepare, stretched
@@ -84,7 +84,7 @@ def solve(
     """
     time_s = samples(time_s, "time_s")
     driver = _driver_of(scene, time_s, bound=bound)
-    ready = _prepared(Same(scene))
+    ready = prepared(scene)
     return ready.motion(Selection.of(scene, links, points, sliders), time_s, driver, bound=bound)
 
 
@@ -115,14 +115,14 @@ def solve_driven(
         error = EXACT_ANGLE if bound else None
         return theta[span], omega[span], alpha[span], error
 
-    ready = _prepared(Same(scene))
+    ready = prepared(scene)
     return ready.motion(Selection.of(scene, links, points, sliders), labels, driver, bound=bound)
 
 
 def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice, Chunk]]:
     """The solved mechanism at the given times (T,), a chunk of samples at a time, for what builds
     on more than its motion. Raises as `solve`."""
-    driver, ready = _driver_of(scene, time_s, bound=bound), _prepared(Same(scene))
+    driver, ready = _driver_of(scene, time_s, bound=bound), prepared(scene)
     for first in range(0, len(time_s), CHUNK):
         span = slice(first, first + CHUNK)
         yield span, ready.chunk(*driver(span))
@@ -131,18 +131,28 @@ def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice,
 def unit_chunk(scene: Scene, theta: Array, *, bound: bool) -> Chunk:
     """The mechanism at driver angles [rad] taken as exact, the driver at 1 rad/s and steady: rates
     are derivatives by its angle then, accelerations second ones. Raises as `solve`."""
-    return _prepared(Same(scene)).chunk(theta, 1.0, STEADY, EXACT_ANGLE if bound else None)
+    return prepared(scene).chunk(theta, 1.0, STEADY, EXACT_ANGLE if bound else None)
 
 
 def driven_chunk(scene: Scene, theta: Array, omega: Array) -> Chunk:
     """The mechanism at driver angles [rad] with rates [rad/s] (T,), steady, without bounds. Raises
     as `solve`."""
-    return _prepared(Same(scene)).chunk(theta, omega, STEADY, None)
+    return prepared(scene).chunk(theta, omega, STEADY, None)
+
+
+def counted_angle(chunk: Chunk, link: str) -> Array:
+    """The angle of a link of a solved chunk [rad], (T,), its whole turns counted as in a motion."""
+    body = chunk.bodies[link]
+    if body.theta is not None:
+        return np.broadcast_to(body.theta, chunk.theta.shape)
+    angle = np.broadcast_to(np.arctan2(body.turn.y, body.turn.x), chunk.theta.shape).copy()
+    Counter(_prepared(Same(chunk.scene)).turns, chunk.theta).count(link, angle)
+    return angle
 
 
 def reach(scene: Scene) -> list[Range]:
     """The driver angles, within a turn, in which the scene can be assembled (`analytic.reach`)."""
-    return ranges(_prepared(Same(scene)).stretched)
+    return ranges(prepared(scene).stretched)
 
 
 def _driver_of(scene: Scene, time_s: Array, *, bound: bool) -> Callable[[slice], Driven]:
@@ -187,19 +197,23 @@ def _rounding_of(law: Law, t: Array, theta: Array) -> AngleError:
 def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one."""
-    return _prepared(Same(scene)).period
+    return prepared(scene).period
+
+
+def prepared(scene: Scene) -> Prepared:
+    """The scene made ready to be solved. Raises StructureError."""
+    return _prepared(Same(scene))
 
 
 @lru_cache(maxsize=KEPT)
-def _prepared(same: Same) -> _Prepared:
-    """The scene made ready to be solved. Raises StructureError."""
+def _prepared(same: Same) -> Prepared:
     steps = prepare(same.scene, analyse(same.scene))
     start = float(same.scene.driver.law.at(np.zeros(1))[0][0])
-    return _Prepared(same.scene, steps, passages(same.scene, steps), start)
+    return Prepared(same.scene, steps, passages(same.scene, steps), start)
 
 
 @dataclass(frozen=True)
-class _Prepared:
+class Prepared:
     """A scene made ready to be solved; ``start`` is the driver's angle at time 0."""
 
     scene: Scene
@@ -238,9 +252,19 @@ class _Prepared:
         return replace(result.motion(), crossings=passed(self.passages, low, high))
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def chunk(self, theta: Array, omega: Real, alpha: Real, error: AngleError | None) -> Chunk:
-        """One chunk through all steps. Raises ReachError."""
-        chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=self.passages)
+    def chunk(
+        self,
+        theta: Array,
+        omega: Real,
+        alpha: Real,
+        error: AngleError | None,
+        passing: Mapping[str, Passage] | None = None,
+        roots: Mapping[str, Real] | None = None,
+    ) -> Chunk:
+        """One chunk through all steps; dyads that go through a limit of the driver as ``passing``
+        has it, with ``roots`` that are known better than by the driver. Raises ReachError."""
+        passages = self.passages if passing is None else {**self.passages, **passing}
+        chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=passages, roots=roots)
         for step in self.steps:
             try:
                 step.advance(chunk)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -12,12 +13,19 @@ from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, BodyKinematics, PointKinematics, Real
 from analytic.dyads.steps import Step
 from analytic.turns.cells import SURE
-from analytic.turns.count import Counter
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
 from models.one_or_more import names_in
 from models.scene import Scene
+
+
+class Counting(Protocol):
+    """What counts the whole turns of links over the samples that are written."""
+
+    def count(self, name: str, angle: Array) -> None:
+        """Add to the angles of a link [rad], (T,), the whole turns that they are short of."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -122,7 +130,7 @@ class MotionArrays:
             self.slider_bounds = {k: block.track() for k in wanted.sliders}
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def write(self, span: slice, chunk: Chunk, counter: Counter | None) -> None:
+    def write(self, span: slice, chunk: Chunk, counter: Counting | None) -> None:
         """Store what was asked for of a solved chunk; None where no turns are to be counted."""
         for key, row in self.sines.items():
             row[span] = chunk.sines[key]
@@ -138,7 +146,7 @@ class MotionArrays:
                 self.slider_bounds[name].put_bounds(span, e.displacement, e.speed, e.acceleration)
 
     def _write_link(
-        self, span: slice, name: str, body: BodyKinematics, counter: Counter | None
+        self, span: slice, name: str, body: BodyKinematics, counter: Counting | None
     ) -> None:
         track = self.links[name]
         if body.theta is not None:

@@ -63,8 +63,10 @@ if TYPE_CHECKING:
     from reports.compare.errors import Error, Errors
     from reports.face.cell_verdict import CellVerdict, check
     from reports.face.comparison import Comparison, compare
+    from reports.face.free_solution import FreeSolution
     from reports.face.log_verdict import LogVerdict, judge
     from reports.face.model_verdict import ModelVerdict, check_model
+    from reports.face.regulation import MachineCycle, MachineFlywheel, cycle, flywheel
     from reports.face.report import report
     from reports.face.simulation import Simulation, run
     from reports.face.solution import Solution, solve, solve_driven
@@ -86,7 +88,10 @@ __all__ = [
     "Errors",
     "Finding",
     "Forces",
+    "FreeSolution",
     "LogVerdict",
+    "MachineCycle",
+    "MachineFlywheel",
     "ModelVerdict",
     "Motion",
     "ReachError",
@@ -102,6 +107,8 @@ __all__ = [
     "check",
     "check_model",
     "compare",
+    "cycle",
+    "flywheel",
     "judge",
     "load_scene",
     "report",
@@ -135,10 +142,14 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import cell_verdict as home
             case "Comparison" | "compare":
                 from reports.face import comparison as home
+            case "FreeSolution":
+                from reports.face import free_solution as home
             case "LogVerdict" | "judge":
                 from reports.face import log_verdict as home
             case "ModelVerdict" | "check_model":
                 from reports.face import model_verdict as home
+            case "MachineCycle" | "MachineFlywheel" | "cycle" | "flywheel":
+                from reports.face import regulation as home
             case "report":
                 from reports.face import report as home
             case "Simulation" | "run":

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
 from models.errors import SceneError
+from models.free_faults import faults_of_free_motion
 from models.friction import ConstantFriction, CoulombFriction, Friction
 from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
@@ -55,7 +56,7 @@ def scene_from_table(
     ------
     SceneError
         Links without length or too far away, masses that cannot be derived, loads that have no
-        magnitude or act on no mass.
+        magnitude or act on no mass, a free motion that can not be.
     """
     faults: list[str] = []
     points = {name: _points(link) for name, link in table.links.items()}
@@ -76,7 +77,7 @@ def scene_from_table(
         faults += _faults_of_place(table.ground.points, longest)
     if faults:
         raise SceneError(place, faults)
-    return Scene(
+    scene = Scene(
         name=table.name,
         source=table.source,
         note=table.note,
@@ -92,6 +93,9 @@ def scene_from_table(
         springs=springs_of(table),
         start=start_of(table.start),
     )
+    if impossible := list(faults_of_free_motion(scene)):
+        raise SceneError(place, impossible)
+    return scene
 
 
 def _points(link: LinkTable) -> dict[str, Point]:
@@ -151,6 +155,11 @@ def _link(name: str, table: LinkTable, points: dict[str, Point], faults: list[st
     inertia = mass * length**2 / 12 if table.inertia_kg_m2 is None else table.inertia_kg_m2
     if mass == 0.0 and inertia > 0.0:
         faults.append(f"links.{name}: inertia_kg_m2 is {inertia} with mass_kg 0; give both or none")
+    if mass == 0.0 and table.flywheel_kg_m2 > 0.0:
+        faults.append(
+            f"links.{name}: flywheel_kg_m2 is {table.flywheel_kg_m2:g} with mass_kg 0; give the "
+            "link the mass of its flywheel too"
+        )
     return Link(name, points, mass, centre, inertia + table.flywheel_kg_m2)
 
 

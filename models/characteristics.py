@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -28,6 +30,10 @@ class Characteristic(ABC):
     @abstractmethod
     def at(self, x: Array) -> Array:
         """The magnitude, shape of ``x``. Raises ValueError where there is none."""
+
+    def at_one(self, x: float) -> float:
+        """As `at`, to the bit, of one place: what an engine asks for at every step."""
+        return float(self.at(np.array([x]))[0])
 
     def nearest(self, x: float) -> float:
         """The place next to ``x`` that has a magnitude."""
@@ -60,6 +66,9 @@ class Constant(Characteristic):
 
     def at(self, x: Array) -> Array:
         return np.full_like(x, self.value)
+
+    def at_one(self, x: float) -> float:
+        return float(self.value)
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         return 0.0
@@ -112,6 +121,12 @@ class Polynomial(Characteristic):
 
     def at(self, x: Array) -> Array:
         return np.asarray(np.polynomial.polynomial.polyval(x, self.coefficients))
+
+    def at_one(self, x: float) -> float:
+        *lower, total = self.coefficients
+        for coefficient in reversed(lower):
+            total = coefficient + total * x
+        return total
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
         slope = [k * abs(c) for k, c in enumerate(self.coefficients)][1:] or [0.0]
@@ -188,6 +203,7 @@ class Tabulated(Characteristic):
     def kinks(self) -> tuple[float, ...]:
         return self.places
 
+    @cached_property  # asked for at every step of an engine
     def _knots(self) -> tuple[Array, Array]:
         """Places and values, those of a period closed by the first row of the next."""
         x, y = np.array(self.places), np.array(self.values)
@@ -195,14 +211,39 @@ class Tabulated(Characteristic):
             x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
         return x, y
 
+    @cached_property  # as the knots
+    def _slopes(self) -> Array:
+        return slopes(*self._knots, closed=self.period is not None)
+
+    @cached_property  # as the knots
+    def _rows(self) -> tuple[list[float], list[float], list[float]]:
+        """Places, values and slopes, as numbers: those of an array are read ten times as slowly."""
+        places, values = self._knots
+        return places.tolist(), values.tolist(), self._slopes.tolist()
+
     def at(self, x: Array) -> Array:
-        knots, values = self._knots()
+        knots, values = self._knots
         if self.period is None:
             self._check_within(x)
         x = np.clip(self._folded(x), knots[0], knots[-1])
         if self.interpolation == "linear":
             return np.interp(x, knots, values)
-        return spline(x, knots, values, slopes(knots, values, closed=self.period is not None))
+        return spline(x, knots, values, self._slopes)
+
+    def at_one(self, x: float) -> float:
+        places, values, slope = self._rows
+        if self.period is None:
+            if not places[0] <= x <= places[-1]:
+                self._check_within(np.array([x]))
+        else:
+            x = self.places[0] + (x - self.places[0]) % self.period
+        x = min(max(x, places[0]), places[-1])
+        k = min(bisect_right(places, x), len(places) - 1) - 1
+        h, rise = places[k + 1] - places[k], values[k + 1] - values[k]
+        if self.interpolation == "linear":
+            return values[k + 1] if x == places[k + 1] else rise / h * (x - places[k]) + values[k]
+        t, d0, d1 = (x - places[k]) / h, h * slope[k], h * slope[k + 1]  # as `spline`
+        return values[k] + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
 
     def _folded(self, x: Array) -> Array:
         """``x`` without whole periods."""
@@ -215,16 +256,17 @@ class Tabulated(Characteristic):
 
     def _check_within(self, x: Array) -> None:
         first, last = self.places[0], self.places[-1]
-        off = np.maximum(first - x, x - last)
-        k = int(np.nanargmax(off)) if np.any(off == off) else 0
-        if off[k] > END * (last - first):
+        slack = END * (last - first)
+        off = (x < first - slack) | (x > last + slack)
+        if off.any():
+            beyond = np.where(off, np.maximum(first - x, x - last), 0.0)
             raise ValueError(
-                f"the table goes from {first:g} to {last:g}, and {x[k]:g} is asked for; give it "
-                "rows up to there"
+                f"the table goes from {first:g} to {last:g}, and {x[np.argmax(beyond)]:g} is asked "
+                "for; give it rows up to there"
             )
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:
-        knots, values = self._knots()
+        knots, values = self._knots
         # A cubic without overshoot is nowhere steeper than three times its chord.
         factor = 1.0 if self.interpolation == "linear" else 3.0
         steep = factor * np.abs(np.diff(values) / np.diff(knots))
@@ -237,7 +279,7 @@ class Tabulated(Characteristic):
         return np.where(over, np.max(steep), near)
 
     def rounding(self, x: Array) -> Array | float:
-        knots, values = self._knots()
+        knots, values = self._knots
         sizes = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
         # Whole periods are taken off the argument, and one is added to the first place.
         reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)

@@ -253,6 +253,8 @@ def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
         "links": schema.LinkTable,
         "sliders": schema.SliderTable,
         "friction": schema.FrictionTable,
+        "springs": schema.SpringTable,
+        "start": schema.StartTable,
     }
     owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
     return list(owner.model_fields)

@@ -142,6 +142,11 @@ def local_point(scene: Scene, body: str, point: str) -> Point:
     return 0.0, 0.0
 
 
+def sliding_body(slider: Slider) -> str:
+    """The body that a slider is: its link, or a block of its own, with mass or without."""
+    return slider.link or block_name(slider)
+
+
 def sliding_angle(slider: Slider) -> float:
     """Angle of a sliding body against the frame of its guide [rad]; constant."""
     return slider.direction_rad + (slider.angle_rad if slider.link is not None else 0.0)

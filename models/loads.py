@@ -70,9 +70,7 @@ class Load:
         try:
             magnitude = self.characteristic.at(x)
         except ValueError as error:
-            raise CrankcheckError(
-                f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
-            ) from None
+            raise self._beyond(error) from None
         if self.stroke == "both" or speed is None:
             return magnitude
         return np.where(speed > 0.0 if self.stroke == "forward" else speed < 0.0, magnitude, 0.0)
@@ -87,8 +85,8 @@ class Load:
         """The magnitude in one state: the driver at an angle [rad], sliders at displacements [m]
         with speeds [m/s], the body at an angular velocity.
 
-        Past its end a table over the displacement keeps its last value: an engine whose slider goes
-        further than the mechanism can is to be judged by where it goes.
+        Past its end a table over a displacement or a speed keeps its last value: an engine whose
+        slider goes further than the mechanism can is to be judged by where it goes.
 
         Raises CrankcheckError as `magnitude`, but for that.
         """
@@ -98,10 +96,20 @@ class Load:
             "time": time_s,
             "angle": driver_rad,
             "displacement": near,
-            "speed": speed,
-            "omega": omega_rad_s,
+            "speed": self.characteristic.nearest(speed),
+            "omega": self.characteristic.nearest(omega_rad_s),
         }[self.over]
-        return float(self.magnitude(np.array([x]), np.array([speed]))[0])
+        acts = self.stroke == "both" or (speed > 0.0 if self.stroke == "forward" else speed < 0.0)
+        try:
+            return self.characteristic.at_one(x) if acts else 0.0
+        except ValueError as error:
+            raise self._beyond(error) from None
+
+    def _beyond(self, error: ValueError) -> CrankcheckError:
+        """That the characteristic does not reach as far."""
+        return CrankcheckError(
+            f"loads.{self.name}: over the {self.over} [{UNITS[self.over]}] {error}"
+        )
 
     def uncertain(
         self, x: Array, by: Array | float, speed: Array | None, speed_by: Array | float

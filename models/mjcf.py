@@ -10,7 +10,8 @@ A massless slider block needs no body: the body that it would be pinned to carri
 hinge. The crank is driven by a flywheel: an ``armature`` on its hinge so heavy that the mechanism
 cannot change its speed. A law other than constant speed comes as a control stream: the motor's
 control is the angular acceleration of the crank. Loads are actuators too (`models.mjcf_loads`),
-constant friction is in the joints (`models.mjcf_friction`).
+constant friction is in the joints (`models.mjcf_friction`), springs are tendons
+(`models.mjcf_springs`).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from models.joints import bodies, local_point
 from models.mjcf_friction import friction_of, planned
 from models.mjcf_loads import load_actuators, load_sites, load_sizes
 from models.mjcf_options import Attributes, Writing, armature, driver_joint, exact, has_control
+from models.mjcf_springs import spring_points, spring_tendons, tendon_lines
 from models.mjcf_text import AttributeRow, attributes, commentable
 from models.motion import State
 from models.poses import centre_of, mass_of
@@ -59,6 +61,7 @@ def build(
         *_defaults(scene, writing),
         *_world(scene, tree, writing),
         *_equality(tree),
+        *tendon_lines(scene, spring_tendons(scene, state, tree)),
         *_actuator(scene, writing),
         *_keyframe(scene, state, tree, writing),
         "</mujoco>",
@@ -166,9 +169,10 @@ def _matter(scene: Scene, body: str, pad: str) -> list[str]:
 
 
 def _sites(scene: Scene, tree: Tree, body: str, pad: str) -> list[str]:
-    """The sites of a body where loops close, each at the body's own coordinates of the point, and
-    where loads act."""
-    points = dict.fromkeys(c.point for c in tree.closures if body in c.bodies)
+    """The sites of a body where loops close and springs end, each at the body's own coordinates of
+    the point, and where loads act."""
+    closing = [c.point for c in tree.closures if body in c.bodies]
+    points = dict.fromkeys([*closing, *spring_points(scene, body)])
     rows: list[AttributeRow] = [
         {"name": f"{body}.{point}", "pos": (*local_point(scene, body, point), 0.0)}
         for point in points

@@ -51,17 +51,24 @@ TOLERANCE = 1e-22
 """Of the solver, over the flywheel's ratio: MuJoCo scales its stopping rule by the inertia of the
 whole model, and with its default would stop before the first iteration, leaving the loops open."""
 STEPS_PER_PERIOD = 1000
+FREE_STEP_S = 1e-3
+"""Of a mechanism that is let go, which says no period."""
 
 
 def exact(scene: Scene) -> Writing:
-    """RK4 at a thousandth of the driver's period, the loops as stiff as that step allows."""
+    """RK4 at a thousandth of the driver's period, or of the time for which it is let go but a
+    millisecond at most; the loops as stiff as that step allows."""
     dt_s = scene.driver.law.period_s / STEPS_PER_PERIOD
+    tolerance = TOLERANCE / FLYWHEEL_RATIO
+    if scene.is_free:
+        dt_s, tolerance = min(dt_s, FREE_STEP_S), TOLERANCE
     return Writing(
-        option={"timestep": dt_s, "integrator": "RK4", "tolerance": TOLERANCE / FLYWHEEL_RATIO},
+        option={"timestep": dt_s, "integrator": "RK4", "tolerance": tolerance},
         connect={
             "solref": (STIFF_STEPS * dt_s, STIFF_DAMPING),
             "solimp": (STIFF_IMPEDANCE, STIFF_IMPEDANCE, 0.001, 0.5, 2.0),
         },
+        free=scene.is_free,
     )
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.array import Array
 from models.laws import Law
+
+if TYPE_CHECKING:
+    from models.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -48,3 +52,30 @@ class Released(Law):
 
     def turned(self, angle_rad: float) -> Released:
         return replace(self, start_rad=self.start_rad + angle_rad)
+
+
+TURNS = 10.0
+"""Of its own law, for which a driven mechanism is left free where nothing else is said."""
+
+
+def let_go(scene: Scene, duration_s: float | None = None) -> Scene:
+    """The scene with its driver let go, at the angle and with the speed that its law has at time 0.
+
+    Parameters
+    ----------
+    duration_s : float or None
+        For how long [s]; None for that of a scene whose driver is let go already, and for the time
+        of 10 turns of a driver that follows a law.
+    """
+    law = scene.driver.law
+    if isinstance(law, Released):
+        return (
+            scene if duration_s is None else _with_law(scene, replace(law, duration_s=duration_s))
+        )
+    theta, omega, _ = (float(each[0]) for each in law.at(np.zeros(1)))
+    lasts_s = TURNS * law.period_s if duration_s is None else duration_s
+    return _with_law(scene, Released(theta, omega, lasts_s))
+
+
+def _with_law(scene: Scene, law: Law) -> Scene:
+    return replace(scene, driver=replace(scene.driver, law=law))

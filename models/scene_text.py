@@ -18,9 +18,10 @@ from models.start import Start
 Table = Mapping[str, object]
 
 
-def scene_text(scene: Scene) -> str:
+def scene_text(scene: Scene, flywheels: Mapping[str, float] | None = None) -> str:
     """TOML that reads as the scene (`models.files.parse_scene`), but for the last digit of angles,
-    which are in degrees there. Raises CrankcheckError for a law of another kind."""
+    which are in degrees there. ``flywheels`` [kg m^2] are put on links beside their own inertia.
+    Raises CrankcheckError for a law of another kind."""
     lines = [
         f"{name} = {_value(value)}"
         for name, value in (
@@ -30,12 +31,12 @@ def scene_text(scene: Scene) -> str:
             ("gravity_m_s2", scene.gravity_m_s2),
         )
     ]
-    for head, table in _tables(scene):
+    for head, table in _tables(scene, flywheels or {}):
         lines += ["", f"[{head}]", *(f"{key} = {_value(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
-def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
+def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str, Table]]:
     """The tables of the file, in its order."""
     yield "ground", {"points": scene.ground}
     for name, link in scene.links.items():
@@ -46,6 +47,7 @@ def _tables(scene: Scene) -> Iterator[tuple[str, Table]]:
                 "mass_kg": link.mass_kg,
                 "centre_m": link.centre_m,
                 "inertia_kg_m2": link.inertia_kg_m2,
+                **({"flywheel_kg_m2": flywheels[name]} if name in flywheels else {}),
             },
         )
     for name, slider in scene.sliders.items():

@@ -137,7 +137,7 @@ class FreeDriver(Table):
 
     link: Name
     law: Literal["free"]
-    speed_rad_s: Number = 0.0
+    speed_rad_s: RateNumber = 0.0
     start_deg: Degrees = 0.0
     duration_s: Positive = 10.0
 
@@ -231,12 +231,6 @@ class SceneTable(Table):
     friction: dict[Name, FrictionTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     springs: dict[Name, SpringTable] = Field(default_factory=dict, max_length=MOST_BODIES)
     start: StartTable = Field(default_factory=StartTable)
-
-    @model_validator(mode="after")
-    def _only_what_is_let_go_has_a_start(self) -> SceneTable:
-        if self.start != StartTable() and self.driver.get("law") != "free":
-            raise ValueError('[start] goes with law = "free"; a driven mechanism starts as it is')
-        return self
 
 
 DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver | FreeDriver

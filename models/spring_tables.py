@@ -56,9 +56,16 @@ def faults_of_springs(
         if not isinstance(table, Mapping):
             continue
         key, ends = f"springs.{cut(name)}", table.get("points")
-        for point in ends if isinstance(ends, list) else []:
-            if isinstance(point, str) and point not in everywhere:
+        both = [end for end in ends if isinstance(end, str)] if isinstance(ends, list) else []
+        for point in both:
+            if point not in everywhere:
                 yield f"{key}.points: no body has a point {cut(point)}; use {few(everywhere, 12)}"
+        for body, own in {GROUND: ground, **points}.items():
+            if len(set(both)) == 2 and own.issuperset(both):
+                yield (
+                    f"{key}.points: {' and '.join(both)} are points of {cut(body)}, which lie as "
+                    "far apart as ever; name points of two bodies"
+                )
         slider = table.get("slider")
         if isinstance(slider, str) and slider not in sliders:
             have = f"use one of {few(map(cut, sliders), LISTED)}" if sliders else "there is none"
@@ -83,6 +90,8 @@ def _of_pin(key: str, pin: str, bodies: object, met: tuple[str, ...]) -> Iterato
         yield f"{key}.pin: fewer than two links, or links and the ground, meet at {cut(pin)}"
     elif bodies is None and len(met) > 2:
         yield f"{key}.bodies: {few(met, LISTED)} meet at {cut(pin)}; name two of them"
+    if isinstance(bodies, list) and len(bodies) == 2 and bodies[0] == bodies[1]:
+        yield f"{key}.bodies: found {cut(str(bodies[0]))} twice; name two bodies"
     for body in bodies if isinstance(bodies, list) else []:
         if isinstance(body, str) and body not in met:
             yield f"{key}.bodies: {cut(body)} is not at {cut(pin)}; use two of {few(met, LISTED)}"

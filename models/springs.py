@@ -34,7 +34,8 @@ class _Elastic:
 
 @dataclass(frozen=True)
 class LineSpring(_Elastic):
-    """Between two named points, each of any body that carries it, or of the ground."""
+    """Between two named points. Each end is fixed to one body that has the point: to the ground,
+    else to the first link in the order of the scene, else to a block."""
 
     points: tuple[str, str]
 
@@ -42,7 +43,7 @@ class LineSpring(_Elastic):
 @dataclass(frozen=True)
 class PinSpring(_Elastic):
     """In a pin, between two of the bodies that meet there; q is the angle of the second less that
-    of the first, whole turns counted from the start of the motion."""
+    of the first: at the start within half a turn of ``free``, and counted on from there."""
 
     point: str
     bodies: tuple[str, str]

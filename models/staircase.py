@@ -27,8 +27,12 @@ class Staircase(Characteristic):
                 f"found {len(self.places)} places and {len(self.values)} values; give one each, of "
                 "one step at least"
             )
-        if any(b <= a for a, b in zip(self.places, self.places[1:], strict=False)):
-            raise ValueError("the places of steps have to increase from one to the next")
+        for before, after in zip(self.places, self.places[1:], strict=False):
+            if not after > before:
+                raise ValueError(
+                    f"found {after:g} after {before:g}; the instants of steps have to increase "
+                    "from one to the next"
+                )
 
     @property
     def kinks(self) -> tuple[float, ...]:

@@ -85,7 +85,9 @@ def run(
         return replace(blank, status="unsupported", reason=str(error))
     facts = session.facts()
     refuse_other_model(scene, state, facts, dt_s, drive, open_m)
-    runaway = RUNAWAY * (pace(scene, state, drive) or math.inf)
+    # What almost rests may be set going by what acts later: a radian in the whole run, at least.
+    own = pace(scene, state, drive)
+    runaway = RUNAWAY * max(own, 1.0 / (dt_s * steps)) if own else math.inf
     return recorded(replace(blank, settings=facts.settings), scene, session, facts, runaway)
 
 

@@ -32,7 +32,7 @@ FLOORS: Mapping[str, str] = {
         own_model
         diff tune advise history verify selftest
         sweep stability own_log contract
-        results
+        results regulation
         store
         plan
         causes
@@ -42,13 +42,13 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
-        free
+        free regulation
         mechanism forces
         nearness kinematics
         change_points check reach result
         turns
         dyads
-        structure
+        structure multibody
     """,
     "sim": f"""
         {" ".join(ENGINES)}

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.check.body_samples import BodySamples, cross
-from analytic.structure.mobility import sliding_body
 from models.array import Array
 from models.forces import Forces
 from models.friction import CoulombFriction
-from models.joints import local_point
+from models.joints import local_point, sliding_body
 from models.motion import Motion
 from models.scene import GROUND, Scene
 

@@ -6,10 +6,10 @@ motion, accelerations and multipliers are the unknowns of one linear system for 
     | M      Phi_q^T |  | q''    |     | Q     |
     | Phi_q  0       |  | lambda |  =  | gamma |
 
-Q holds weights, loads and what of inertia goes with the squares of rates. As the driver's equation
-is among the constraints Phi_q is square, and the lower half gives q'' without the upper one: solved
-as a whole the system would have the square of its condition. Source: E. J. Haug, Computer Aided
-Kinematics and Dynamics of Mechanical Systems, chapter 6.
+Q holds weights, loads, springs and what of inertia goes with the squares of rates. As the driver's
+equation is among the constraints Phi_q is square, and the lower half gives q'' without the upper
+one: solved as a whole the system would have the square of its condition. Source: E. J. Haug,
+Computer Aided Kinematics and Dynamics of Mechanical Systems, chapter 6.
 
 Friction, which hangs on the multipliers, is put in Q, and both are worked out again and again.
 """
@@ -17,15 +17,18 @@ Friction, which hangs on the multipliers, is put in Q, and both are worked out a
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from analytic.check.body_samples import BodySamples, body_samples, cross, weights_and_loads
 from analytic.check.constraints import Constraints
 from analytic.check.friction import rubbing_samples, turning
+from analytic.check.spring_samples import springs_on_bodies
+from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.errors import CrankcheckError
-from models.forces import Forces, SliderForces
+from models.forces import Forces
 from models.motion import Motion
 from models.scene import Scene
 
@@ -133,7 +136,8 @@ def equations(scene: Scene, motion: Motion) -> Equations:
     mass, applied = np.zeros((*q.shape, system.size)), np.zeros_like(q)
     for name, body in bodies.items():
         _inertia(body, system.at[name], mass, applied)
-    for name, place, force, torque in weights_and_loads(scene, motion):
+    outside = (weights_and_loads(scene, motion), springs_on_bodies(scene, motion))
+    for name, place, force, torque in chain(*outside):
         at = system.at[name]
         applied[:, at : at + 2] += force
         applied[:, at + 2] += torque + cross(bodies[name].arm(place), force)
@@ -161,17 +165,6 @@ def _inertia(body: BodySamples, at: int, mass_matrix: Array, right: Array) -> No
 
 
 def reactions(scene: Scene, system: Constraints, time_s: Array, pushes: Array) -> Forces:
-    """What the multipliers mean: pushes along the gradients of the equations, in their order."""
-    pins: dict[str, dict[str, Array]] = {}
-    row = 0
-    for point, first, other in system.pin_pairs():
-        push = pushes[:, row : row + 2]
-        held = pins.setdefault(point, {})
-        held[first] = held.get(first, 0.0) + push
-        held[other] = held.get(other, 0.0) - push
-        row += 2
-    sliders: dict[str, SliderForces] = {}
-    for name in scene.sliders:
-        sliders[name] = SliderForces(pushes[:, row], pushes[:, row + 1])
-        row += 2
-    return Forces(time_s, pins, sliders, pushes[:, row])
+    """What the multipliers mean: pushes along the gradients of the equations, in their order, the
+    driver's last."""
+    return joint_forces(scene, system.pin_pairs(), time_s, pushes[:, :-1], pushes[:, -1])

@@ -1,6 +1,6 @@
 """The third opinion on forces: power balances at every instant.
 
-What the drive puts in is what energy gains, less what loads and friction put in::
+What the drive puts in is what energy gains, less what loads, springs and friction put in::
 
     torque omega = d/dt (T + V) - sum (F v + M omega),   dT/dt = sum (m a_S v_S + J alpha omega)
 
@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
 from analytic.check.body_samples import body_samples, weights_and_loads
 from analytic.check.friction import rubbing_samples
+from analytic.check.spring_samples import springs_on_bodies
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
@@ -34,8 +36,8 @@ class PowerBalance:
 def power_balance(
     scene: Scene, motion: Motion, torque: Array, friction: Mapping[str, Array] | None = None
 ) -> PowerBalance:
-    """The power of a driving torque [N m] beside what the motion, the loads and the friction, by
-    joint as in `models.forces.Forces`, take up."""
+    """The power of a driving torque [N m] beside what the motion, the loads, the springs and the
+    friction, by joint as in `models.forces.Forces`, take up."""
     used, scale = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
     bodies = body_samples(scene, motion)
     parts = []
@@ -43,7 +45,8 @@ def power_balance(
         push = body.mass * body.acceleration_at(body.centre)
         parts.append(np.sum(push * body.velocity_at(body.centre), axis=1))
         parts.append(body.inertia * body.alpha * body.omega)
-    for name, place, force, moment in weights_and_loads(scene, motion):
+    outside = (weights_and_loads(scene, motion), springs_on_bodies(scene, motion))
+    for name, place, force, moment in chain(*outside):
         body = bodies[name]
         parts.append(-np.sum(force * body.velocity_at(place), axis=1) - moment * body.omega)
     for joint, rubbing in rubbing_samples(scene, motion, bodies).items():

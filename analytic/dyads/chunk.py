@@ -41,7 +41,8 @@ class Passage(Protocol):
 
 @dataclass(slots=True)
 class Chunk:
-    """What is known so far of a chunk of samples; ``passages`` by the key of the dyad."""
+    """What is known so far of a chunk of samples; ``passages`` by the key of the dyad, and
+    ``roots`` where these are known beforehand."""
 
     scene: Scene
     certified: bool
@@ -53,6 +54,7 @@ class Chunk:
     shortage: dict[str, Real] = field(default_factory=dict)
     closures: dict[str, Closure] = field(default_factory=dict)
     points: dict[str, PointKinematics] = field(default_factory=dict)
+    roots: Mapping[str, Real] = field(default_factory=dict)
 
     @staticmethod
     def begin(
@@ -64,6 +66,7 @@ class Chunk:
         *,
         stretch: bool = False,
         passages: Mapping[str, Passage] | None = None,
+        roots: Mapping[str, Real] | None = None,
     ) -> Chunk:
         """A chunk in which the ground and the driver are known; certified where ``error`` is."""
         pivot = scene.driver_pivot
@@ -76,7 +79,7 @@ class Chunk:
         )
         certified = error is not None
         bodies = {GROUND: fixed_body(certified=certified), scene.driver.link: driver}
-        chunk = Chunk(scene, certified, stretch, bodies, passages or {})
+        chunk = Chunk(scene, certified, stretch, bodies, passages or {}, roots=roots or {})
         chunk.points[pivot] = anchor
         return chunk
 

@@ -105,13 +105,15 @@ class Closure:
     ``root`` is what its branch is the sign of, None for a dyad of one assembly; 0 where it is
     singular. ``short_m``, given for a stretched solution only, is by how much the dyad is short of
     closing [m] (negative: it closes), less half of ``rounding_m``, what rounding may open it by.
-    Short by more than ``slack_m`` it closes nowhere within the bounds of its inputs.
+    Short by more than ``slack_m`` it closes nowhere within the bounds of its inputs. ``square``,
+    given for such a solution too, is that of the root, below 0 where the dyad is open.
     """
 
     root: Real | None
     short_m: Real | None = None
     rounding_m: Real = 0.0
     slack_m: Real = 0.0
+    square: Real | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +150,10 @@ class OpenError(Exception):
 
 
 def closing_root(
-    square: Real, shortage: Callable[[], tuple[Real, Real, Real]], stretch: bool
+    square: Real,
+    shortage: Callable[[], tuple[Real, Real, Real]],
+    stretch: bool,
+    root: Real | None = None,
 ) -> tuple[Real, Closure]:
     """The square root of what closure leaves, 0 where rounding has taken it below 0.
 
@@ -162,6 +167,8 @@ def closing_root(
         it by; asked for only where it matters.
     stretch : bool
         Solve the dyad as if stretched where it is open, instead of raising.
+    root : Array or None
+        The root, where it is known better than the difference that ``square`` is.
 
     Returns
     -------
@@ -177,8 +184,9 @@ def closing_root(
         # A little less is let pass than when solving, so that the ends of a range can be solved.
         short, scale, slack = shortage()
         rounding = CLOSED * scale
-        root = np.sqrt(np.maximum(square, 0.0))
-        return root, Closure(root, short - 0.5 * rounding, rounding, slack + rounding)
+        if root is None:
+            root = np.sqrt(np.maximum(square, 0.0))
+        return root, Closure(root, short - 0.5 * rounding, rounding, slack + rounding, square)
     if np.min(square) < 0.0:
         short, scale, _ = shortage()
         if np.any(short > CLOSED * scale):

@@ -22,8 +22,8 @@ from analytic.dyads.plane import (
     Vec,
     direction,
 )
-from analytic.structure.mobility import Structure, sliding_body
-from models.joints import less, local_point, turned
+from analytic.structure.mobility import Structure
+from models.joints import less, local_point, sliding_body, turned
 from models.scene import Point, Scene
 
 

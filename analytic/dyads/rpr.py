@@ -27,6 +27,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
+    root: Real | None = None,
 ) -> Dyad[Turning, Sliding]:
     """Solve an RPR dyad.
 
@@ -40,8 +41,8 @@ def solve(
         Distance h of the line from P2 [m], positive to the left of its direction.
     branch : int or Array
         The sign of the displacement s.
-    certified, stretch
-        As for `analytic.dyads.rrr.solve`.
+    certified, stretch, root
+        As for `analytic.dyads.rrr.solve`; the root is the size of s [m].
 
     Returns
     -------
@@ -67,7 +68,7 @@ def solve(
         scale = abs(offset) + apart + p1.p.norm() + p2.p.norm()
         return abs(offset) - apart, scale, uncertain(p1, p2)
 
-    root, closure = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch, root)
     s = branch * root
     with np.errstate(divide="ignore", invalid="ignore"):
         # d = s e + h e', solved for e.

@@ -35,6 +35,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
+    root: Real | None = None,
 ) -> Dyad[Turning, Sliding]:
     """Solve an RRP dyad.
 
@@ -48,8 +49,8 @@ def solve(
         Distance from P1 to the inner pin [m].
     branch : int or Array
         +1 where the pin lies from the foot of P1 on the line in the line's direction, else -1.
-    certified, stretch
-        As for `analytic.dyads.rrr.solve`.
+    certified, stretch, root
+        As for `analytic.dyads.rrr.solve`; the root is the distance of the pin from that foot [m].
 
     Returns
     -------
@@ -75,7 +76,7 @@ def solve(
         turn = 0.0 if line.error is None else line.error.theta * away.norm()
         return np.abs(height) - length, scale, uncertain(p1, line.point) + turn
 
-    root, closure = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch, root)
     reach = branch * root
     if stretch:
         height = np.clip(height, -length, length)

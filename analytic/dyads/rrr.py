@@ -29,6 +29,7 @@ def solve(
     *,
     certified: bool = False,
     stretch: bool = False,
+    root: Real | None = None,
 ) -> Dyad[Turning, Turning]:
     """Solve an RRR dyad.
 
@@ -44,6 +45,8 @@ def solve(
         Give error bounds; the points must then carry theirs.
     stretch : bool
         Where the dyad cannot close, take the two links in line instead of raising.
+    root : Array or None
+        Four times the area of the triangle [m^2], where it is known better than by its sides.
 
     Returns
     -------
@@ -73,7 +76,7 @@ def solve(
         short = np.maximum(apart - (l1 + l2), abs(l1 - l2) - apart)
         return short, scale, uncertain(p1, p2)
 
-    root, closure = closing_root(square, shortage, stretch)
+    root, closure = closing_root(square, shortage, stretch, root)
     with np.errstate(divide="ignore", invalid="ignore"):
         # The foot of C on d by the law of cosines, (d^2 + l1^2 - l2^2) / (2 d^2), and its height
         # 2 area / d^2, both over d: r1 is d turned and stretched by them.

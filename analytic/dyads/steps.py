@@ -25,9 +25,9 @@ from analytic.dyads.riding import (
     without_lead,
 )
 from analytic.structure.groups import Bridge, Group
-from analytic.structure.mobility import Structure, sliding_body
+from analytic.structure.mobility import Structure
 from models.array import Array
-from models.joints import less, turned
+from models.joints import less, sliding_body, turned
 from models.scene import GROUND, Scene
 
 
@@ -83,9 +83,11 @@ class RRRStep:
         one, other = self.bar1, self.bar2
         p1, p2 = one.anchor(chunk), other.anchor(chunk)
         branch, stretch = chunk.assembly(self.key)
+        root = chunk.roots.get(self.key)
         free = rrr.solve(
-            p1, p2, one.length, other.length, branch, certified=chunk.certified, stretch=stretch
-        )
+            p1, p2, one.length, other.length, branch,
+            certified=chunk.certified, stretch=stretch, root=root,
+        )  # fmt: skip
         dyad = chunk.keep(self.key, free)
         chunk.bodies[one.link] = one.body(dyad.first, p1)
         chunk.bodies[other.link] = other.body(dyad.second, p2)
@@ -106,7 +108,10 @@ class RRPStep:
         p1, line = self.bar.anchor(chunk), self.through.line(chunk)
         branch, stretch = chunk.assembly(self.key)
         branch = branch * self.riding.sign
-        free = rrp.solve(p1, line, length, branch, certified=chunk.certified, stretch=stretch)
+        root = chunk.roots.get(self.key)
+        free = rrp.solve(
+            p1, line, length, branch, certified=chunk.certified, stretch=stretch, root=root
+        )
         dyad = chunk.keep(self.key, free)
         chunk.bodies[g.first] = self.bar.body(dyad.first, p1)
         pin = riding_point(line, dyad.second)
@@ -145,7 +150,10 @@ class RPRStep:
             error = replace(p1.error, position=p1.error.position + self.slack)
             block = replace(p1, error=error)
         branch, stretch = chunk.assembly(self.key)
-        free = rpr.solve(block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch)
+        root = chunk.roots.get(self.key)
+        free = rpr.solve(
+            block, p2, self.offset, branch, certified=chunk.certified, stretch=stretch, root=root
+        )
         dyad = chunk.keep(self.key, free)
         found = dyad.first
         chunk.bodies[self.body] = turning_body(found, self.back1, self.local1, p1, self.rounding1)

@@ -18,8 +18,8 @@ from analytic.dyads.riding import rounding_of_angles
 from analytic.forces.bounded import NOWHERE, Bounded, BoundedVec
 from analytic.forces.free_body import FreeBody
 from analytic.structure.groups import Group
-from analytic.structure.mobility import Structure, sliding_body
-from models.joints import local_point
+from analytic.structure.mobility import Structure
+from models.joints import local_point, sliding_body
 from models.scene import GROUND, Scene, Slider
 
 Displaced = Mapping[str, Bounded]

@@ -22,6 +22,7 @@ from analytic.forces.free_body import free_bodies
 from analytic.forces.friction import LoadedBodies, coulomb_friction
 from analytic.forces.given_motion import chunks_of
 from analytic.forces.rubbing import Rubbing, put_constant_friction, rubbing_joints
+from analytic.forces.springs import apply_springs
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
 from analytic.structure.mobility import Structure, analyse
@@ -46,7 +47,7 @@ def forces(
     Parameters
     ----------
     scene : Scene
-        The mechanism with its masses, gravity and loads.
+        The mechanism with its masses, gravity, loads and springs.
     when : ArrayLike or Motion
         Times [s], (T,), at which it follows its driver's law, or a motion of it, whole and with
         accelerations: one by `analytic.kinematics.solve_driven`, say.
@@ -109,6 +110,8 @@ def _write(
     free = free_bodies(scene, chunk)
     if scene.loads:
         apply_loads(scene, chunk, result.time_s[span], free)
+    if scene.springs:
+        apply_springs(scene, chunk, free)
     displaced = {
         name: Bounded(one.s, None if one.error is None else one.error.displacement)
         for name, one in chunk.sliders.items()
@@ -150,7 +153,7 @@ def _check_loaded(scene: Scene) -> None:
     masses = [link.mass_kg for link in scene.links.values()]
     masses += [slider.mass_kg for slider in scene.sliders.values()]
     rubs = any(isinstance(one, ConstantFriction) for one in scene.friction.values())
-    if not scene.loads and not any(masses) and not rubs:
+    if not scene.loads and not scene.springs and not any(masses) and not rubs:
         raise CrankcheckError(
             f"{scene.name}: no link or slider has a mass and nothing loads them, so every force is "
             "0; give mass_kg to a link, or a [loads.NAME] table"

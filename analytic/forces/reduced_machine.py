@@ -1,7 +1,7 @@
 """The whole machine as one flywheel on the driver's shaft.
 
 With rates v' and theta' per unit of the driver's rate, its reduced moment of inertia and the
-reduced torque of weights and loads are::
+reduced torque of weights, loads and springs are::
 
     I = sum (m v'^2 + J theta'^2)         M = sum (F v' + M theta')
     torque = I alpha + I' omega^2 / 2 - M          (I' = dI/dphi)
@@ -23,6 +23,7 @@ from analytic.dyads.plane import Vec
 from analytic.forces.applied_loads import apply_loads
 from analytic.forces.bounded import BoundedVec
 from analytic.forces.free_body import FreeBody
+from analytic.forces.springs import apply_springs
 from analytic.forces.virtual_power import torque_by_power
 from analytic.kinematics import chunks, unit_chunk
 from models.array import Array
@@ -34,7 +35,7 @@ from models.scene import GROUND, Point, Scene
 @dataclass(frozen=True)
 class ReducedMachine:
     """Over the driver's angle ``theta`` [rad]: ``inertia`` I [kg m^2], its ``slope`` I' [kg m^2]
-    by the angle, ``torque`` M of weights and loads [N m]; (T,) each."""
+    by the angle, ``torque`` M of weights, loads and springs [N m]; (T,) each."""
 
     theta: Array
     inertia: Array
@@ -53,6 +54,7 @@ def reduced_machine(scene: Scene, time_s: ArrayLike) -> ReducedMachine:
         unit = unit_chunk(scene, chunk.theta, bound=False)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             free = loaded_bodies(scene, chunk, instants[span])
+            apply_springs(scene, chunk, free)
             torque = -torque_by_power(free, unit, chunk)
             rows = (chunk.theta, *inertia_and_slope(scene, unit), torque.value)
         parts.append([np.broadcast_to(row, chunk.theta.shape) for row in rows])

@@ -1,47 +1,157 @@
-"""The length of each spring over a chunk, its rate, and what it pulls with."""
+"""Springs with their dampers over a chunk: how long they are, and what they pull with.
+
+A spring between two points pulls at the first body that has each of them: the ground, else the
+first link in the order of the scene, else a block.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import PointKinematics
+from analytic.dyads.plane import EPS, PointKinematics, Real, Vec
+from analytic.forces.balance import PrismaticPair
+from analytic.forces.bounded import Bounded, BoundedVec
+from analytic.forces.free_body import FreeBody
+from analytic.kinematics import counted_angle, unit_chunk
 from models.array import Array
-from models.joints import block_name
-from models.scene import GROUND, Scene
-from models.springs import LineSpring, PinSpring, Spring
+from models.joints import block_name, local_point
+from models.scene import GROUND, KEPT, Same, Scene
+from models.spring_ends import whole_turns
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+
+Stretch = tuple[Bounded, Bounded]
+"""The q of a spring [m or rad] and its rate q' [m/s or rad/s]."""
 
 
 def spring_lengths(scene: Scene, chunk: Chunk) -> Iterator[tuple[Spring, Array, Array]]:
-    """Every spring of a scene with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each.
-
-    Of a spring in a pin q is in (-pi, pi] of its free angle.
-    """
+    """Every spring of a scene with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each."""
     like = np.zeros_like(chunk.theta)
     for spring in scene.springs.values():
         if isinstance(spring, LineSpring):
-            a, b = (_point(scene, chunk, name) for name in spring.points)
-            way, drift = b.p - a.p, b.v - a.v
-            length = way.norm()
-            yield spring, like + length, like + way.dot(drift) / length
+            q, rate = _line_stretch(*_way(scene, chunk, spring))
         elif isinstance(spring, PinSpring):
-            first, second = (chunk.bodies[name] for name in spring.bodies)
-            x, y = first.turn.dot(second.turn), first.turn.cross(second.turn)
-            c, s = np.cos(spring.free), np.sin(spring.free)
-            off = np.arctan2(c * y - s * x, c * x + s * y)
-            yield spring, like + spring.free + off, like + (second.omega - first.omega)
+            q, rate = _pin_stretch(chunk, spring)
         else:
-            sliding = chunk.sliders[spring.slider]
-            yield spring, like + sliding.s, like + sliding.speed
+            q, rate = _slide_stretch(chunk, spring)
+        yield spring, like + q.value, like + rate.value
+
+
+def apply_springs(scene: Scene, chunk: Chunk, free: Mapping[str, FreeBody]) -> None:
+    """Put what all springs and dampers of a scene pull with on its bodies."""
+    for spring in scene.springs.values():
+        if isinstance(spring, LineSpring):
+            _pull_points(scene, chunk, spring, free)
+        elif isinstance(spring, PinSpring):
+            couple = _pull(spring, *_pin_stretch(chunk, spring))
+            for body, own in zip(spring.bodies, (couple, -couple), strict=True):
+                if body != GROUND:
+                    free[body].moment = free[body].moment + own
+        else:
+            q, rate = _slide_stretch(chunk, spring)
+            pair = PrismaticPair(scene.sliders[spring.slider], scene, free, q)
+            force = pair.along * _pull(spring, q, rate)
+            for body, push in ((pair.body, -force), (pair.guide, force)):
+                if body != GROUND:
+                    free[body].push(pair.arms[body], push)
+
+
+def _pull_points(
+    scene: Scene, chunk: Chunk, spring: LineSpring, free: Mapping[str, FreeBody]
+) -> None:
+    """A spring between two points, on the bodies of both."""
+    way, drift = _way(scene, chunk, spring)
+    force = way * Bounded(spring.rate)
+    if spring.free or spring.damping:  # without, its direction does not count: it may have none
+        length, speed = _line_stretch(way, drift)
+        slack = Bounded(spring.damping) * speed - Bounded(spring.rate) * Bounded(spring.free)
+        force = force + way * (slack * length.inverse())
+    for point, push in zip(spring.points, (force, -force), strict=True):
+        body = _holder(scene, point)
+        if body != GROUND:
+            own = free[body]
+            own.push(own.vector(own.centre, local_point(scene, body, point)), push)
+
+
+def _pull(spring: Spring, q: Bounded, rate: Bounded) -> Bounded:
+    """What pulls q back [N or N m]."""
+    held = Bounded(spring.rate) * (q - Bounded(spring.free))
+    return held + Bounded(spring.damping) * rate
+
+
+def _way(scene: Scene, chunk: Chunk, spring: LineSpring) -> tuple[BoundedVec, BoundedVec]:
+    """From the first point to the second [m], and the velocity of that."""
+    a, b = (_point(scene, chunk, name) for name in spring.points)
+    p, v = b.p - a.p, b.v - a.v
+    if a.error is None or b.error is None:
+        return BoundedVec(p, 0.0, None), BoundedVec(v, 0.0, None)
+    place, drift = a.error.position + b.error.position, a.error.velocity + b.error.velocity
+    return _difference(p, place), _difference(v, drift)
+
+
+def _difference(v: Vec, error: Real) -> BoundedVec:
+    """A difference of vectors that are together wrong by ``error``."""
+    size = v.norm()
+    return BoundedVec(v, size, error + EPS * size)
+
+
+def _line_stretch(way: BoundedVec, drift: BoundedVec) -> Stretch:
+    """The length of a way, and its rate."""
+    size = way.v.norm()
+    length = Bounded(size, None if way.error is None else way.error + 2 * EPS * size)
+    return length, way.dot(drift) * length.inverse()
+
+
+def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
+    """The angle between two bodies; at the start within half a turn of the free one."""
+    first, second = (chunk.bodies[name] for name in spring.bodies)
+    one, other = (_angle(chunk, name) for name in spring.bodies)
+    q = other - one + _turns_at_start(Same(chunk.scene), spring)
+    rate = np.asarray(second.omega - first.omega)
+    if first.error is None or second.error is None:
+        return Bounded(q, None), Bounded(rate, None)
+    rounded = 4 * EPS * (np.abs(one) + np.abs(other) + np.abs(q) + 2.0)
+    return (
+        Bounded(q, first.error.theta + second.error.theta + rounded),
+        Bounded(rate, first.error.omega + second.error.omega + EPS * np.abs(rate)),
+    )
+
+
+def _angle(chunk: Chunk, body: str) -> Array:
+    """The angle of a link, or of the ground, with its whole turns [rad], (T,)."""
+    return np.zeros_like(chunk.theta) if body == GROUND else counted_angle(chunk, body)
+
+
+@lru_cache(maxsize=4 * KEPT)
+def _turns_at_start(same: Same, spring: PinSpring) -> float:
+    """The whole turns [rad] that bring the angle between the bodies near its free one at time 0."""
+    start = same.scene.driver.law.at(np.zeros(1))[0]
+    chunk = unit_chunk(same.scene, start, bound=False)
+    one, other = (_angle(chunk, name) for name in spring.bodies)
+    return whole_turns(spring, float((other - one)[0]))
+
+
+def _slide_stretch(chunk: Chunk, spring: SlideSpring) -> Stretch:
+    """The displacement of a slider, and its speed."""
+    sliding = chunk.sliders[spring.slider]
+    error = sliding.error
+    if error is None:
+        return Bounded(sliding.s, None), Bounded(sliding.speed, None)
+    return Bounded(sliding.s, error.displacement), Bounded(sliding.speed, error.speed)
+
+
+def _holder(scene: Scene, point: str) -> str:
+    """The body that a spring's end is fixed to."""
+    if point in scene.pins:
+        return scene.pins[point][0]
+    return next(  # the point of blocks alone
+        block_name(s) for s in scene.sliders.values() if s.link is None and s.point == point
+    )
 
 
 def _point(scene: Scene, chunk: Chunk, name: str) -> PointKinematics:
-    """A named point, by whichever body carries it."""
-    bodies = scene.pins.get(name)
-    if bodies is None:  # that of blocks alone
-        slider = next(s for s in scene.sliders.values() if s.link is None and s.point == name)
-        return chunk.point(block_name(slider), name)
-    body = next((one for one in bodies if one != GROUND), GROUND)
-    return chunk.point(body, name)
+    """A named point, by the body that a spring's end is fixed to."""
+    return chunk.point(_holder(scene, name), name)

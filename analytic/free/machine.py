@@ -1,61 +1,182 @@
-"""The equation of a machine with one freedom, with its driver's angle phi as the coordinate.
+"""The equation of a machine with one freedom, in any coordinate u of it.
 
-With rates v', theta' and q' of bodies and springs per unit of the driver's::
+With rates v', theta' and q' of bodies and springs per unit of the rate of u::
 
-    J phi'' + J' phi'^2 / 2 = Q       J = sum (m v'^2 + I theta'^2)
-                                      Q = sum (F v' + M theta') - sum (pull q')
+    J u'' + J' u'^2 / 2 = Q       J = sum (m v'^2 + I theta'^2)
+                                  Q = sum (F v' + M theta') - sum (pull q') - sign(u') sum (f |s'|)
 
-J and J' come of the kinematics to second order, in closed form. Q is that of weights, loads and
-springs; loads and dampers may depend on time and speed. Source: problem book "Bai tap co hoc may",
-chapter on real motion; I. I. Artobolevskii, Theory of Mechanisms, on reduced masses.
+J and J' come of the kinematics to second order, in closed form. Q is that of weights, loads,
+springs with their dampers, and of friction f of constant size in joints that rub at s'. Source:
+problem book "Bai tap co hoc may", chapter on real motion; I. I. Artobolevskii, Theory of
+Mechanisms, on reduced masses.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
+from analytic.dyads.plane import STEADY, Real
 from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
 from analytic.forces.springs import spring_lengths
 from analytic.forces.virtual_power import torque_by_power
-from analytic.kinematics import driven_chunk, unit_chunk
+from analytic.free.arc import Arc
+from analytic.free.chart import Chart
+from analytic.structure.mobility import analyse
 from models.array import Array
+from models.errors import CrankcheckError
+from models.friction import ConstantFriction
+from models.joints import block_name
 from models.scene import Scene
+from models.springs import PinSpring, Spring
+
+Wound = Mapping[str, Real]
+"""Of each spring in a pin an angle q that its own is within half a turn of [rad]."""
+UNWOUND: Wound = {}
+TAU = 2.0 * np.pi
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Machine:
-    """A scene with one freedom, reduced to its driver."""
+    """A scene with one freedom, reduced to a coordinate: the driver's angle, if no other is given.
+
+    Raises CrankcheckError for friction that follows from the reactions.
+    """
 
     scene: Scene
+    chart: Chart
 
-    def inertia(self, theta: Array) -> tuple[Array, Array]:
-        """J and J' [kg m^2] at driver angles [rad], (T,)."""
-        unit = unit_chunk(self.scene, theta, bound=False)
-        return inertia_and_slope(self.scene, unit)
-
-    def push(self, time_s: Array, theta: Array, omega: Array) -> Array:
-        """Q [N m] at times [s], driver angles [rad] and rates [rad/s], (T,)."""
-        unit = unit_chunk(self.scene, theta, bound=False)
-        return self._push(time_s, unit, omega)
-
-    def _push(self, time_s: Array, unit: Chunk, omega: Array) -> Array:
-        chunk = driven_chunk(self.scene, unit.theta, omega)
-        bodies = loaded_bodies(self.scene, chunk, time_s)
-        total = -np.asarray(torque_by_power(bodies, unit, chunk).value)
-        rates = {spring.name: rate for spring, _, rate in spring_lengths(self.scene, unit)}
-        for spring, q, rate in spring_lengths(self.scene, chunk):
-            total = (
-                total
-                - (spring.rate * (q - spring.free) + spring.damping * rate) * rates[spring.name]
+    def __init__(self, scene: Scene, chart: Chart | None = None) -> None:
+        if scene.coulomb_joints:
+            raise CrankcheckError(
+                f"{scene.name}: friction.{scene.coulomb_joints[0]} follows from what the joint "
+                "bears, which free motion does not know before it is solved; give it a size "
+                "that is constant"
             )
-        return np.broadcast_to(total, time_s.shape)
+        object.__setattr__(self, "scene", scene)
+        object.__setattr__(self, "chart", chart or Chart(Arc(scene, None), None))
 
-    def acceleration(self, time_s: Array, theta: Array, omega: Array) -> Array:
-        """phi'' [rad/s^2] at times [s], driver angles [rad] and rates [rad/s], (T,)."""
-        unit = unit_chunk(self.scene, theta, bound=False)
+    def inertia(self, u: Array) -> tuple[Array, Array]:
+        """J and J' at coordinates (T,)."""
+        return inertia_and_slope(self.scene, self.chart.unit(u))
+
+    def push(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
+        """Q at times [s], coordinates and their rates, (T,)."""
+        push = self._push(time_s, u, v, self.chart.unit(u), wound)
+        return np.asarray(np.broadcast_to(push, u.shape))
+
+    def acceleration(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
+        """u'' at times [s], coordinates and their rates, (T,)."""
+        unit = self.chart.unit(u)
         inertia, slope = inertia_and_slope(self.scene, unit)
-        push = self._push(time_s, unit, omega)
-        return np.asarray((push - 0.5 * slope * omega**2) / inertia)
+        push = self._push(time_s, u, v, unit, wound)
+        return np.asarray((push - 0.5 * slope * v**2) / inertia)
+
+    def _push(self, time_s: Array, u: Array, v: Array, unit: Chunk, wound: Wound) -> Real:
+        push = self._weights_and_loads(self.scene, time_s, u, v, unit)
+        return push + self._springs(unit, v, wound) + self._friction(unit, v)
+
+    def kinetic(self, u: Array, v: Array) -> Array:
+        """The kinetic energy [J]."""
+        return np.asarray(0.5 * self.inertia(u)[0] * v**2)
+
+    def potential(self, u: Array, wound: Wound = UNWOUND) -> Array:
+        """The energy of weights and springs [J], that of weights over the ground's origin."""
+        scene, unit = self.scene, self.chart.unit(u)
+        total = np.zeros_like(u)
+        g_x, g_y = scene.gravity_m_s2
+        for name, mass, centre in _weights(scene):
+            place = unit.bodies[name].point(centre).p
+            total = total - mass * (g_x * place.x + g_y * place.y)
+        for spring, q, _ in self._lengths(unit, wound):
+            total = total + 0.5 * spring.rate * (q - spring.free) ** 2
+        return np.asarray(total)
+
+    def power(self, time_s: Array, u: Array, v: Array) -> Array:
+        """What loads, dampers and friction do in a second [W]: what is not kept as energy."""
+        unit = self.chart.unit(u)
+        push = self._weights_and_loads(self._weightless, time_s, u, v, unit)
+        for spring, _, rate in spring_lengths(self.scene, unit):
+            push = push - spring.damping * rate**2 * v
+        return np.asarray((push + self._friction(unit, v)) * v)
+
+    def lengths(self, u: Array, wound: Wound = UNWOUND) -> dict[str, Array]:
+        """q of the springs in pins, whole turns counted [rad]."""
+        found = self._lengths(self.chart.unit(u), wound)
+        return {one.name: q for one, q, _ in found if isinstance(one, PinSpring)}
+
+    def rubbing(self, unit: Chunk) -> Iterator[tuple[float, Array]]:
+        """The friction in each joint that rubs [N or N m], and its rate per unit of that of u."""
+        for joint, law in self.scene.friction.items():
+            assert isinstance(law, ConstantFriction)
+            if joint in self.scene.sliders:
+                rate = unit.sliders[joint].speed
+            else:
+                one, other = (unit.bodies[body] for body in self._pairs[joint])
+                rate = other.omega - one.omega
+            yield law.size, np.broadcast_to(np.asarray(rate, dtype=np.float64), unit.theta.shape)
+
+    @cached_property
+    def _pairs(self) -> Mapping[str, tuple[str, ...]]:
+        """The two bodies of each pin that rubs. Raises CrankcheckError where they are more."""
+        pins = analyse(self.scene).pins
+        for joint in self.scene.friction:
+            if joint not in self.scene.sliders and len(pins.get(joint, ())) != 2:
+                raise CrankcheckError(
+                    f"{self.scene.name}: friction.{joint}: {len(pins.get(joint, ()))} bodies meet "
+                    "there, and two rub on one another"
+                )
+        return pins
+
+    @cached_property
+    def _weightless(self) -> Scene:
+        return replace(self.scene, gravity_m_s2=(0.0, 0.0))
+
+    @cached_property
+    def _heeds_rates(self) -> bool:
+        """Whether any load asks how fast something moves."""
+        loads = self.scene.loads.values()
+        return any(load.over in ("speed", "omega") or load.stroke != "both" for load in loads)
+
+    def moving(self, u: Array, v: Array, unit: Chunk) -> Chunk:
+        """The mechanism with its rates, where any load asks for them."""
+        return self.chart.chunk(u, v, STEADY) if self._heeds_rates else unit
+
+    def _weights_and_loads(
+        self, scene: Scene, time_s: Array, u: Array, v: Array, unit: Chunk
+    ) -> Real:
+        chunk = self.moving(u, v, unit)
+        bodies = loaded_bodies(scene, chunk, time_s)
+        return -torque_by_power(bodies, unit, chunk).value
+
+    def _lengths(self, unit: Chunk, wound: Wound) -> Iterator[tuple[Spring, Array, Array]]:
+        """As `spring_lengths`, with the whole turns of springs in pins."""
+        for spring, q, rate in spring_lengths(self.scene, unit):
+            turns = np.round((wound[spring.name] - q) / TAU) if spring.name in wound else 0.0
+            yield spring, q + TAU * turns, rate
+
+    def _springs(self, unit: Chunk, v: Array, wound: Wound) -> Real:
+        push: Real = 0.0
+        for spring, q, rate in self._lengths(unit, wound):
+            push = push - (spring.rate * (q - spring.free) + spring.damping * rate * v) * rate
+        return push
+
+    def _friction(self, unit: Chunk, v: Array) -> Real:
+        push: Real = 0.0
+        for size, rate in self.rubbing(unit):
+            push = push - size * np.abs(rate) * np.sign(v)
+        return push
+
+
+def _weights(scene: Scene) -> Iterator[tuple[str, float, tuple[float, float]]]:
+    """Every body that weighs something, its mass [kg] and its centre."""
+    for name, link in scene.links.items():
+        if link.mass_kg > 0.0:
+            yield name, link.mass_kg, link.centre_m
+    for slider in scene.sliders.values():
+        if slider.link is None and slider.mass_kg > 0.0:
+            yield block_name(slider), slider.mass_kg, (0.0, 0.0)

@@ -1,23 +1,30 @@
-"""Let a mechanism of one freedom go: the equation of the machine, integrated to 1e-12."""
+"""Let a mechanism of one freedom go: its equation, integrated to rounding and held to a second
+integration with other nodes in other windows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
-from scipy.integrate import solve_ivp  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.free.free_motion import FreeMotion
-from analytic.free.integrated_law import IntegratedLaw
+from analytic.free.arc import Arc
+from analytic.free.chart import Chart
+from analytic.free.doubt import Doubt
+from analytic.free.free_motion import FreeMotion, LimitPassage
+from analytic.free.gauss import gauss, sums
+from analytic.free.integration import Integration
 from analytic.free.machine import Machine
-from models.array import Array
-from models.errors import CrankcheckError
+from analytic.free.start_check import check_start
+from analytic.free.track import Track, Window
+from analytic.structure.mobility import analyse
+from models.errors import CrankcheckError, StructureError
 from models.released import Released
 from models.scene import KEPT, Same, Scene
 
-NUDGE = 1e-6
-"""What the start is changed by to see it grow [rad]."""
+NODES, OTHERS = 20, 16
+"""Of a window, and of a window of the integration that it is compared with."""
 
 
 def release(scene: Scene, until_s: float) -> FreeMotion:
@@ -30,12 +37,24 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
     until_s : float
         For how long [s].
 
+    Returns
+    -------
+    FreeMotion
+        To a few roundings of the driver's angle per turn times its `sensitivity`; what it may be
+        off by is `error_rad`.
+
     Raises
     ------
+    StructureError
+        Another mobility than 1, or a group without a closed form.
     CrankcheckError
-        A driver that is driven, no mass that moves, an integration that fails.
+        A driver that is driven; a start that contradicts itself; no mass that moves; friction that
+        follows from the reactions; a position on the way that has no smooth motion through it; a
+        time that is none.
     """
-    return _released(Same(scene), until_s)
+    if not (math.isfinite(until_s) and until_s > 0.0):
+        raise CrankcheckError(f"{scene.name}: free for {until_s:g} s; give a time above 0")
+    return _released(Same(scene), float(until_s))
 
 
 @lru_cache(maxsize=KEPT)
@@ -44,43 +63,57 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     law = scene.driver.law
     if not isinstance(law, Released):
         raise CrankcheckError(f'{scene.name}: its driver follows a law; give it law = "free"')
-    machine = Machine(scene)
-    fine = _integrated(machine, law.start_rad, law.speed_rad_s, until_s, 1e-13)
-    rough = _integrated(machine, law.start_rad, law.speed_rad_s, until_s, 1e-11)
-    nudged = _integrated(machine, law.start_rad + NUDGE, law.speed_rad_s, until_s, 1e-11)
-    time_s = np.linspace(0.0, until_s, 2001)
-    at, near, far = fine(time_s), rough(time_s), nudged(time_s)
-    growth = np.maximum.accumulate(np.maximum(1.0, np.abs(far[0] - near[0]) / NUDGE))
-    off = np.maximum.accumulate(np.abs(at[0] - near[0]))
-
-    def course(times: Array) -> tuple[Array, Array, Array]:
-        theta, omega = fine(times)
-        return theta, omega, machine.acceleration(times, theta, omega)
-
-    peak = float(np.max(np.abs(at[1])))
-    own = IntegratedLaw(course, 0.0, until_s, peak)
-    return FreeMotion(scene, until_s, own, (time_s, growth), (time_s, off))
+    try:
+        analyse(scene)
+    except StructureError as error:
+        raise StructureError(
+            f"{error} Free motion by closed forms is that of one freedom and of dyads; that of "
+            "others is for the equations of motion of all bodies"
+        ) from None
+    chart = Chart.at(Arc.of(scene, law.start_rad), law.start_rad, {})
+    machine = Machine(scene, chart)
+    u, v = chart.state(law.start_rad, law.speed_rad_s)
+    check_start(scene, machine, u)
+    wound = machine.lengths(np.array([u]))
+    start = {name: float(q[0]) for name, q in wound.items()}
+    track, edges = _integrated(machine, until_s, NODES, (u, v), start)
+    other, _ = _integrated(machine, until_s, OTHERS, (u, v), start)
+    doubt = Doubt.between(track, other)
+    return FreeMotion(scene, until_s, track, doubt, tuple(_passages(track)), tuple(edges))
 
 
 def _integrated(
-    machine: Machine, start_rad: float, speed_rad_s: float, until_s: float, rtol: float
-) -> Callable[[Array], Array]:
-    """The driver's angle and rate over time, dense."""
+    machine: Machine,
+    until_s: float,
+    nodes: int,
+    start: tuple[float, float],
+    wound: dict[str, float],
+) -> tuple[Track, list[float]]:
+    """The windows up to a time, and the instants at which what acts is not smooth."""
+    going = Integration(machine.scene, gauss(nodes), until_s, machine, *start, wound)
+    return going.run(), going.edges_s
 
-    def rates(time_s: float, state: Array) -> tuple[float, float]:
-        one = machine.acceleration(np.array([time_s]), state[:1], state[1:])
-        return float(state[1]), float(one[0])
 
-    done = solve_ivp(
-        rates,
-        (0.0, until_s),
-        (start_rad, speed_rad_s),
-        method="DOP853",
-        rtol=rtol,
-        atol=rtol,
-        dense_output=True,
-    )
-    if not done.success:
-        raise CrankcheckError(f"{machine.scene.name}: the integration fails: {done.message}")
-    dense: Callable[[Array], Array] = done.sol
-    return dense
+def _passages(track: Track) -> Iterator[LimitPassage]:
+    """The limits that the motion passes, one after the other."""
+    for window in track.windows:
+        limit = window.chart.limit
+        if limit is None:
+            continue
+        share = np.linspace(0.0, 1.0, 17)
+        u = sums(np.ones((17, 1)) * window.u, share)
+        for k in np.flatnonzero((u[:-1] < 0.0) != (u[1:] < 0.0)):
+            if u[k] == 0.0 and window.start_s == 0.0 and k == 0:
+                continue  # it is let go there
+            time_s = window.start_s + window.long_s * _zero(window, share[k], share[k + 1])
+            yield LimitPassage(time_s, limit.dyad, limit.driver_rad)
+
+
+def _zero(window: Window, low: float, high: float) -> float:
+    """Where in a window its coordinate is 0, between two shares of it."""
+    for _ in range(10):
+        share = np.linspace(low, high, 65)
+        u = sums(np.ones((65, 1)) * window.u, share)
+        k = int(np.argmax((u[:-1] < 0.0) != (u[1:] < 0.0)))
+        low, high = float(share[k]), float(share[k + 1])
+    return 0.5 * (low + high)

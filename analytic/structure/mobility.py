@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 from analytic.structure.groups import Bridge, Group, Pairs, decompose
 from models.errors import StructureError, few
-from models.joints import block_name, joined_at
-from models.scene import GROUND, Scene, Slider
+from models.joints import block_name, joined_at, sliding_body
+from models.scene import GROUND, Scene
 
 MOST_LOOKS = 200_000
 """Pairs that are looked at, over all sets of links, to name a group without closed form: about
@@ -75,11 +75,6 @@ class Structure:
     def spare(self) -> str:
         """The names of the redundant links."""
         return ", ".join(bridge.link for bridge in self.redundant)
-
-
-def sliding_body(slider: Slider) -> str:
-    """The body that a slider is: its link, or a block of its own, with mass or without."""
-    return slider.link or block_name(slider)
 
 
 def analyse(scene: Scene) -> Structure:

@@ -9,6 +9,9 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
+from reports.cli import regulating
+
+# isort: split
 from reports.cli import recipes
 from reports.cli.application import app, guarded, main
 
@@ -21,5 +24,6 @@ __all__ = [
     "main",
     "measuring",
     "recipes",
+    "regulating",
     "showing",
 ]

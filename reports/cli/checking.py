@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from models.errors import CrankcheckError
-from reports.cli.application import Engines, Forces, Jobs, StepS, StepsPerTurn, Turns, command
+from reports.cli.application import Engines, Forces, Jobs, StepS, StepsPerTurn, command
 from reports.output.console import terminal
 
 PRESCRIBED = "prescribed"
@@ -33,7 +33,9 @@ class VerifyRequest:
     ] = ()
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Turns = 2.0
+    turns: Annotated[
+        float | None, typer.Option(help="Turns (periods) of the driver (default 2).")
+    ] = None
     tolerance: Annotated[
         Sequence[str],
         typer.Option(
@@ -65,6 +67,13 @@ class VerifyRequest:
         float, typer.Option(help="Growth over the baseline that is no fault yet.")
     ] = 1.1
     forces: Forces = False
+    free: Annotated[
+        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
+    ] = False
+    duration_s: Annotated[
+        float | None,
+        typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
+    ] = None
     mjcf: Annotated[
         Path | None,
         typer.Option(

@@ -51,6 +51,16 @@ class SweepRequest:
         bool, typer.Option("--again", help="Run cells again that timed out or crashed.")
     ] = False
     forces: Forces = False
+    free: Annotated[
+        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
+    ] = False
+    dt_s: Annotated[
+        str | None, typer.Option("--dt", metavar="S,S,...", help="Steps of free motion, seconds.")
+    ] = None
+    duration_s: Annotated[
+        float | None,
+        typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
+    ] = None
 
 
 @command

@@ -34,6 +34,14 @@ class SolveRequest:
         Path | None,
         typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx, or a page, .html."),
     ] = None
+    duration: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Free motion: for how long (default the scene's own)."),
+    ] = None
+    steps: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Free motion: samples in it (default 12, in a file 1000)."),
+    ] = None
     clockwise: Annotated[
         bool, typer.Option("--clockwise", help="With --at-deg: the driver turning clockwise there.")
     ] = False
@@ -46,14 +54,17 @@ class SolveRequest:
     ] = False
     figures: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="With --forces: draw them over a turn, as SVG and PDF."),
+        typer.Option(
+            metavar="DIR",
+            help="With --forces: draw them over a turn; or a free motion; as SVG and PDF.",
+        ),
     ] = None
 
 
 @command
 def solve(request: SolveRequest) -> int:
-    """Show the closed-form reference alone: angles, points and sliders with all their rates, and
-    the forces that these ask for."""
+    """Show the reference alone: angles, points and sliders with all their rates, and the forces
+    that these ask for; of a scene that is let go, its free motion and energy."""
     from reports.cli.commands import solve as verb
 
     verb.run_solve(request, terminal())

@@ -45,6 +45,10 @@ class Truth:
     _motions: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
     _loaded: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
+    def beside(self, run: Run) -> Beside | None:
+        """A run beside this truth; None where it logged nothing."""
+        return Beside.of(self, run)
+
     @cached_property
     def start(self) -> State:
         """The state at time 0. Raises CrankcheckError where there is none."""
@@ -55,11 +59,12 @@ class Truth:
         instants = time_s.tobytes()
         motion = self._motions.get(instants)
         if motion is None:
-            motion = solve(
-                self.scene, time_s, links=self.links, points=self.points, bound=self.bound
-            )
+            motion = self._solved(time_s)
             _keep(self._motions, instants, motion)
         return motion
+
+    def _solved(self, time_s: Array) -> Motion:
+        return solve(self.scene, time_s, links=self.links, points=self.points, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:
         """As `at`, with the forces; there are none (NaN) in dead points."""
@@ -132,6 +137,14 @@ class Beside:
     def drive(self) -> Array:
         """How far the driver is from where it was told to be [rad], (T,)."""
         return angle_error(self.crank, self.driver_rad)
+
+    def driver_at(self, time_s: Array, reference: Motion) -> Array:
+        """The true angle of the driver [rad] at instants, (T,), those of a reference."""
+        return self.scene.driver.law.at(time_s)[0]
+
+    def judged(self, track: Track, time_s: Array) -> Track:
+        """A track of an error at the same time, as it is held to a limit."""
+        return track
 
     @cached_property
     def whole(self) -> Motion:

@@ -77,18 +77,18 @@ def _elsewhere(beside: Beside, far: Mask) -> bool:
         rest = dict(motion.links)
         for n, dyad in enumerate(dyads, start=1):
             own = {name: rest.pop(name) for name in dyad.bodies if name in rest}
-            _stay(there, beside.motion, own)
+            stay(there, beside.motion, own)
             if not there.any():
                 ruled_out.add(signs[:n])
                 break
         else:
-            _stay(there, beside.motion, rest)
+            stay(there, beside.motion, rest)
             if there.any():
                 return True
     return False
 
 
-def _stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
+def stay(there: Mask, logged: Motion, links: Mapping[str, LinkMotion]) -> None:
     """Take out the samples at which one of the links, as far as they are logged, is elsewhere."""
     for name, link in links.items():
         if name not in logged.links or np.all(np.isnan(logged.links[name].theta)):

@@ -54,7 +54,7 @@ class Instants:
 
 def instants_of(beside: Beside, time_s: Array, reference: Motion) -> Instants:
     """The samples of a run at instants of its own, or of its forces."""
-    driver_rad = beside.scene.driver.law.at(time_s)[0]
+    driver_rad = beside.driver_at(time_s, reference)
     passed = near(reference.crossings, driver_rad, WINDOW_RAD)
     return Instants(time_s, driver_rad, passed, beside.settling)
 

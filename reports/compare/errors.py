@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Literal
 
+from reports.compare.free.free_facts import FreeFacts
 from reports.quantities.quantity import BodyKind, Source, tolerance_name
 
-ErrorKind = Literal["total", "geometric", "start", "passage"]
+ErrorKind = Literal["total", "geometric", "start", "passage", "raw"]
 
 
 @dataclass(frozen=True)
@@ -19,8 +20,9 @@ class Error:
     ``scale`` makes a pure number of it: 1 rad for angles, the longest link for lengths, the
     driver's speed (times that length) for velocities, its square for accelerations. Rates of the
     first steps, in which an engine takes up its pins, are of kind ``start``, those of later ones
-    near a change point of kind ``passage`` (`reports.compare.change_points`). ``bound`` is the
-    largest error of the reference itself [unit].
+    near a change point of kind ``passage`` (`reports.compare.change_points`). Of free motion they
+    are all over the sensitivity, and those of kind ``raw`` are not. ``bound`` is the largest error
+    of the reference itself [unit].
     """
 
     quantity: str
@@ -99,7 +101,11 @@ class Errors:
     largest of its kind, where the engine's forces are those of steps, which start with half a step.
     ``loading`` is how loads would shake the bodies by themselves, ``load_slopes`` how much they
     change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
-    may have of the largest reaction (`reports.compare.loading`).
+    may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
+    that a driver which was let go turns through, weighed with the square of its speed over the
+    largest, 0 of one that is driven;
+    ``free`` is what else there is to
+    know of a run that was let go, None of one that was driven.
     """
 
     rows: tuple[Error, ...]
@@ -125,6 +131,8 @@ class Errors:
     loading: float = 0.0
     load_slopes: Mapping[str, float] = field(default_factory=dict)
     inertia_share: float = 1.0
+    travel_rad: float = 0.0
+    free: FreeFacts | None = None
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -53,7 +53,8 @@ def force_rows(beside: Beside) -> ForceErrors:
         if silent(run) and np.all(np.isnan(track.error)):
             missing.append(f"{track.quantity} of {track.body_kind} {track.body}")
             continue
-        sure = replace(track, error=track.error[kept], bound=track.bound[kept])
+        judged = beside.judged(track, time_s)
+        sure = replace(judged, error=judged.error[kept], bound=judged.bound[kept])
         rows += rate_rows(sure, at[kept], "reported")
     borne = acting(run)
     force, torque = largest_reaction(scene, reference), largest_torque(scene, reference)

@@ -19,7 +19,7 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
+from reports.compare.beside import Truth
 from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run
@@ -30,15 +30,16 @@ SAMPLES_PER_TURN = 90
 """Divides the usual numbers of steps in a turn, so that cells of a line share their instants."""
 
 
-def trace(scene: Scene, run: Run) -> Trace:
+def trace(truth: Truth, run: Run) -> Trace:
     """The series of a run that logged something; empty where it logged nothing that is finite."""
+    scene = truth.scene
     if run.motion is None or run.motion.time_s.size < 2:
         return {}
     kept = _instants(scene, run)
     gaps = {name: gap[kept] for name, gap in run.gaps.items()}
     motion = run.motion.each_series(lambda series: series[kept])
     turn = replace(run, motion=replace(motion, time_s=motion.time_s[kept]), gaps=gaps)
-    beside = Beside.of(Truth(scene, bound=False), turn)
+    beside = truth.beside(turn)
     assert beside is not None
     series = {
         "time_s": beside.motion.time_s,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from models.laws import Accelerating, ConstantSpeed, FromRest, Oscillating
+from models.released import Released
 from models.scene import Scene
 
 
@@ -23,4 +24,7 @@ def describe_law(scene: Scene) -> str:
     if isinstance(law, Oscillating):
         centre, swing = math.degrees(law.centre_rad), math.degrees(law.amplitude_rad)
         return f"swings {centre:g} +- {abs(swing):g} deg at {law.frequency_rad_s:g} rad/s"
+    if isinstance(law, Released):
+        speed = f"at {law.speed_rad_s:g} rad/s" if law.speed_rad_s else "at rest"
+        return f"let go {speed} at {math.degrees(law.start_rad):g} deg, for {law.duration_s:g} s"
     return type(law).__name__

@@ -31,13 +31,14 @@ from reports.drawing.shape import (
 )
 from reports.output.numbers import readable
 
-FRAMES = 60
+FRAMES, FRAME_S = 60, 0.06
 STRIP = 6
 GUIDE = "#9aa5b1"
 
 
 def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
-    """One turn of the scene as a GIF that repeats, its forces as arrows where they are wanted."""
+    """One turn of the scene, or its free motion as far as it goes in that time, as a GIF that
+    repeats, its forces as arrows where they are wanted."""
     turn = _Turn.of(scene, FRAMES, with_forces=with_forces)
     figure = _figure(turn.box, columns=1, rows=1, width=6.4)
     canvas = FigureCanvasAgg(figure)
@@ -53,7 +54,13 @@ def animation(scene: Scene, *, with_forces: bool = False) -> bytes:
         frames.append(picture.quantize(64, dither=Image.Dither.NONE))
     buffer = io.BytesIO()
     frames[0].save(
-        buffer, "GIF", save_all=True, append_images=frames[1:], duration=60, loop=0, optimize=True
+        buffer,
+        "GIF",
+        save_all=True,
+        append_images=frames[1:],
+        duration=round(1000 * FRAME_S),
+        loop=0,
+        optimize=True,
     )
     return buffer.getvalue()
 
@@ -84,8 +91,9 @@ class _Turn:
 
     @staticmethod
     def of(scene: Scene, positions: int, *, with_forces: bool) -> _Turn:
-        path = turn_of(scene, PATH_SAMPLES, with_forces=with_forces)
-        motion = turn_of(scene, positions + 1, with_forces=with_forces)
+        most_s = FRAMES * FRAME_S if scene.is_free else math.inf
+        path = turn_of(scene, PATH_SAMPLES, most_s, with_forces=with_forces)
+        motion = turn_of(scene, positions + 1, most_s, with_forces=with_forces)
         if not with_forces:
             return _Turn(scene, motion, path, box_of(path))
         arrows = force_arrows(scene, path)

@@ -13,7 +13,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from analytic.kinematics import solve
 from models.array import Array
 from models.laws import Oscillating
 from models.motion import Motion
@@ -21,6 +20,7 @@ from models.scene import GROUND, Scene
 from reports.compare.last_turn import Trace
 from reports.compare.series import angle_error
 from reports.drawing.packed import packed
+from reports.drawing.true_motion import true_motion
 
 INSTANTS = 91
 """Over one period, both ends included, where no trace says which."""
@@ -53,7 +53,7 @@ def drawing(scene: Scene, time_s: Array, truth: Motion | None = None) -> dict[st
     Series by point (x, then y), by guide-bearing link (angle) and by slider (displacement).
     ``truth`` takes the place of the driven reference, where something else is true.
     """
-    motion = solve(scene, time_s, bound=False) if truth is None else truth
+    motion = true_motion(scene, time_s) if truth is None else truth
     driver = motion.links[scene.driver.link].theta
     points = {name: motion.points[name].position for name in moving_points(scene)}
     links = drawn_links(scene)
@@ -87,7 +87,7 @@ def displacements(
     own = trace.get("time_s")
     if own is None or any(f"x.{name}" not in trace for name in moving_points(scene)):
         return None
-    motion = solve(scene, own, bound=False) if truth is None else truth
+    motion = true_motion(scene, own) if truth is None else truth
     off = [
         np.column_stack([trace[f"x.{name}"], trace[f"y.{name}"]]) - motion.points[name].position
         for name in moving_points(scene)

@@ -10,6 +10,7 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
+from models.errors import CrankcheckError
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
@@ -27,11 +28,14 @@ TRIED = 24
 def turn_of(
     scene: Scene, samples: int, most_s: float = math.inf, *, with_forces: bool = False
 ) -> Motion:
-    """One turn, or the first ``most_s`` of it, both ends included; a driver that swings begins at
-    an end of its swing, so that an even number of equal parts of its period shows the other end as
-    well. Its forces are those outside of dead points, and clear of where friction locks."""
+    """One turn, or the first ``most_s`` of it, both ends included; of a scene that is let go its
+    free motion. A driver that swings begins at an end of its swing, so that an even number of equal
+    parts of its period shows the other end as well. Its forces are those outside of dead points,
+    and clear of where friction locks."""
     law = scene.driver.law
     time_s = np.linspace(0.0, min(law.period_s, most_s), samples)
+    if scene.is_free:
+        return _free(scene, time_s, with_forces=with_forces)
     if isinstance(law, Oscillating):
         time_s += (math.pi / 2 - law.phase_rad) / law.frequency_rad_s % law.period_s
     motion = solve(scene, time_s, bound=False)
@@ -39,6 +43,17 @@ def turn_of(
         return motion
     acting = forces(scene, time_s, bound=False, skip_dead_points=True)
     return replace(motion, forces=clear_of_locking(acting))
+
+
+def _free(scene: Scene, time_s: Array, *, with_forces: bool) -> Motion:
+    """The free motion of a scene. Raises CrankcheckError for forces, which it is not drawn with."""
+    from analytic.free.release import release  # loads scipy
+
+    if with_forces:
+        raise CrankcheckError(
+            f"{scene.name}: let go, it is drawn without its forces; leave them out"
+        )
+    return release(scene, float(time_s[-1])).at(time_s, bound=False)
 
 
 def clearest(path: Motion) -> int:

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike
 
 from analytic import kinematics
 from analytic.forces.efficiency import Efficiency, efficiency
+from analytic.result import Selection
 from models.array import Array
 from models.errors import CrankcheckError
 from models.laws import MOST_TURNS
 from models.motion import Motion
+from models.samples import samples
 from models.scene import Scene
 from reports.describe.with_forces import cleaned_forces, with_forces
 from reports.face.arguments import SceneLike, is_true, scene_of
@@ -99,7 +101,8 @@ def solve(
     bound: bool = True,
     forces: bool = False,
 ) -> Solution:
-    """The motion of a scene at some times, in closed form.
+    """The motion of a scene at some times, in closed form; of one that is let go, its free motion,
+    integrated (`FreeSolution`).
 
     Parameters
     ----------
@@ -124,6 +127,8 @@ def solve(
     scene = scene_of(scene)
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
+    if scene.is_free:
+        return _let_go(scene, time_s, links, points, sliders, bound=bound, forces=forces)
     # Whatever the times are, they are looked at there.
     motion = kinematics.solve(
         scene,
@@ -137,6 +142,26 @@ def solve(
     if is_true(forces, "forces"):
         motion = with_forces(scene, motion, bound=bound)
     return Solution(**vars(motion), scene=scene)
+
+
+def _let_go(
+    scene: Scene,
+    time_s: ArrayLike,
+    links: Names,
+    points: Names,
+    sliders: Names,
+    *,
+    bound: bool,
+    forces: bool,
+) -> Solution:
+    """The free motion of a scene. Raises CrankcheckError."""
+    from reports.face.free_solution import free_solution  # loads scipy
+
+    if is_true(forces, "forces"):
+        raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
+    wanted = Selection.of(scene, links, points, sliders)
+    instants = samples(time_s, "time_s")
+    return free_solution(scene, instants, wanted, bound=is_true(bound, "bound"))
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:

@@ -72,6 +72,9 @@ def sweep(
     again: bool = False,
     progress: bool = False,
     forces: bool = False,
+    free: bool = False,
+    dt_s: float | Iterable[float] = (),
+    duration_s: float | None = None,
 ) -> Sweep:
     """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
 
@@ -107,6 +110,12 @@ def sweep(
         Tell on standard error how far it is.
     forces : bool
         Compare reactions and torque as well, of engines that report them.
+    free : bool
+        Let the scenes go; those of free motion for ().
+    dt_s : float or Iterable[float]
+        Steps of free motion [s], which has no turns.
+    duration_s : float or None
+        Of free motion [s]; that of the scene for None.
 
     Raises
     ------
@@ -153,6 +162,9 @@ def sweep(
             None if turns is None else positive("--turns", turns, "turns of the driver"),
             overrides_of(settings, study_engines(told, named)),
             is_true(forces, "forces"),
+            is_true(free, "free"),
+            numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
+            None if duration_s is None else positive("--duration", duration_s, "seconds"),
         )
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)

@@ -58,9 +58,11 @@ def scene_names(scenes: object, kept: ExitStack) -> list[str]:
     return names
 
 
-def numbers_of(values: float | Iterable[float], option: str) -> list[float]:
+def numbers_of(
+    values: float | Iterable[float], option: str, unit: str = "steps, such as 720"
+) -> list[float]:
     """One number or several, above 0. Raises CrankcheckError."""
-    return [positive(option, value, "steps, such as 720") for value in each_of(values)]
+    return [positive(option, value, unit) for value in each_of(values)]
 
 
 def overrides_of(settings: object, engines: Sequence[str]) -> Overrides:
@@ -93,6 +95,9 @@ def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
         *(("--steps-per-turn", several) if several else ()),
         *(("--turns", f"{choice.turns:g}") if choice.turns is not None else ()),
         *(("--forces",) if choice.forces else ()),
+        *(("--free",) if choice.free else ()),
+        *(("--dt", ",".join(f"{each:g}" for each in choice.dt_s)) if choice.dt_s else ()),
+        *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
         *(
             word
             for owner, chosen in choice.overrides.items()

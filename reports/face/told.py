@@ -37,6 +37,7 @@ ARGUMENTS: Mapping[str, str] = {
     "--limit-s": "limit_s",
     "--memory-gb": "memory_gb",
     "--speed": "speed_rad_s",
+    "--delta": "delta",
     "--key": "key",
     "--start": "start_rad",
     "--branch": "branch",

@@ -12,9 +12,10 @@ from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
 from reports.compare.asked import not_asked_for
-from reports.compare.beside import Beside, Truth, truth_of
+from reports.compare.beside import Truth, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
+from reports.compare.free.free_truth import free_truth
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
@@ -53,6 +54,18 @@ class Cell:
     @property
     def steps_per_turn(self) -> float:
         return self.scene.driver.law.period_s / self.dt_s
+
+    @property
+    def truth(self) -> Truth:
+        """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
+        if self.drive == "free":
+            return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
+        return truth_of(Same(self.scene))
+
+    @property
+    def shown_truth(self) -> Truth:
+        """The same without bounds, which cost time and are not drawn."""
+        return self.truth if self.drive == "free" else Truth(self.scene, bound=False)
 
     @property
     def label(self) -> str:
@@ -105,8 +118,8 @@ def examined(
 
 def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[Checked, Run | None]:
     """As `examined`, but for the time."""
-    truth = truth_of(Same(cell.scene))  # before the run: the truth of another scene is let go
     try:
+        truth = cell.truth  # before the run: the truth of another scene is let go
         runs = _Runs(cell, truth.start, adapter or engine(cell.engine), runner, adapter)
         done = runs.run(1)
     except EngineError as error:
@@ -118,13 +131,13 @@ def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[C
 
 def check_run(cell: Cell, done: Run) -> Checked:
     """As `check`, of a run that was made before, at no other step."""
-    return _judged(cell, truth_of(Same(cell.scene)), done, None)
+    return _judged(cell, cell.truth, done, None)
 
 
 def _judged(cell: Cell, truth: Truth, done: Run, runs: _Runs | None) -> Checked:
     """A run at the full step, compared and judged; finer ones are of ``runs``, if there are any."""
     try:
-        errors = compare(Beside.of(truth, done))
+        errors = compare(truth.beside(done))
     except CrankcheckError as error:
         why = f"the run has no reference to compare with: {error}"
         return unfinished(cell, "crashed", why)

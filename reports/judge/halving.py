@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.compare.beside import Beside, Truth
+from reports.compare.beside import Truth
 from reports.compare.compare import places
 from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
@@ -19,11 +19,15 @@ from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
 
-PLACES, CLOSED, FORCES = named("place"), named("place", "closure"), named("force")
+PLACES, CLOSED, FORCES = ("phase", *named("place")), named("place", "closure"), named("force")
+FREE_CLOSED = ("phase", "geometry", *CLOSED)
 HALVINGS = 2
 EXACT_DRIVE = 1e-9
 """A drive error [rad] up to which the crank is where it should be, but for rounding; long runs add
 to it what their sums may be off by (`reports.compare.drive_rounding`)."""
+MOST_GROWTH = 1e3
+"""A sensitivity of free motion from which on errors of phase cancel and add up as they like, and
+say nothing of an order."""
 BEHIND_DRIVE = 5.0
 """How far behind the rounding of the crank that of the other links may be."""
 
@@ -59,13 +63,15 @@ def followed(
         The engine's, see `sim.engine.Engine`.
     """
     worst, force = worst_place(errors), _worst_of(errors.rows, FORCES)
-    if worst is None:
+    if worst is None or (errors.free is not None and errors.free.sensitivity > MOST_GROWTH):
         return Followed()
     parts = [2**halving for halving in range(HALVINGS + 1)]
     finer = [_finer(truth, dt_s, p, rerun) for p in parts[1:]]
     every_row = [*errors.rows, *(row for rows, _ in finer for row in rows)]
     drive = largest(row for row in every_row if row.quantity == "drive")
     rounding = _rounding(drive, EXACT_DRIVE + parts[-1] * errors.summed_rad)
+    if errors.free is not None:  # an integrated truth is off by more than rounding
+        rounding = max(rounding, parts[-1] * errors.summed_rad, worst.pure_bound)
     steps_s, faults = [dt_s / p for p in parts], [fault for _, fault in finer if fault]
 
     def pure(followed: Error) -> list[float]:
@@ -86,10 +92,11 @@ def followed(
         "rad" if worst.unit == "rad" else "of the longest link",
         rounding,
         faults=faults,
-        over=over(CLOSED, rounding),
+        over=over(CLOSED if errors.free is None else FREE_CLOSED, rounding),
         copied=_copied(errors, dt_s, parts, [errors.rows, *(rows for rows, _ in finer)], order)
         if placing == "integrated"
         else (),
+        cancels=errors.free is not None,
     )
     if force is None:
         return Followed(of_places)
@@ -112,7 +119,7 @@ def _finer(
     at = f"at dt {dt_s / parts:.3g} s"
     try:
         done = rerun(parts)
-        beside = Beside.of(truth, done)
+        beside = truth.beside(done)
         rows = places(beside)
         rows += force_rows(beside).rows if beside else ()
     except CrankcheckError as error:
@@ -143,7 +150,9 @@ def _over(
     texts = []
     for name in quantities:
         full, fine = errors.worst(name), _worst_of(rows, [name])
-        if full is None or fine is None or not full.pure <= before[name].number:
+        if name not in before or full is None or fine is None:
+            continue
+        if not full.pure <= before[name].number:
             continue
         limit = in_force[name].number
         if not fine.pure <= max(limit, rounding):

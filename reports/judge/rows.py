@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
-from reports.judge.tolerance import DEFAULTS, Limit
+from reports.judge.precision import IFTOMM, precision
+from reports.judge.tolerance import DEFAULTS, FORCES, FREE, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -33,6 +34,11 @@ FORCE_COLUMNS = frozenset(
     name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("force")
 )
 """Those of cells of which forces were asked for."""
+DRIVE_COLUMNS = frozenset(
+    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("drive")
+)
+FREE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("free"))
+"""Those of cells that were driven, and those of cells that were let go."""
 MOVING = tuple(name for name in DEFAULTS if name not in named("force"))
 """The tolerances of what is compared of every cell."""
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
@@ -51,7 +57,8 @@ def error_row(error: Error, limits: Mapping[str, Limit] | None = None) -> dict[s
     """One error as a flat row; with limits, that which it is held to."""
     limit = None
     if limits is not None:
-        limit = {"limit_pure": limits[error.tolerance].number if error.kind == "total" else None}
+        in_force = limits.get(error.tolerance) if error.kind == "total" else None
+        limit = {"limit_pure": None if in_force is None else in_force.number}
     return {
         **{name: getattr(error, name) for name in AS_THEY_ARE},
         "maximum_pure": error.pure,
@@ -74,9 +81,13 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "failed_rules": " ".join(finding.rule for finding in checked.failures),
     }
     errors = checked.errors.rows if checked.errors else ()
-    wanted = DEFAULTS if checked.cell.with_forces else MOVING
+    free = checked.cell.drive == "free"
+    wanted: Collection[str] = FREE if free else DEFAULTS
+    if not checked.cell.with_forces:
+        wanted = [name for name in wanted if name not in FORCES]
+    others = DRIVE_COLUMNS if free else FREE_COLUMNS
     for name, *key in ERROR_COLUMNS:
-        if name in FORCE_COLUMNS and not checked.cell.with_forces:
+        if name in others or (name in FORCE_COLUMNS and not checked.cell.with_forces):
             continue
         worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
         row[name] = worst.maximum if worst else None
@@ -87,8 +98,10 @@ def cell_row(checked: Checked) -> dict[str, object]:
         row[f"{column}_limit_pure"] = (
             checked.limits[name].number if name in checked.limits else None
         )
-    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in named("place")))
+    placed = ("phase", *named("place")) if free else named("place")
+    row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in placed))
     convergence = checked.convergence
+    row |= free_row(checked) if free else {}
     row |= {
         "trend": convergence.trend if convergence else None,
         "order": convergence.order if convergence else None,
@@ -98,6 +111,25 @@ def cell_row(checked: Checked) -> dict[str, object]:
         "warnings": " | ".join(checked.warnings),
     }
     return row | _force_convergence(checked) if checked.cell.with_forces else row
+
+
+def free_row(checked: Checked) -> dict[str, object]:
+    """What a free cell has besides: how far it was followed, and how far each class of precision
+    holds."""
+    facts = checked.errors.free if checked.errors else None
+    limit = checked.limits.get("phase")
+    return {
+        "precision": precision(checked),
+        "sensitivity": facts.sensitivity if facts else None,
+        "judged_until_s": facts.until_s if facts else None,
+        "left_out": facts.left_out if facts else None,
+        "limit_positions": facts.passages if facts else None,
+        **{
+            f"horizon_{name}_s": facts.horizon_s(size) if facts else None
+            for name, size in IFTOMM.items()
+        },
+        "horizon_limit_s": facts.judged_horizon_s(limit.number) if facts and limit else None,
+    }
 
 
 def _force_convergence(checked: Checked) -> dict[str, object]:

@@ -37,7 +37,7 @@ within a step.
 from __future__ import annotations
 
 from reports.compare.errors import Errors
-from reports.judge.tolerance import DEFAULTS
+from reports.judge.tolerance import numbers_for
 from sim.engine import Placing
 
 ROOM = 2.0
@@ -57,7 +57,7 @@ CAP = 0.1
 def allowance(tolerance: str, errors: Errors, placing: Placing = "integrated") -> float:
     """What the first samples of an engine that comes by places as ``placing`` says may be off by on
     top of the limit ``tolerance``, as a pure number."""
-    numbers = DEFAULTS[tolerance]
+    numbers = numbers_for(errors)[tolerance]
     if numbers.parts:
         parting = errors.curvature * errors.mass_ratio / max(errors.conditioning, 1e-12)
         changing = CHANGE * errors.step_rad * errors.curvature**1.5 if placing == "solved" else 0.0

@@ -63,8 +63,12 @@ def convergence(
     faults: Sequence[str] = (),
     over: Sequence[str] = (),
     copied: Sequence[str] = (),
+    cancels: bool = False,
 ) -> Convergence:
     """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
+
+    Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor is
+    one only where the last halving leaves most of the error.
 
     Raises
     ------
@@ -75,6 +79,8 @@ def convergence(
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
     trend, order, floor = _read(first, second, third, rounding)
+    if cancels and trend == "levels off" and third <= STAYS * second:
+        trend, floor = "shrinks", math.nan
     told = (tuple(texts) for texts in (faults, over, copied))
     return Convergence(tuple(dt_s), tuple(error), unit, trend, order, floor, *told)
 

@@ -23,6 +23,11 @@ A change point that the motion goes through is left out of ``conditioning``, wit
 the driver on both sides (`reports.compare.change_points`). Rates there are held to limits of their
 own (`in_passage`): what it takes to make good an error of place, within its limit, in one step.
 
+What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
+curvature^1.5`` more: impulses and springs that close joints take energy at every step, which adds
+up to that. ``travel`` [rad] is what the driver turns through, each part of it weighed with the
+square of its speed over the largest: it is fast for a small part of a swing alone.
+
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
 
@@ -58,7 +63,18 @@ DEFAULTS: dict[str, Tolerance] = {
     tolerance_name(name, each.source): each.tolerance
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
+    if entry.role != "free"
 }
+"""Of a mechanism that is driven."""
+FREE: dict[str, Tolerance] = {
+    tolerance_name(name, each.source): of_free
+    for name, entry in QUANTITIES.items()
+    for each in entry.criteria
+    if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
+}
+"""Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
+EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE)))
+"""All that there may be a limit of."""
 
 FORCES = frozenset(named("force"))
 
@@ -72,6 +88,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.closes:
         bend = max(bend, 2.0 * errors.worst_jolt)
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
+    lasted = errors.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
+    budget += tolerance.lasting * lasted
     shaken = tolerance.share * curvature + tolerance.load_share * errors.loading
     budget += shaken * step**tolerance.share_order
     budget += _felt(tolerance, errors)
@@ -103,12 +121,17 @@ class Limit:
     origin: str
 
 
+def numbers_for(errors: Errors) -> Mapping[str, Tolerance]:
+    """The numbers of the default limits of a run."""
+    return DEFAULTS if errors.free is None else FREE
+
+
 def limits(
     scene: Scene, errors: Errors, overrides: Mapping[str, float], option: str = "--tol"
 ) -> dict[str, Limit]:
     """The limit per tolerance name: command line before scene before default."""
     chosen = {}
-    for name, tolerance in DEFAULTS.items():
+    for name, tolerance in numbers_for(errors).items():
         if name in overrides:
             chosen[name] = Limit(overrides[name], option)
         elif name in scene.tolerance:
@@ -126,7 +149,7 @@ def in_passage(name: str, limit: Limit, errors: Errors) -> Limit:
         return limit
     if name in FORCES:
         return Limit(math.inf, "not judged near a change point")
-    return Limit(passing(DEFAULTS[name], errors), "default near a change point")
+    return Limit(passing(numbers_for(errors)[name], errors), "default near a change point")
 
 
 def parse(texts: Iterable[str], option: str = "--tol", every: str = "") -> dict[str, float]:
@@ -166,11 +189,24 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
         )
 
 
+def refuse_of_other_motion(option: str, quantities: Iterable[str], free: Iterable[bool]) -> None:
+    """Refuse limits of what none of the cells has, which are ``free`` or driven. Raises
+    CrankcheckError."""
+    known = {name for each in set(free) for name in (FREE if each else DEFAULTS)}
+    other = [name for name in quantities if name not in known]
+    if other:
+        what = "of free motion; let scenes go with --free" if other[0] in FREE else "of a drive"
+        raise CrankcheckError(
+            f"{option} {other[0]}: it is {what}; or leave {other[0]} out. There is "
+            f"{', '.join(known)}"
+        )
+
+
 def _quantity(name: str, place: str) -> str:
     """The name, or a CrankcheckError that suggests the near ones."""
-    if name in DEFAULTS:
+    if name in EVERY:
         return name
-    hint = suggestion(name, DEFAULTS, "use one of", 2, 0.6)
+    hint = suggestion(name, EVERY, "use one of", 2, 0.6)
     raise CrankcheckError(f"{place}: {name!r} is no quantity; {hint}")
 
 

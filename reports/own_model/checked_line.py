@@ -44,7 +44,9 @@ def checked(cell: Cell, adapter: Engine) -> CheckedLine:
     found, run = examined(cell, adapter=adapter)
     if run is None or found.errors is None:
         return without_run(found)
-    return CheckedLine(**vars(found), last_turn=trace(cell.scene, run), course=course_of(cell, run))
+    return CheckedLine(
+        **vars(found), last_turn=trace(cell.shown_truth, run), course=course_of(cell, run)
+    )
 
 
 def without_run(found: Checked) -> CheckedLine:

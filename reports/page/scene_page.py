@@ -1,14 +1,17 @@
-"""The page of a solved scene: one HTML file with its motion, and its forces where asked for."""
+"""The page of a solved scene: one HTML file with its motion, and its forces where asked for, or
+with its free motion."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
 from reports.output.numbers import count
 from reports.output.provenance import crankcheck_version
 from reports.page.build import Head, assembled
 from reports.page.scene_sections import forces, motion
+from reports.page.scene_sections import free as free_motion
 
 
 def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
@@ -20,15 +23,24 @@ def scene_page(scene: Scene, figures: Mapping[str, bytes] | None = None) -> str:
     sections = [motion.build(scene, with_forces=figures is not None)]
     if figures is not None:
         sections.append(forces.build(scene, figures))
-    head = Head(
+    return assembled(_head(scene, "the closed form"), sections)
+
+
+def free_page(free: FreeMotion, figures: Mapping[str, bytes]) -> str:
+    """The page of a free motion; ``figures`` are SVG files by name."""
+    words = f"free motion over {free.until_s:g} s"
+    return assembled(_head(free.scene, words), [free_motion.build(free, figures)])
+
+
+def _head(scene: Scene, what: str) -> Head:
+    counts = {"link": scene.links, "load": scene.loads, "spring": scene.springs}
+    return Head(
         title=f"crankcheck: {scene.name}",
         facts=(
-            "the closed form",
-            count(len(scene.links), "link"),
-            *((count(len(scene.loads), "load"),) if scene.loads else ()),
+            what,
+            *(count(len(each), noun) for noun, each in counts.items() if each),
             f"crankcheck {crankcheck_version()}",
         ),
         made="",
         first="motion",
     )
-    return assembled(head, sections)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -19,8 +19,12 @@ LOOKS = 721
 PROFILES = ("tuned", "as-shipped")
 
 
-def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
+def chosen_scenes(
+    names: str | Sequence[str], check: Callable[[Scene], None] | None = None
+) -> list[Scene]:
     """The named scenes and kinds, each scene once; all of kinematics where none is named.
+
+    ``check`` raises for a scene that can not be run, by default `refuse_unfollowed`.
 
     Raises
     ------
@@ -31,7 +35,7 @@ def chosen_scenes(names: str | Sequence[str]) -> list[Scene]:
     scenes: dict[str, Scene] = {}
     for name in names_of_scenes(names) or shipped():
         scene = load_scene(name)
-        refuse_unfollowed(scene)
+        (check or refuse_unfollowed)(scene)
         if scenes.setdefault(scene.name, scene) != scene:
             raise CrankcheckError(
                 f"scene {name!r}: a second scene called {scene.name}, not the same; rename one"
@@ -63,6 +67,11 @@ def refuse_unfollowed(scene: Scene) -> None:
         reference, which names group or range.
     """
     check_names(scene)
+    if scene.is_free:
+        raise CrankcheckError(
+            f"{scene.name}: its driver is let go, and follows no law; `crankcheck verify` runs it, "
+            "and `crankcheck sweep --free`"
+        )
     turn = np.linspace(0.0, scene.driver.law.period_s, LOOKS)
     solve(scene, turn, points=(), sliders=(), bound=False)
 

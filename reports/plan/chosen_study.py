@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 from models.errors import CrankcheckError, shown
 from reports.plan.chosen import chosen_engines
+from reports.plan.free import free_names
+from reports.plan.steps import FREE_STEPS_S
 from reports.plan.study import Study, StudyValue, Variant
 from sim.registry import engine
 from sim.settings import profile_of
@@ -26,6 +28,9 @@ class StudyChoice:
     turns: float | None = None
     overrides: Overrides = field(default_factory=dict)
     forces: bool = False
+    free: bool = False
+    dt_s: Sequence[float] = ()
+    duration_s: float | None = None
 
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
@@ -63,12 +68,40 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
     return study.model_copy(
         update={
             "variants": variants,
-            "scenes": list(choice.scenes) or study.scenes,
-            "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
-            "turns": study.turns if choice.turns is None else choice.turns,
             "forces": study.forces or choice.forces,
+            **(_let_go(study, choice) if study.free or choice.free else _driven(study, choice)),
         }
     )
+
+
+def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
+    """What is said of scenes that are driven. Raises CrankcheckError for what is of others."""
+    for option, value in (("--dt", choice.dt_s), ("--duration", choice.duration_s)):
+        if value:
+            raise CrankcheckError(f"{option}: it is of scenes that are let go; add --free")
+    return {
+        "scenes": list(choice.scenes) or study.scenes,
+        "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
+        "turns": study.turns if choice.turns is None else choice.turns,
+    }
+
+
+def _let_go(study: Study, choice: StudyChoice) -> dict[str, object]:
+    """What is said of scenes that are let go: those of free motion, where the study is of others
+    and none is named. Raises CrankcheckError for turns."""
+    if choice.steps_per_turn or choice.turns is not None:
+        option = "--steps-per-turn" if choice.steps_per_turn else "--turns"
+        raise CrankcheckError(
+            f"{option}: what is let go has no turns; give --dt and --duration, in seconds"
+        )
+    return {
+        "free": True,
+        "drive": "prescribed",
+        "steps_per_turn": [],
+        "scenes": free_names(choice.scenes or (study.scenes if study.free else ())),
+        "dt_s": list(choice.dt_s) or study.dt_s or list(FREE_STEPS_S),
+        "duration_s": study.duration_s if choice.duration_s is None else choice.duration_s,
+    }
 
 
 def study_engines(study: Study, named: Sequence[str]) -> list[str]:

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 
 from models.errors import CrankcheckError, few
 from models.files import names_of_scenes, scene_texts, shipped
+from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
-from reports.plan.chosen import chosen_engines, chosen_scenes
+from reports.plan.chosen import chosen_engines
 from reports.plan.forces import gives_forces, refuse_forceless
+from reports.plan.free import refuse_unreleased, scenes_of
 from reports.plan.key import cell_key, digest, line_key
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
-from reports.plan.steps import counted
+from reports.plan.steps import counted, counted_free
 from reports.plan.study import Study, Variant
 from sim.engine import SettingValue
 from sim.registry import engine
@@ -45,7 +47,8 @@ class Task:
     @property
     def label(self) -> str:
         cell = self.cell
-        return f"{cell.scene.name}, {cell.engine} {self.variant}, {cell.steps_per_turn:g} a turn"
+        step = f"dt {cell.dt_s:g} s" if cell.drive == "free" else f"{cell.steps_per_turn:g} a turn"
+        return f"{cell.scene.name}, {cell.engine} {self.variant}, {step}"
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ def grid(study: Study) -> Grid:
     """Lay out a study. Raises CrankcheckError for a scene, engine, profile, setting or step that
     can not be run."""
     refuse_endless(study)
-    scenes = chosen_scenes(study.scenes)
+    scenes = scenes_of(study.scenes, free=study.free)
     texts = scene_texts(study.scenes)
     variants = [one for variant in study.variants for one in variant.each()]
     versions = {
@@ -71,12 +74,7 @@ def grid(study: Study) -> Grid:
     tasks: dict[str, Task] = {}
     for scene in scenes:
         name = digest(texts[scene.name])
-        steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
-        longest_s = max(dt_s * count for dt_s, count in steps)
-        refuse_singular(scene, longest_s)
-        if study.forces:
-            refuse_forceless(scene, longest_s)
-        refuse_short_tables(scene, longest_s)
+        steps = _steps(study, scene)
         for variant, settings in complete:
             for dt_s, count in steps:
                 cell = Cell(
@@ -86,22 +84,39 @@ def grid(study: Study) -> Grid:
                     dt_s=dt_s,
                     steps=count,
                     gated=variant.profile == "tuned" and not variant.settings,
-                    drive=study.drive,
+                    drive="free" if study.free else study.drive,
                     converge=False,
                     settings=variant.chosen,
                     with_forces=study.forces and gives_forces(variant.engine),
                 )
                 version = versions[variant.engine]
-                line = line_key(cell, study.turns, name, version, settings)
+                turns = cell.turns if study.free else study.turns
+                line = line_key(cell, turns, name, version, settings)
                 key = cell_key(line, cell)
                 tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
     return Grid(tuple(tasks.values()), texts)
 
 
+def _steps(study: Study, scene: Scene) -> list[tuple[float, int]]:
+    """Steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be run for
+    so long."""
+    if study.free:
+        steps = [counted_free(scene, each, study.duration_s) for each in study.dt_s]
+        refuse_unreleased(scene, max(dt_s * count for dt_s, count in steps))
+        return steps
+    steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
+    longest_s = max(dt_s * count for dt_s, count in steps)
+    refuse_singular(scene, longest_s)
+    if study.forces:
+        refuse_forceless(scene, longest_s)
+    refuse_short_tables(scene, longest_s)
+    return steps
+
+
 def refuse_endless(study: Study) -> None:
     """Refuse more cells than anybody waits for, before they are laid out. Raises CrankcheckError
     that tells what there are many of."""
-    scenes, steps = len(names_of_scenes(study.scenes) or shipped()), len(study.steps_per_turn)
+    scenes, steps = len(names_of_scenes(study.scenes) or shipped()), len(study.steps)
     lists = [
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
         for variant in study.variants
@@ -113,8 +128,10 @@ def refuse_endless(study: Study) -> None:
         raise CrankcheckError(
             f"the study asks for {cells:.6g} cells: {told(scenes, 'scene')} x "
             f"{sum(numbers):.6g} variants"
-            + f" (one has {several}, each with each)" * bool(several)
-            + f" x {steps} steps in a turn; a sweep has at most {MOST_CELLS}: take fewer of them"
+            + f" (one has {several}, each with each)"
+            * bool(several)
+            + f" x {steps} steps{'' if study.free else ' in a turn'}; a sweep has at most "
+            f"{MOST_CELLS}: take fewer of them"
         )
 
 

@@ -20,6 +20,14 @@ after."""
 MOST_UNLOGGED = 1_000_000_000
 """Some hours of work, where few of the steps are logged."""
 STEPS_PER_TURN = 720.0
+TURNS = 2.0
+"""Of a verification."""
+FREE_STEP_S = 1e-3
+"""The longest step of what is let go, which has no turns."""
+FREE_STEPS = 5000
+"""The least in what a scene says it is left free for: what is fast is over soon."""
+FREE_STEPS_S = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
+"""Those of a sweep over it."""
 
 
 def counted(
@@ -77,6 +85,31 @@ def counted(
             "is logged but the start; log more of them, or take more turns"
         )
     return dt_s or period / per_turn, math.ceil(steps)
+
+
+def counted_free(scene: Scene, dt_s: float | None, duration_s: float | None) -> tuple[float, int]:
+    """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s, or a
+    5000th of the time that the scene says) and --duration (default: that time).
+
+    Raises
+    ------
+    CrankcheckError
+        A number that is not above 0, too many or too few steps.
+    """
+    period_s = lasts_s = scene.driver.law.period_s
+    if dt_s is None:
+        dt_s = min(FREE_STEP_S, period_s / FREE_STEPS)
+    dt_s = positive("--dt", dt_s, "seconds, such as 1e-3")
+    if duration_s is not None:
+        lasts_s = positive("--duration", duration_s, "seconds, such as 10")
+    steps = lasts_s / dt_s * (1 - 1e-12)  # may be infinite
+    if not LEAST_STEPS - 1 < steps <= MOST_STEPS:
+        raise CrankcheckError(
+            f"--dt {dt_s:g} --duration {lasts_s:g}: {steps:.6g} steps of {scene.name}; a run has "
+            f"{LEAST_STEPS} at least, and {MOST_STEPS} at most, as all are logged: take another "
+            "step, or another duration"
+        )
+    return dt_s, math.ceil(steps)
 
 
 def positive(option: str, value: float, unit: str) -> float:

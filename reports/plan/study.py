@@ -7,6 +7,11 @@
     turns = 2
     forces = false                     # reactions and torque too, of engines that report them
 
+    # or, of mechanisms that are let go, in place of steps_per_turn and turns:
+    free = true
+    dt_s = [2e-3, 1e-3, 5e-4]
+    duration_s = 10                    # that of each scene if left out
+
     [[variants]]
     name = "stiff"                     # how tables and legends call it
     engine = "mujoco"
@@ -19,6 +24,7 @@ A list of values makes a variant for each of them, or for each combination of se
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -81,10 +87,18 @@ class Study(BaseModel):
 
     scenes: list[VariantName] = Field(default_factory=list)
     variants: list[Variant] = Field(min_length=1)
-    steps_per_turn: list[float] = Field(min_length=1)
+    steps_per_turn: list[float] = Field(default_factory=list)
     turns: float = 2.0
     drive: Literal["prescribed", "servo"] = "prescribed"
     forces: bool = False
+    free: bool = False
+    dt_s: list[float] = Field(default_factory=list)
+    duration_s: float | None = None
+
+    @property
+    def steps(self) -> list[float]:
+        """What the cells of a line differ in: steps in a turn, or of free motion seconds."""
+        return self.dt_s if self.free else self.steps_per_turn
 
 
 def load_study(path: Path | None) -> Study:
@@ -107,10 +121,26 @@ def load_study(path: Path | None) -> Study:
     except UnreadableError as error:
         raise CrankcheckError(f"study {path}: {error}") from None
     try:
-        return Study.model_validate(raw)
+        study = Study.model_validate(raw)
     except ValidationError as error:
         faults = list(dict.fromkeys(_fault(fault) for fault in error.errors()))
         raise CrankcheckError(listed(f"study {path}", faults)) from None
+    if faults := list(_unsaid(study)):
+        raise CrankcheckError(listed(f"study {path}", faults))
+    return study
+
+
+def _unsaid(study: Study) -> Iterator[str]:
+    """What is missing where scenes are driven or let go, and what belongs to the other."""
+    needed, other = ("dt_s", "steps_per_turn") if study.free else ("steps_per_turn", "dt_s")
+    if not study.steps:
+        yield f"{needed}: missing; add it"
+    if getattr(study, other):
+        yield f"{other}: found it with free = {str(study.free).lower()}; give {needed}"
+    if study.duration_s is not None and not study.free:
+        yield "duration_s: found it with free = false; give turns"
+    if study.free and study.drive != "prescribed":
+        yield f"drive: found {study.drive!r} with free = true; leave it out"
 
 
 def _fault(fault: ErrorDetails) -> str:

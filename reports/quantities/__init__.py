@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
+from reports.quantities.free import ENERGY, GEOMETRY, MOMENTUM, PHASE
 from reports.quantities.places import ANGLE, DISPLACEMENT, DRIVE, GAP, POSITION
 from reports.quantities.quantity import Quantity, Role
 from reports.quantities.rates import ACCELERATION, VELOCITY
@@ -17,6 +18,7 @@ QUANTITIES: dict[str, Quantity] = {
     for entry in (
         *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
         *(REACTION, NORMAL, MOMENT, TORQUE),
+        *(PHASE, GEOMETRY, ENERGY, MOMENTUM),
     )
 }
 

@@ -44,6 +44,19 @@ TAKEN_UP = Tolerance(
     makes_up=True,
 )
 
+FREE_FORCE = Tolerance(
+    "As the phase, which the mechanism passes on to its accelerations as their rates say, and the "
+    "share of a force that soft constraints leave open.",
+    cap=0.2,
+    coefficient=6.0,
+    power=2.0,
+    lasting=1.8,
+    share=OPEN_SHARE,
+    rate=2,
+    parts=True,
+    makes_up=True,
+)
+
 
 def acting(run: Run) -> Forces | None:
     """The forces that a run logged, without the start where they are those of steps; None where
@@ -193,6 +206,7 @@ REACTION = _force(
         "react.",
         TAKEN_UP,
         diagram="reactions in pins",
+        free=FREE_FORCE,
     ),
 )
 NORMAL = _force(
@@ -210,6 +224,7 @@ NORMAL = _force(
         "normal",
         TAKEN_UP,
         diagram="normal forces of sliders",
+        free=FREE_FORCE,
     ),
 )
 MOMENT = _force(
@@ -227,6 +242,7 @@ MOMENT = _force(
         "moment",
         TAKEN_UP,
         diagram="moments of sliders",
+        free=FREE_FORCE,
     ),
 )
 TORQUE = _force(
@@ -248,5 +264,6 @@ TORQUE = _force(
             slope="torque",
         ),
         diagram="driving torque",
+        free=FREE_FORCE,
     ),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Literal
 
 from models.motion import Bound, Motion
@@ -39,6 +40,16 @@ def moving(kind: MovingKind, order: Order, column: str) -> Measure:
         logged=lambda _, run: _read(run.motion, kind, order),
         bound=lambda _, reference: _read(reference.bound, kind, order),
     )
+
+
+def every_place(kind: MovingKind, column: str) -> Measure:
+    """The places of all moving bodies of a kind, the driver with them."""
+
+    def truth(scene: Scene, reference: Motion) -> Series:
+        still = scene.ground if kind == "point" else ()
+        return {name: at for name, at in _read(reference, kind, 0).items() if name not in still}
+
+    return replace(moving(kind, 0, column), truth=truth)
 
 
 def _read(motion: Motion | Bound | None, kind: MovingKind, order: Order) -> Series:

@@ -26,6 +26,16 @@ WITHIN_A_STEP = Tolerance(
 )
 
 
+FREE_PLACE = Tolerance(
+    "As the phase, which the mechanism passes on to its places as their rates say, and the arc of "
+    "a step.",
+    cap=0.1,
+    coefficient=10.0,
+    power=1.0,
+    lasting=1.8,
+)
+
+
 def _commanded(scene: Scene, reference: Motion) -> Series:
     return {scene.driver.link: scene.driver.law.at(reference.time_s)[0]}
 
@@ -77,7 +87,7 @@ def _place(
     name: str, measure: Measure, head: str, rule: str, short: str, explanation: str, cure: str
 ) -> Quantity:
     """A quantity of which one kind of bodies has its places; its rule has its name."""
-    criterion = Criterion(rule, name, explanation, cure, short, WITHIN_A_STEP)
+    criterion = Criterion(rule, name, explanation, cure, short, WITHIN_A_STEP, free=FREE_PLACE)
     return Quantity(name, "place", (measure,), (criterion,), head)
 
 
@@ -151,6 +161,7 @@ GAP = Quantity(
                 "or the jolt that closes it, where that is more.",
                 conditioned=False,
             ),
+            free=replace(WITHIN_A_STEP, conditioned=False),
         ),
     ),
 )

@@ -12,12 +12,13 @@ from models.motion import Motion
 from models.scene import Scene
 from sim.engine import Run
 
-BodyKind = Literal["driver", "link", "slider", "point"]
+BodyKind = Literal["driver", "link", "slider", "point", "mechanism"]
 Source = Literal["reported", "differenced"]
-Role = Literal["drive", "place", "closure", "derived", "force"]
+Role = Literal["drive", "place", "closure", "derived", "force", "free"]
 """Places are what convergence, geometric errors and differences are taken of. What is derived comes
 of them, and forces go with it: the first samples, and those near change points, are rows of their
-own. Forces are compared where they were asked for alone."""
+own. Forces are compared where they were asked for alone, and what is of role "free" where a
+mechanism was let go, which has no drive."""
 Series = Mapping[str, Array]
 """A number (T,) or two (T, 2) per sample, by body."""
 
@@ -46,7 +47,8 @@ class Measure:
 @dataclass(frozen=True)
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
-    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``."""
+    the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
+    ``lasting`` is of free motion, which is ever further off the longer it lasts."""
 
     reason: str
     cap: float = math.inf
@@ -65,6 +67,7 @@ class Tolerance:
     jump: float = 0.0
     parts: bool = False
     makes_up: bool = False
+    lasting: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,8 @@ class Criterion:
     """What the errors of one source are held to: the words of a rule, and its tolerance.
 
     ``short`` is the rule in the verdict table, ``diagram`` the error in the page's list of
-    diagrams, which has none of it where that is empty.
+    diagrams, which has none of it where that is empty. ``free`` is the tolerance of a mechanism
+    that was let go, None where the error is shown alone there.
     """
 
     id: str
@@ -82,6 +86,7 @@ class Criterion:
     short: str
     tolerance: Tolerance
     diagram: str = ""
+    free: Tolerance | None = None
 
     @property
     def source(self) -> Source:

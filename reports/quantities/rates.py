@@ -37,6 +37,17 @@ TWICE_DERIVED = Tolerance(
     rate=2,
     parts=True,
 )
+FREE_RATE = Tolerance(
+    "As the phase, which the mechanism passes on to its velocities as their rates say.",
+    cap=0.2,
+    coefficient=15.0,
+    power=1.5,
+    lasting=1.8,
+    share=OPEN_SHARE,
+    share_order=1,
+    rate=1,
+    jump=1.0,
+)
 VELOCITY = Quantity(
     name="velocity",
     role="derived",
@@ -57,6 +68,7 @@ VELOCITY = Quantity(
             short="vel",
             diagram="velocity, as reported",
             tolerance=SECOND_ORDER,
+            free=FREE_RATE,
         ),
         Criterion(
             "CC107",

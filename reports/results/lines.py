@@ -160,5 +160,6 @@ def _unit(quantity: str) -> str:
 
 def _rounding(rows: pd.DataFrame) -> float:
     """The pure error that rounding explains: that of the crank, and what the others are behind."""
-    drive = max((float(error) for error in rows["drive_pure"] if error <= EXACT_DRIVE), default=0.0)
+    drives = rows.get("drive_pure", ())  # what is let go has none
+    drive = max((float(error) for error in drives if error <= EXACT_DRIVE), default=0.0)
     return max(AT_ROUNDING, BEHIND_DRIVE * drive)

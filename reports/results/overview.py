@@ -10,6 +10,7 @@ import pandas as pd
 
 from models.errors import CrankcheckError
 from models.files import parse_scene
+from models.released import let_go
 from models.scene import Scene
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
@@ -63,9 +64,16 @@ class Report:
 
     @cached_property
     def scenes(self) -> Mapping[str, Scene | None]:
-        """The scenes that were run, in order; None where the store has no readable text of one."""
+        """The scenes that were run, in order, let go where they were in all lines; None where the
+        store has no readable text of one."""
         names = dict.fromkeys(line.scene for line in self.lines)
-        return {name: _parsed(self.stored.manifest.scenes.get(name), name) for name in names}
+        texts = self.stored.manifest.scenes
+        found = {name: _parsed(texts.get(name), name) for name in names}
+        driven = {line.scene for line in self.lines if line.drive != "free"}
+        return {
+            name: scene if scene is None or name in driven else let_go(scene)
+            for name, scene in found.items()
+        }
 
     @cached_property
     def engines(self) -> Mapping[str, str]:

@@ -45,6 +45,7 @@ TEXT = {
     "series",
     "processor",
     "made",
+    "precision",
 }
 FLAGS = {"gated"}
 NESTED: Mapping[str, tuple[str, ...]] = {

@@ -54,7 +54,7 @@ def measured(cell: Cell, keep_run: bool) -> MeasuredCell:
     return MeasuredCell(
         row=row,
         errors=tuple(error_rows(checked)),
-        trace=trace(cell.scene, run) if run and checked.errors else {},
+        trace=trace(cell.shown_truth, run) if run and checked.errors else {},
         crankcheck=crankcheck_version(),
         run=run if run and run.motion and keep_run else None,
     )

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from reports.compare.errors import Error, Errors, largest
 from reports.judge.cell import Checked
+from reports.judge.precision import precision
 from reports.judge.rules import FORCES, RULES
 from reports.judge.rules.rule import Finding
 from reports.output.columns import hanging, plain_table
@@ -32,17 +33,34 @@ ANGLE, GAP, REACTION, TORQUE = (
 NUMBERS = {
     entry.head: [name for name, each in QUANTITIES.items() if each.head == entry.head]
     for entry in QUANTITIES.values()
-    if entry.head and entry.role != "force"
+    if entry.head and entry.role not in ("force", "free")
 }
 """The columns of numbers: head, and the quantities that it shows the worst of."""
 FORCE_NUMBERS = {QUANTITIES[name].head: [name] for name in named("force")}
 """Those of the table of forces."""
+FREE_NUMBERS = {
+    QUANTITIES["phase"].head: ["phase"],
+    "place\n/ G": list(named("place")),
+    QUANTITIES["geometry"].head: ["geometry"],
+    GAP: ["gap"],
+    "veloc.\n/ w G": ["velocity"],
+    QUANTITIES["energy"].head: ["energy"],
+}
+"""Those of the table of what was let go."""
+FREE_SAID = (
+    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
+    "when 1e-3 holds."
+)
 FORCES_SAID = (
     "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
     "torque over the run."
 )
 WIDE, STACKED = 100, 76
-"""Columns of a terminal that show every number; below which the engine stands under the scene."""
+FREE_WIDE = 110
+"""Columns of a terminal that show every number, below which the engine stands under the scene, and
+that show every number of free motion."""
 
 
 def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str]) -> None:
@@ -51,7 +69,11 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
-        console.print(_table(profile, gated, chosen, console.width), "")
+        for free in (False, True):
+            own = [one for one in chosen if (one.cell.drive == "free") == free]
+            if own:
+                shown = _free_table if free else _table
+                console.print(shown(profile, gated, own, console.width), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
             console.print(_table(profile, gated, loaded, console.width, forces=True), "")
@@ -116,19 +138,52 @@ def _table(
     return table
 
 
-def _cells(one: Checked, heads: Sequence[str], *, forces: bool) -> list[Text | str]:
+def _free_table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
+    """The cells of one profile that were let go, those out of tolerance first."""
+    heads = tuple(FREE_NUMBERS)
+    heads = heads if width >= FREE_WIDE else heads[:1] if width < WIDE else (heads[0], *heads[2:4])
+    role = "gated" if gated else "shown, not gated"
+    table = plain_table(f"free motion, profile {profile} ({role})")
+    table.add_column("")
+    table.add_column("scene\nengine", overflow="fold", min_width=18)
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_column("most of\na limit", no_wrap=True)
+    table.add_column("class\nto 1e-3", no_wrap=True)
+    table.add_column("when dt\nis halved", overflow="fold", max_width=14)
+    for one in sorted(chosen, key=lambda one: one.verdict == "within"):
+        names = f"{one.cell.scene.name}\n{one.cell.engine}"
+        *numbers, seen = _cells(one, heads, forces=False, numbers=FREE_NUMBERS)
+        table.add_row(_mark(one), names, *numbers, _precision(one), seen)
+    return table
+
+
+def _precision(one: Checked) -> str:
+    """The classes that are reached, and the time to which the high one of IFToMM's is."""
+    facts = one.errors.free if one.errors else None
+    return f"{precision(one)}\n{facts.horizon_s(1e-3):.3g} s" if facts else "-"
+
+
+def _cells(
+    one: Checked,
+    heads: Sequence[str],
+    *,
+    forces: bool,
+    numbers: Mapping[str, Sequence[str]] | None = None,
+) -> list[Text | str]:
     """One row, from its numbers on."""
     errors = one.errors
     if errors is None:
         return [*["-"] * len(heads), "", Text(f"{one.status}: {one.reason}", "red")]
-    numbers = [_largest(errors, (FORCE_NUMBERS if forces else NUMBERS)[head]) for head in heads]
+    of_head = numbers or (FORCE_NUMBERS if forces else NUMBERS)
+    shown = [_largest(errors, of_head[head]) for head in heads]
     convergence = one.force_convergence if forces else one.convergence
     seen = convergence.words.replace(": ", "\n") if convergence else ""
     if one.status != "ok":
         early = one.status != "branch-changed"  # such a run goes on to its end
         seen = one.status + (f" at t = {one.stopped_at_s:.3g} s" if early else "")
     own = [finding for finding in one.findings if (finding.rule in FORCES) == forces]
-    return [*(_number(error) for error in numbers), _share(own), seen]
+    return [*(_number(error) for error in shown), _share(own), seen]
 
 
 def _largest(errors: Errors, quantities: Sequence[str]) -> Error | None:
@@ -194,30 +249,62 @@ def _summary(checked: Sequence[Checked], failed: Sequence[Checked]) -> Text:
 
 def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     """Units, steps and versions."""
-    steps = sorted({round(one.cell.steps_per_turn, 3) for one in checked})
-    turns = sorted({round(one.cell.turns, 3) for one in checked})
-    dts = sorted({one.cell.dt_s for one in checked})
-    drives = [e for one in checked if one.errors and (e := one.errors.worst("drive"))]
-    drive = largest(drives)
-    turned = f"{_span(turns)} turn" + ("" if turns == [1.0] else "s")
+    free = [one for one in checked if one.cell.drive == "free"]
+    driven = [one for one in checked if one.cell.drive != "free"]
     lines = [
-        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
-        "peak speed.",
+        *(_driven_words(driven) if driven else ()),
         *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
+        *(_free_words(free) if free else ()),
         *_notes(checked),
-        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
-        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
-        + "- not reported.",
+        *(_driven_steps(driven) if driven else ()),
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     return escape("\n".join(lines))
 
 
+def _driven_words(driven: Sequence[Checked]) -> list[str]:
+    """What the numbers of driven cells are."""
+    return [
+        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
+        "peak speed."
+    ]
+
+
+def _driven_steps(driven: Sequence[Checked]) -> list[str]:
+    """How driven cells were stepped."""
+    steps = sorted({round(one.cell.steps_per_turn, 3) for one in driven})
+    turns = sorted({round(one.cell.turns, 3) for one in driven})
+    dts = sorted({one.cell.dt_s for one in driven})
+    drives = [e for one in driven if one.errors and (e := one.errors.worst("drive"))]
+    drive = largest(drives)
+    turned = f"{_span(turns)} turn" + ("" if turns == [1.0] else "s")
+    return [
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
+        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
+        + "- not reported."
+    ]
+
+
+def _free_words(free: Sequence[Checked]) -> list[str]:
+    """What the numbers of free cells are, and how these were stepped."""
+    dts = sorted({one.cell.dt_s for one in free})
+    lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
+    growth = sorted(one.errors.free.sensitivity for one in free if one.errors and one.errors.free)
+    return [
+        FREE_SAID,
+        f"dt {_span(dts)} s over {_span(lasts)} s"
+        + (f"; G up to {_span(growth)}" if growth else "")
+        + "; - not reported.",
+    ]
+
+
 def _notes(checked: Sequence[Checked]) -> list[str]:
-    """What is to be said of forces, once for a scene: counts may differ by a sample."""
+    """What is to be said of forces, and of free motion, once for a scene: counts may differ by a
+    sample."""
     notes = dict[tuple[str, str], str]()
     for one in checked:
-        for note in one.errors.notes if one.cell.with_forces and one.errors else ():
+        told = one.cell.with_forces or one.cell.drive == "free"
+        for note in one.errors.notes if told and one.errors else ():
             words = "".join(letter for letter in note if not letter.isdigit())
             notes.setdefault((one.cell.scene.name, words), f"{one.cell.scene.name}: {note}.")
     return list(notes.values())

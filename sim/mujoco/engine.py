@@ -18,4 +18,5 @@ ENGINE = Engine(
     forces_of="states",
     applies_loads=True,
     applies_constant_friction=True,
+    applies_springs=True,
 )

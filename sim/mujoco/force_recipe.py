@@ -58,8 +58,9 @@ for step in range({steps}):
     # What the bodies take of the crank's hinge for their acceleration, velocity and weight. The
     # armature that keeps the speed is no part of it, as qfrc_actuator or M qacc would have it.
     mujoco.mj_rne(model, data, 1, inertial)
-    # Loops, friction and loads do their share; the drive does what is left.
+    # Loops, friction, loads and springs do their share; the drive does what is left.
     torque = inertial[crank] - data.qfrc_constraint[crank] - data.qfrc_actuator[crank]
+    torque -= data.qfrc_passive[crank]
     forces = [sign * loop_force(name) for name, sign in LOOPS.values()]
     forces += [sign * data.cfrc_int[model.body(name).id, 3:5] for name, sign in HINGES.values()]
     # The clock adds up steps, and rounding; number times step does not.
@@ -70,8 +71,8 @@ for step in range({steps}):
 
 
 def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
-    """Pins of two bodies; those of the tree where no loads act, which ``cfrc_int`` would count as
-    coming through them. Refused are drives and loads that a file does not hold."""
+    """Pins of two bodies; those of the tree where neither loads nor springs act, which ``cfrc_int``
+    may count as coming through them. Refused are drives and loads that a file does not hold."""
     _check_held(scene)
     chosen = writing(scene, settings, dt_s, "prescribed")
     tree = planned(scene, state, chosen)
@@ -86,7 +87,7 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
         driver=scene.driver.link,
         model=build(scene, state, chosen, tree).replace("\\", "\\\\").replace('"""', '\\"""'),
         loops=_listed(loops),
-        hinges=_listed({} if scene.loads else _hinges(scene, tree)),
+        hinges=_listed({} if scene.loads or scene.springs else _hinges(scene, tree)),
         joint=driver_joint(scene),
         steps=round(scene.driver.law.period_s / dt_s) + 1,
         start=state.time_s,
@@ -94,7 +95,12 @@ def write_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) ->
 
 
 def _check_held(scene: Scene) -> None:
-    """Refuse what comes as a control of each step."""
+    """Refuse a mechanism that nothing drives, and what comes as a control of each step."""
+    if scene.is_free:
+        raise EngineError(
+            f"{scene.name}: nothing drives it, and the recipe reads the torque of a drive; take a "
+            "scene of constant speed"
+        )
     varying = [
         f"loads.{load.name}"
         for load in scene.loads.values()

@@ -15,6 +15,7 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from models.mjcf_springs import SpringTendon
 from models.tree import Limb
 from sim.mujoco.wrench import Wrench
 
@@ -22,7 +23,13 @@ from sim.mujoco.wrench import Wrench
 class JointForces:
     """Forces in the joints of the states that it is shown, one row a state."""
 
-    def __init__(self, model: Any, limbs: tuple[Limb, ...], first_load: int) -> None:
+    def __init__(
+        self,
+        model: Any,
+        limbs: tuple[Limb, ...],
+        first_load: int,
+        tendons: tuple[SpringTendon, ...] = (),
+    ) -> None:
         self._bodies = np.array([model.body(limb.body).id for limb in limbs])
         self._roots = model.body_rootid[self._bodies]
         self._limbs = limbs
@@ -31,6 +38,8 @@ class JointForces:
         self._loops: list[Array] = []
         self._friction: list[Array] = []
         self._first_load, self._sizes = first_load, list[Array]()
+        self._senses = np.array([tendon.sense for tendon in tendons])
+        self._pulls: list[Array] = []
 
     def look(self, model: Any, data: Any) -> None:
         """Take the forces of a state; `mj_forward` has seen it."""
@@ -47,6 +56,9 @@ class JointForces:
         friction[data.efc_id[rubbing]] = data.efc_force[rubbing]
         self._friction.append(friction)
         self._sizes.append(data.ctrl[self._first_load :].copy())
+        longer = data.ten_length - model.tendon_lengthspring[:, 0]
+        pulls = model.tendon_stiffness * longer + model.tendon_damping * data.ten_velocity
+        self._pulls.append(self._senses * pulls)
 
     def from_parent(self, limb: Limb) -> Wrench:
         """What the parent exerts on a limb, about the place where MuJoCo has it: the centre of mass
@@ -58,6 +70,10 @@ class JointForces:
     def of_load(self, load: int) -> Array:
         """The size of a load, (T,)."""
         return np.array([each[load] for each in self._sizes])
+
+    def of_spring(self, spring: int) -> Array:
+        """What a spring pulls its q back with, (T,)."""
+        return np.array([each[spring] for each in self._pulls])
 
     def of_friction(self, joint: int) -> Array:
         """What friction does along a coordinate, (T,)."""

@@ -10,12 +10,14 @@ import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
 from models.array import Array
+from models.characteristics import Constant
 from models.loads import Load
 from models.mjcf_options import driver_joint
 from models.scene import Scene
 from models.tree import Limb
 from sim.engine import Drive
 from sim.load_magnitudes import ahead, known_ahead
+from sim.mujoco.load_stages import INSIDE, LoadStages
 
 
 class Loading:
@@ -23,17 +25,36 @@ class Loading:
 
     What is known ahead is a control of each step (`at_times`), in C throughout. What depends on the
     motion is set by a callback (`following`) in every evaluation of the forces, four times a step
-    of RK4, from the state of then; that costs some microseconds each.
+    of RK4, from the state of then; that costs some microseconds each. So are loads over time where
+    ``stages_dt_s`` says that steps of RK4, of that length [s], are to see them in their stages
+    (`in_stages`).
     """
 
     def __init__(
-        self, scene: Scene, model: Any, limbs: tuple[Limb, ...], drive: Drive, start_s: float
+        self,
+        scene: Scene,
+        model: Any,
+        limbs: tuple[Limb, ...],
+        drive: Drive,
+        start_s: float,
+        stages_dt_s: float | None = None,
     ) -> None:
         self.loads = tuple(scene.loads.values())
         self._scene, self._start_s = scene, start_s
         self.first = int(model.nu) - len(self.loads)
-        self._of_motion = [k for k, load in enumerate(self.loads) if not known_ahead(load, drive)]
+        of_motion = [not known_ahead(load, drive) for load in self.loads]
+        self._of_motion = [k for k, follows in enumerate(of_motion) if follows]
+        self._dt = stages_dt_s or 0.0
+        self._of_time = [
+            k
+            for k, load in enumerate(self.loads)
+            if self._dt and not of_motion[k] and not isinstance(load.characteristic, Constant)
+        ]
+        self._stages: LoadStages | None = None
         self._crank = int(model.joint(driver_joint(scene)).qposadr[0])
+        self._turning = {
+            load.body: int(model.body(load.body).id) for load in self.loads if load.over == "omega"
+        }
         self._slides = {
             limb.slider.name: int(model.joint(freedom.name).qposadr[0])
             for limb in limbs
@@ -47,7 +68,9 @@ class Loading:
         columns = np.zeros((len(time_s), len(self.loads)))
         for k, load in enumerate(self.loads):
             if k not in self._of_motion:
-                columns[:, k] = ahead(self._scene, load, time_s)
+                # Where a load jumps at a sample, what comes after it holds there.
+                after = time_s + INSIDE * self._dt if k in self._of_time else time_s
+                columns[:, k] = ahead(self._scene, load, after)
         return columns
 
     @contextmanager
@@ -62,9 +85,30 @@ class Loading:
         finally:
             mujoco.set_mjcb_control(None)
 
+    @contextmanager
+    def in_stages(self, first: int, count: int) -> Iterator[None]:
+        """Let loads over time be those of the stages while MuJoCo takes ``count`` steps from the
+        step ``first`` on."""
+        if not self._of_time:
+            yield
+            return
+        before = mujoco.get_mjcb_control()
+        loads = [self.loads[k] for k in self._of_time]
+        self._stages = LoadStages(loads, self._start_s, self._dt, first, count)
+        mujoco.set_mjcb_control(self._follow)
+        try:
+            yield
+        finally:
+            self._stages = None
+            mujoco.set_mjcb_control(before)
+
     def _follow(self, _model: Any, data: Any) -> None:
+        controls, first = data.ctrl, self.first
         for k in self._of_motion:
-            data.ctrl[self.first + k] = self.size(self.loads[k], data)
+            controls[first + k] = self.size(self.loads[k], data)
+        if self._stages is not None:
+            for k, size in zip(self._of_time, self._stages.at(data.time), strict=True):
+                controls[first + k] = size
 
     def size(self, load: Load, data: Any) -> float:
         """The size of a load in the state of the data; all slides are joints, and read as the
@@ -73,6 +117,6 @@ class Loading:
         sliding = {
             name: (float(data.qpos[k]), float(data.qvel[k])) for name, k in self._slides.items()
         }
-        omega = float(data.body(load.body).cvel[2]) if load.over == "omega" else 0.0
+        omega = float(data.cvel[self._turning[load.body], 2]) if load.over == "omega" else 0.0
         theta = float(data.qpos[self._crank])
         return load.size(self._start_s + float(data.time), theta, sliding, omega)

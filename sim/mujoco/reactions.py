@@ -6,13 +6,16 @@ import numpy as np
 
 from models.array import Array
 from models.forces import Forces, SliderForces
-from models.joints import block_name, joined_at, local_point
+from models.joints import block_name, joined_at, joints, local_point, riding_body
 from models.mjcf_friction import rubbing_freedom
 from models.mjcf_loads import point_of_application
 from models.scene import GROUND, Point, Scene, Slider
+from models.spring_ends import line_ends
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.tree import Limb, Tree
 from sim.engine import Poses
 from sim.mujoco.joint_forces import JointForces
+from sim.mujoco.outside_forces import springs_between_points_are_outside
 from sim.mujoco.wrench import Wrench
 
 
@@ -34,6 +37,12 @@ class _Reactions:
         self._sliders: dict[str, SliderForces] = {}
         self._torque = np.full(count, np.nan)
         self._loads = [self._load(k) for k in range(len(scene.loads))]
+        self._springs = [
+            end
+            for k, spring in enumerate(scene.springs.values())
+            if not (isinstance(spring, LineSpring) and springs_between_points_are_outside())
+            for end in self._ends(spring, joint_forces.of_spring(k))
+        ]
 
     def forces(self) -> Forces:
         for limb in self._tree.limbs:
@@ -96,10 +105,15 @@ class _Reactions:
         self._sliders[slider.name] = SliderForces(normal, moment)
 
     def _block(self, slider: Slider, rider: str, force: Array) -> Array:
-        """Hand on what acts on a block without mass, in which nothing is left: what its guide and
-        the loads exert goes to the pin. Gives the moment that its guide takes from loads."""
+        """Hand on what acts on a block without mass, in which nothing is left: what its guide, the
+        loads and springs along its line exert goes to the pin. Gives the moment that its guide
+        takes from loads."""
         block = block_name(slider)
         self._pin(slider.point, block, rider, force)
+        for k, spring in enumerate(self._scene.springs.values()):
+            if isinstance(spring, SlideSpring) and spring.slider == slider.name:
+                pull = self._joint_forces.of_spring(k)[:, None] * self._along(slider)
+                self._pin(slider.point, block, rider, -pull)
         moment = np.zeros_like(self._torque)
         for (body, load), spec in zip(self._loads, self._scene.loads.values(), strict=True):
             if spec.body == block and spec.point is None:
@@ -109,16 +123,16 @@ class _Reactions:
         return moment
 
     def _from_parent(self, limb: Limb) -> Wrench:
-        """What the parent exerts on a limb: what MuJoCo has, less the loads on all that hangs on
-        the limb, which it takes to come through the joint."""
+        """What the parent exerts on a limb: what MuJoCo has, less the loads and springs on all that
+        hangs on the limb, which it takes to come through the joint."""
         given = self._joint_forces.from_parent(limb)
         hanging = {limb.body}
         for other in self._tree.limbs:  # parents before children
             if other.parent in hanging:
                 hanging.add(other.body)
-        for body, load in self._loads:
+        for body, acting in (*self._loads, *self._springs):
             if body in hanging:
-                given = given - load
+                given = given - acting
         return given
 
     def _load(self, k: int) -> tuple[str, Wrench]:
@@ -131,6 +145,32 @@ class _Reactions:
         angle = at.direction_rad + (self._theta(at.body) if at.turns else np.zeros_like(size))
         force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         return at.body, Wrench(force, np.zeros_like(size), place)
+
+    def _ends(self, spring: Spring, pull: Array) -> list[tuple[str, Wrench]]:
+        """The two bodies that a spring is between, and what it exerts on each."""
+        if isinstance(spring, PinSpring):
+            first, second = spring.bodies
+            place = self._point(second, spring.point)
+            couple = Wrench(np.zeros_like(place), -pull, place)
+            return [(first, -couple), (second, couple)]
+        if isinstance(spring, LineSpring):
+            (first, a), (second, b) = line_ends(self._scene, spring)
+            start, end = self._place(first, a), self._place(second, b)
+            way = end - start
+            length = np.hypot(*way.T)[:, None]
+            axis = np.divide(way, length, out=np.zeros_like(way), where=length > 0.0)
+        else:
+            slide = next(s for s in joints(self._scene).slides if s.slider.name == spring.slider)
+            first, second = slide.slider.on, riding_body(slide)
+            start = end = self._point(second, slide.slider.point)
+            axis = self._along(slide.slider)
+        force, none = pull[:, None] * axis, np.zeros_like(pull)
+        return [(first, Wrench(force, none, start)), (second, Wrench(-force, none, end))]
+
+    def _along(self, slider: Slider) -> Array:
+        """The direction of the line of a slider, (T, 2)."""
+        angle = self._theta(slider.on) + slider.direction_rad
+        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
     def _point(self, body: str, point: str) -> Array:
         return self._place(body, local_point(self._scene, body, point))

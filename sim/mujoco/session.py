@@ -13,6 +13,7 @@ from models.errors import EngineError
 from models.mjcf import build
 from models.mjcf_friction import planned
 from models.mjcf_options import Writing, driver_joint, has_control
+from models.mjcf_springs import SpringTendon, spring_tendons
 from models.motion import State
 from models.scene import Point, Scene
 from models.tree import Tree, plan
@@ -26,6 +27,7 @@ from sim.mujoco.settings import (
     OF_DRIVES,
     held_iterations,
     holds,
+    integrator,
     velocity_shift,
     writing,
 )
@@ -51,8 +53,12 @@ class MujocoSession(SteppedModel):
         self._hold(model, keyframe=0)
         self._servo = chosen.servo_gain is not None
         self._controlled = has_control(scene, chosen)
-        self._loading = Loading(scene, self._model, self._limbs, drive, state.time_s)
         self._free = chosen.free
+        staged = self._free and integrator(settings, drive) == "RK4"
+        self._loading = Loading(
+            scene, self._model, self._limbs, drive, state.time_s, dt_s if staged else None
+        )
+        self._tendons = spring_tendons(scene, state, tree)
         self._crank = int(self._model.joint(driver_joint(scene)).dofadr[0])
         if not self._free:
             start = drives.start_speed(scene.driver.law, state.time_s, dt_s, self._shift)
@@ -73,7 +79,7 @@ class MujocoSession(SteppedModel):
             "close": self._closed,
             "timestep_s": float(opt.timestep),
             "tolerance": float(opt.tolerance),
-            **held_iterations(self._scene, self._settings, int(opt.iterations)),
+            **held_iterations(self._scene, self._settings, self._drive, int(opt.iterations)),
             "integrator": INTEGRATORS[int(opt.integrator)],
         }
         if model.neq:
@@ -91,13 +97,20 @@ class MujocoSession(SteppedModel):
             settings=settings,
             velocity_shift=self._shift,
             acceleration_shift=0.0,
+            springs={tendon.spring.name: self._spring(tendon) for tendon in self._tendons},
         )
 
     def record_forces(self, steps: int, every: int) -> Log:
         """As `record`, with the forces of `mj_forward` at each kept state."""
-        joint_forces = JointForces(self._model, self._limbs, self._loading.first)
+        joint_forces = JointForces(self._model, self._limbs, self._loading.first, self._tendons)
         log = self._recorded(steps, every, joint_forces.look)
         return replace(log, forces=reactions(self._scene, self._tree, log.poses, joint_forces))
+
+    def _spring(self, tendon: SpringTendon) -> tuple[float, float, float]:
+        """Rate, damping and the slack length or angle of a spring, as `Facts` has them."""
+        model, k = self._model, int(self._model.tendon(tendon.name).id)
+        slack = tendon.sense * float(model.tendon_lengthspring[k, 0]) + tendon.shift
+        return float(model.tendon_stiffness[k]), float(model.tendon_damping[k]), slack
 
     def _inertia(self, body: str) -> float:
         """Inertia about the centre of mass; a free crank has that of its hinge as well."""
@@ -105,6 +118,10 @@ class MujocoSession(SteppedModel):
         if self._free and body == self._scene.driver.link:
             inertia += float(self._model.dof_armature[self._crank])
         return inertia
+
+    def _roll(self, steps: int) -> Array:
+        with self._loading.in_stages(self._done, steps):
+            return super()._roll(steps)
 
     @property
     def _stays(self) -> bool:
@@ -121,7 +138,8 @@ class MujocoSession(SteppedModel):
 
         A load that is known ahead is held through a step at its size in the middle of what the
         step makes of the velocity. At the start of a step of RK4 it would come half a step late:
-        of first order, where this is of second.
+        of first order, where this is of second. Where nothing drives the crank, a step of RK4 sees
+        it in its stages instead (`Loading.in_stages`), which is of fourth.
         """
         if not self._model.nu:
             return None

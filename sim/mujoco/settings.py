@@ -8,7 +8,7 @@ from models import mjcf, mjcf_options
 from models.motion import State
 from models.poses import inertia_scale
 from models.scene import Scene
-from sim.engine import Drive, Profile, Setting, Settings
+from sim.engine import Drive, Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges
 
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
@@ -34,7 +34,7 @@ RANGES = {
     "servo_gain": (1e-9, 1e15),
 }
 """What MuJoCo takes; it clips impedances to these without a word."""
-ITERATIONS_OF_FRICTION = 20
+MORE_ITERATIONS = 20
 OF_DRIVES = ("flywheel_ratio", "servo_gain", "servo_integrator")
 """What a free crank does not have."""
 
@@ -123,7 +123,7 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
             "timestep": dt_s,
             "integrator": str(held["integrator"]),
             "solver": str(settings["solver"]),
-            "iterations": _iterations(scene, settings),
+            "iterations": _iterations(scene, settings, drive),
             "tolerance": float(held["tolerance"]),
         },
         flag={"island": str(settings["islands"]), "contact": str(settings["contact"])},
@@ -138,18 +138,32 @@ def writing(scene: Scene, settings: Settings, dt_s: float, drive: Drive) -> mjcf
     )
 
 
-def _iterations(scene: Scene, settings: Settings) -> int:
-    """Those of the settings, where friction does not need more: with it, which of two signs it has
-    makes the solver's problem more than quadratic."""
+def _iterations(scene: Scene, settings: Settings, drive: Drive) -> int:
+    """Those of the settings, where nothing needs more."""
     asked = int(settings["iterations"])
-    return max(asked, ITERATIONS_OF_FRICTION) if scene.friction else asked
+    return max(asked, MORE_ITERATIONS) if _iterating(scene, settings, drive) else asked
 
 
-def held_iterations(scene: Scene, settings: Settings, found: int) -> dict[str, int]:
-    """The iterations that a model was ``found`` with, as settings: those asked for, and those of
-    friction beside them, where it needs more."""
-    if scene.friction and found == _iterations(scene, settings):
-        return {"iterations": int(settings["iterations"]), "iterations_of_friction": found}
+def _iterating(scene: Scene, settings: Settings, drive: Drive) -> str:
+    """What needs more iterations than pins do, which give a quadratic problem.
+
+    Friction: which of two signs it has makes the solver's problem more than quadratic. Springs: the
+    integrator `discrete` solves inertia and stiffness together by conjugate gradients, as many of
+    them as there are iterations, and gives the run up where they do not converge.
+    """
+    if scene.friction:
+        return "friction"
+    return "springs" if scene.springs and integrator(settings, drive) == "discrete" else ""
+
+
+def held_iterations(
+    scene: Scene, settings: Settings, drive: Drive, found: int
+) -> dict[str, SettingValue]:
+    """The iterations that a model was ``found`` with, as settings: those asked for, and beside them
+    those that friction or springs were given."""
+    cause = _iterating(scene, settings, drive)
+    if cause and found == _iterations(scene, settings, drive):
+        return {"iterations": int(settings["iterations"]), f"iterations_of_{cause}": found}
     return {"iterations": found}
 
 

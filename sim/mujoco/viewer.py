@@ -14,6 +14,7 @@ from models.mjcf_friction import planned
 from models.mjcf_options import exact, has_control
 from models.motion import State
 from models.scene import Scene
+from sim.engine import Drive
 from sim.mujoco.loading import Loading
 from sim.viewing import Viewer
 
@@ -31,7 +32,8 @@ def show(scene: Scene, start: State) -> None:
     mujoco.mj_resetDataKeyframe(model, state, 0)
     if model.nu:
         law = scene.driver.law if has_control(scene, writing) else None
-        loading = Loading(scene, model, tree.limbs, "prescribed", 0.0)
+        drive: Drive = "free" if scene.is_free else "prescribed"
+        loading = Loading(scene, model, tree.limbs, drive, 0.0)
         mujoco.set_mjcb_control(_controlled(law, loading))
     try:
         mujoco.viewer.launch(model, state)

@@ -15,10 +15,17 @@ from models.motion import State
 from models.scene import Point, Scene
 from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
+from sim.pymunk.acting import Acting
 from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
-from sim.pymunk.load_steps import LoadSteps
 from sim.pymunk.reactions import BEFORE, Reactions
-from sim.pymunk.settings import AS_SHIPPED, TUNED, checked, exact_lines, in_seconds
+from sim.pymunk.settings import (
+    AS_SHIPPED,
+    TUNED,
+    checked,
+    exact_lines,
+    in_seconds,
+    springs_as_forces,
+)
 from sim.pymunk.space import SpaceModel, build
 
 ROOM = 64
@@ -43,6 +50,7 @@ class PymunkSession:
             servo=drive == "servo",
             free=drive == "free",
             exact_lines=exact_lines(settings),
+            with_springs=not springs_as_forces(settings),
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
@@ -58,7 +66,7 @@ class PymunkSession:
         self._buffer = pymunk.batch.Buffer()
         self._memory = np.empty(0)
         self._rows = rows_of(self._model)
-        self._loads = LoadSteps(scene, self._model, state, dt_s, drive)
+        self._acting = Acting(scene, self._model, state, dt_s, drive)
 
     def facts(self) -> Facts:
         """The space as pymunk holds it now; what cannot move or turn freely has no mass to hold."""
@@ -85,6 +93,7 @@ class PymunkSession:
             },
             velocity_shift=VELOCITY_SHIFT,
             acceleration_shift=0.0,
+            springs=self._acting.springs(),
         )
 
     def step(self, steps: int) -> None:
@@ -144,7 +153,7 @@ class PymunkSession:
 
     def _advance(self, steps: int, every: int) -> None:
         """Step; log after every ``every``-th step, or never if it is 0."""
-        if self._loads:
+        if self._acting:
             self._each(steps, every)
         elif self._coasts:
             self._coast(steps, every)
@@ -199,10 +208,10 @@ class PymunkSession:
         too, and what its joints bore."""
         space, dt, crank, motor = self._space, self._dt, self._model.crank, self._model.motor
         turns = None if self._coasts else self._turns(steps)
-        loads = self._loads if self._loads else None
-        if loads is not None:
+        acting = self._acting if self._acting else None
+        if acting is not None:
             ends = self._done + 1 + np.arange(steps, dtype=np.float64)
-            loads.look_ahead(self._start_s + dt * ends)
+            acting.look_ahead(self._start_s + dt * ends)
         for k in range(steps):
             if turns is not None:
                 angle, speed = turns[k]
@@ -210,8 +219,8 @@ class PymunkSession:
                     motor.rate = speed
                 else:
                     crank.angle, crank.angular_velocity = angle, speed
-            if loads is not None:
-                loads.apply(k)
+            if acting is not None:
+                acting.apply(k)
             logged = every > 0 and (k + 1) % every == 0
             if logged and reactions is not None:
                 pymunk.batch.get_space_bodies(space, BEFORE, self._buffer)
@@ -219,7 +228,7 @@ class PymunkSession:
             if logged:
                 self._log()
                 if reactions is not None:
-                    reactions.read(self._loads.on_blocks, self._loads.rubbed)
+                    reactions.read(self._acting.pulled(), self._acting.rubbed)
 
     def _poses(self, rows: Array, at: Array) -> Poses:
         """Poses of the links' own frames from the bodies' centres of gravity."""
@@ -247,4 +256,5 @@ ENGINE = Engine(
     forces_of="steps",
     applies_loads=True,
     applies_constant_friction=True,
+    applies_springs=True,
 )

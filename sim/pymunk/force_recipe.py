@@ -24,8 +24,8 @@ from sim.pymunk.space import SpaceModel, build
 
 def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: float) -> str:
     """See `sim.force_recipes.ForceRecipe`: the force of every pin that pymunk holds on its second
-    body, and the torque. Covers what a driver at constant speed moves without loads, friction or
-    redundant links."""
+    body, and the torque. Covers what a driver at constant speed moves without loads, springs,
+    friction or redundant links."""
     checked(settings)
     _check_covered(scene)
     delay = VELOCITY_SHIFT * dt_s
@@ -53,8 +53,11 @@ def pymunk_force_recipe(scene: Scene, state: State, settings: Settings, dt_s: fl
 
 def _check_covered(scene: Scene) -> None:
     """Refuse what the program would leave out."""
-    extra = [*(f"loads.{name}" for name in scene.loads), *(f"friction.{n}" for n in scene.friction)]
-    if not isinstance(scene.driver.law, ConstantSpeed):
+    acting = {"loads": scene.loads, "springs": scene.springs, "friction": scene.friction}
+    extra = [f"{table}.{name}" for table, named in acting.items() for name in named]
+    if scene.is_free:
+        extra.append("a driver that is let go")
+    elif not isinstance(scene.driver.law, ConstantSpeed):
         extra.append("a driver whose speed is not constant")
     if extra:
         raise EngineError(

@@ -27,7 +27,7 @@ from models.poses import centre_of, mass_of
 from models.scene import Scene
 from sim.forces_by_body import forces_by_body
 from sim.momentum_balance import JointPushes, MomentumGain, joint_pushes
-from sim.pymunk.load_steps import Push
+from sim.pymunk.pushes import Push, Pushes
 from sim.pymunk.space import SpaceModel
 
 BEFORE = (
@@ -56,14 +56,16 @@ class Reactions:
         self._braked: list[list[float]] = []
         self._on_blocks: list[Mapping[str, Push]] = []
         self._rubbed: list[Mapping[str, float]] = []
+        self._pulled: list[Mapping[str, Push]] = []
 
-    def read(self, on_blocks: Mapping[str, Push], rubbed: Mapping[str, float]) -> None:
-        """The impulses of the step that was made, what acted on slider blocks without mass, and the
-        friction of sliders."""
+    def read(self, pulled: Pushes, rubbed: Mapping[str, float]) -> None:
+        """The impulses of the step that was made, what the space's own springs did to bodies, all
+        that acted on slider blocks without mass, and the friction of sliders."""
         self._impulses.append([constraint.impulse for constraint in self._constraints])
         self._braked.append([one.motor.impulse if one.motor else 0.0 for one in self._model.rubs])
-        self._on_blocks.append(on_blocks)
+        self._on_blocks.append(pulled.on_blocks)
         self._rubbed.append(rubbed)
+        self._pulled.append(pulled.on_bodies)
 
     @np.errstate(all="ignore")  # what comes apart may overflow; it is judged, not warned of
     def forces(self, before: Array, after: Array, time_s: Array) -> Forces:
@@ -81,8 +83,10 @@ class Reactions:
         """
         ends = time_s[1:]
         couples = self._couples(before, after[1:])
+        pulled = _by_name(self._pulled[: len(ends)])
         gains = {
-            name: self._gain(name, before, after[1:], ends, couples) for name in self._model.bodies
+            name: self._gain(name, before, after[1:], ends, couples, pulled)
+            for name in self._model.bodies
         }
         pushes = joint_pushes(self._scene, [*self._model.hinges], gains, driven=self._driven)
         on_blocks = _by_name(self._on_blocks[: len(ends)])
@@ -106,15 +110,23 @@ class Reactions:
         return couples
 
     def _gain(
-        self, name: str, before: Array, after: Array, time_s: Array, couples: Mapping[str, Array]
+        self,
+        name: str,
+        before: Array,
+        after: Array,
+        time_s: Array,
+        couples: Mapping[str, Array],
+        pulled: Mapping[str, Array],
     ) -> MomentumGain:
-        """What joints and drive gave a body, friction apart."""
+        """What joints and drive gave a body, friction and springs apart."""
         body, centre = self._model.bodies[name], self._model.centre[name]
         start, end = before[:, self._rows[name]], after[:, self._rows[name]]
         if _moves_freely(body):
             given = self._change(body, start, end) - start[:, 3:6]
         else:
             given = self._told(name, end[:, 2], time_s) - start[:, 3:6]
+        if self._model.springs:
+            given = given - pulled[name]
         for one in self._model.rubs:
             given[:, 2] -= couples[one.joint] * ((name == one.second) - float(name == one.first))
         return MomentumGain(centre, end[:, 0:2], end[:, 2], given[:, 0:2], given[:, 2])

@@ -13,7 +13,10 @@ DRIVES: Mapping[Drive, str] = {
     "prescribed": "Drive: the crank is a kinematic body with its origin on its pivot and a "
     "constant angular_velocity; the others start with the velocities that go with it.",
     "servo": "Drive: a SimpleMotor between the crank and the ground, rate = speed.",
-    "free": "",
+    "free": "Drive: none. Every link is a dynamic body, the crank pinned to the ground as well. "
+    "Positions are those of the start, velocities those of half a step later, v + a dt / 2 and "
+    "omega + alpha dt / 2; with those of the start itself errors fall as dt. What acts is set "
+    "before each step, with the size and the place of its end.",
 }
 """How the crank of the measured runs was driven."""
 
@@ -36,18 +39,21 @@ def pymunk_snippet(
             "for joint in joints:  # those that hold the mechanism together, and no others",
             f"    joint.error_bias = {float(complete['error_bias'])!r}",
         ]
-    lines += comment(_notes(complete, defaults), WIDTH)
+    lines += comment(_notes(complete, defaults, drive), WIDTH)
     if (iterations := int(complete["iterations"])) > int(defaults["iterations"]):
         lines.append(
             f"space.iterations = max(space.iterations, {iterations})  # the whole space's, "
             "contacts' too"
         )
-    lines += [*_alone(complete, defaults), *_steps(stepping), *comment([DRIVES[drive]], WIDTH)]
+    lines += [*_alone(complete, defaults), *_steps(stepping, drive)]
+    lines += comment([DRIVES[drive]], WIDTH)
     return "\n".join(lines) + "\n"
 
 
-def _steps(stepping: Stepping) -> list[str]:
+def _steps(stepping: Stepping, drive: Drive) -> list[str]:
     """The next step, or the steps of a frame."""
+    if drive == "free":  # no speed of the crank says how long it may be
+        return [f"dt = {stepping.dt_s!r}", "space.step(dt)  # steps all that the space holds"]
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     if not stepping.substeps:
         return [
@@ -69,8 +75,8 @@ def _steps(stepping: Stepping) -> list[str]:
     ]
 
 
-def _notes(complete: Settings, defaults: Settings) -> list[str]:
-    """How lines are held, and what limits the promise."""
+def _notes(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
+    """How lines are held and, of free motion, springs; what limits the promise."""
     notes = []
     if complete["lines"] == "exact":
         notes.append(
@@ -78,6 +84,12 @@ def _notes(complete: Settings, defaults: Settings) -> list[str]:
             "but a PinJoint whose far end moves along with the point (crankcheck, "
             "sim/pymunk/rail.py). "
             "Loops of pins need nothing of the kind."
+        )
+    if complete["springs"] == "forces" and drive == "free":
+        notes.append(
+            "Dampers: not those of DampedSpring and DampedRotarySpring, but forces set before each "
+            "step, from the lengths at its end (crankcheck, sim/pymunk/spring_steps.py). Springs "
+            "without damping need nothing of the kind."
         )
     if complete["error_bias"] == defaults["error_bias"]:
         notes.append(

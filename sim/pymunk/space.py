@@ -33,6 +33,7 @@ from models.motion import State
 from models.poses import along, centre_of, frames, mass_of
 from models.scene import GROUND, Point, Scene, Slider, span
 from sim.momentum_balance import Hinge
+from sim.pymunk.native_springs import NativeSpring, native_springs
 from sim.pymunk.pin_friction import PinFriction, pin_friction
 from sim.pymunk.rail import Rail
 
@@ -48,7 +49,7 @@ class SpaceModel:
     ``centre`` is where the origin of each pymunk body lies in the frame of the link [m].
     ``motor`` is the servo, where there is one. Of the constraints, ``hinges`` are what the pins are
     made of (None is what holds a kinematic crank), and by slider ``lines`` hold a point on its
-    line, ``gears`` an angle. ``rubs`` is what rubs in pins.
+    line, ``gears`` an angle. ``rubs`` is what rubs in pins; ``springs`` are the space's own.
     """
 
     space: pymunk.Space
@@ -60,6 +61,7 @@ class SpaceModel:
     lines: Mapping[str, pymunk.Constraint]
     gears: Mapping[str, pymunk.Constraint]
     rubs: tuple[PinFriction, ...]
+    springs: Mapping[str, NativeSpring]
 
 
 def build(
@@ -69,13 +71,15 @@ def build(
     servo: bool = False,
     free: bool = False,
     exact_lines: bool = True,
+    with_springs: bool = False,
     delay_s: float = 0.0,
 ) -> SpaceModel:
     """The space of ``scene`` at ``state``.
 
     The crank is dynamic under ``servo``, with a motor, and where it is ``free``, without one.
     Points on lines run in Chipmunk's grooves or, with ``exact_lines``, on a `Rail` where the groove
-    is in error. Velocities are those of ``delay_s`` later (see `models.poses.frames`).
+    is in error. ``with_springs`` the space has those of the scene. Velocities are those of
+    ``delay_s`` later (see `models.poses.frames`).
 
     Raises
     ------
@@ -122,8 +126,11 @@ def build(
     for rub in rubs:
         if rub.motor is not None:
             space.add(_plain(rub.motor))
+    springs = native_springs(scene, state, made, centre, _reach(scene)) if with_springs else {}
+    for spring in springs.values():
+        space.add(_plain(spring.constraint))
     del made[GROUND]
-    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs)
+    return SpaceModel(space, made, centre, crank, motor, hinges, lines, gears, rubs, springs)
 
 
 def _body(scene: Scene, name: str, kinematic: bool, fixed_angle: bool) -> pymunk.Body:
@@ -217,12 +224,17 @@ def _pinned_bodies(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(sorted(names, key=lambda name: firm.get(name, 2)))
 
 
+def _reach(scene: Scene) -> float:
+    """Farther than a slider can go [m]."""
+    return FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
+
+
 def _groove(scene: Scene, state: State, slider: Slider, rider: str) -> tuple[Point, Point]:
     """Ends of a groove in the frame of the guide [m], far enough that no motion reaches them."""
     where = frames(scene, state)
     place = where[rider].at(local_point(scene, rider, slider.point))
     now, _ = along(slider, where[slider.on], place, (0.0, 0.0))
-    reach = FAR * sum(map(span, (scene.ground, *(link.points for link in scene.links.values()))))
+    reach = _reach(scene)
     u = turned((1.0, 0.0), slider.direction_rad)
     a, b = now - reach, now + reach
     x, y = slider.through_m

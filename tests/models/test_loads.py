@@ -14,6 +14,7 @@ from models.files import load_scene, parse_scene, shipped
 from models.interpolation import slopes, spline
 from models.loads import Load
 from models.scene_text import scene_text
+from models.staircase import Staircase
 
 PRESS = """
 name = "press"
@@ -202,6 +203,40 @@ def test_a_table_does_not_go_on_past_its_ends() -> None:
     assert gas.magnitude(np.array([0.15, 0.45 + 1e-11])) == pytest.approx([900.0, 0.0])
     with pytest.raises(CrankcheckError, match=r"loads.gas: over the displacement \[m\] the table"):
         gas.magnitude(np.array([0.2, 0.46]))
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        Polynomial((1.0, -0.3, 0.07)),
+        Polynomial((4.0,)),
+        Sine(2.0, 0.3, 0.1),
+        Staircase((0.1, 0.7), (1.0, 0.0)),
+        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7)),
+        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip"),
+        Tabulated((-0.3, 0.1, 0.4, 1.5), (1.0, -2.0, 0.3, 0.7), "pchip", 2.1),
+        Tabulated((0.0, 0.1, 0.4), (1.0, -2.0, 1.0), "linear", 0.4),
+    ],
+    ids=repr,
+)
+def test_one_value_is_that_of_an_array_to_the_bit(own: Characteristic) -> None:
+    reach = 9.0 if getattr(own, "period", None) else 1.5
+    chance = np.random.default_rng(1)
+    inner = chance.uniform(-0.3, 1.5, 500)
+    places = np.concatenate([inner, reach * inner, [-0.3, 0.0, 0.1, 0.4, 1.5]])
+    if isinstance(own, Tabulated) and own.period is None:
+        places = np.clip(places, -0.3, 1.5)
+    assert [own.at_one(float(x)) for x in places] == own.at(places).tolist()
+
+
+def test_one_value_past_the_end_of_a_table_is_refused_as_in_an_array() -> None:
+    table = Tabulated((0.0, 1.0), (2.0, 3.0))
+    assert table.at_one(1.0 + 1e-10) == 3.0  # where rounding has it
+    with pytest.raises(ValueError, match=r"from 0 to 1, and 1\.5 is asked for"):
+        table.at_one(1.5)
+    load = Load("valve", "crank", None, table, "angle")
+    with pytest.raises(CrankcheckError, match=r"loads\.valve: over the angle \[rad\] the table"):
+        load.size(0.0, -1.0, {}, 0.0)
 
 
 def test_a_load_acts_on_its_stroke_alone() -> None:

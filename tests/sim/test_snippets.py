@@ -32,6 +32,7 @@ OTHER: dict[str, SettingValue] = {
     "close": "C",
     "servo_integrator": "implicit",
     "lines": "exact",
+    "springs": "forces",
     "jacobian": "each-step",
     "adaptive_step": "disable",
     "linear_solver": "EigenDense",

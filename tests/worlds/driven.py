@@ -40,7 +40,7 @@ from models.laws import ConstantSpeed
 from models.scene import GROUND, Link, Point, Scene, Slider, span
 from models.scene_text import scene_text
 from models.tree import plan
-from reports.compare.compare import curvature
+from reports.compare.curvature import curvature
 from reports.judge.tolerance import DEFAULTS
 from sim.pymunk.settings import TUNED
 from tests.worlds.contraction import contraction

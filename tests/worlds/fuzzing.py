@@ -29,8 +29,9 @@ MESSAGE = re.compile(r"^crankcheck: \S.*[:,;] \S", re.DOTALL)
 LONGEST = 20_000
 """Characters of a message; a user reads a few lines."""
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
-ALLOWED = re.compile(r"/dev/(null|tty)$|.*[/.]matplotlib\b")
-"""What may be written elsewhere: nothing is kept there but the fonts that Matplotlib has found."""
+ALLOWED = re.compile(r"/dev/(null|tty)$|.*[/.]matplotlib\b|.*/__pycache__/[^/]+\.pyc(\.\d+)?$")
+"""What may be written elsewhere: the fonts that Matplotlib has found, and what Python keeps of a
+module that is imported for the first time."""
 TABLES = {"out/errors.parquet", "out/verify.csv", "out/verify.json", "out/verify.junit.xml"}
 VERIFY = "verify FILE --turns 0.2 -o OUT"
 COMMANDS = (
@@ -45,6 +46,8 @@ COMMANDS = (
     "solve FILE --at-deg 1e300",
     "solve FILE --turns 1e300",
     "solve FILE --turns 3 --steps-per-turn 100 -o OUT.csv",
+    "solve FILE --duration 0.05 --steps 4",
+    "solve FILE --duration 1e300",
     "solve FILE -o OUT.xlsx",
     "export FILE",
     "export FILE --close C -o OUT.xml",
@@ -52,6 +55,13 @@ COMMANDS = (
 )
 """What files are tried with."""
 _SHORT = "--turns 0.12 --no-convergence --profile tuned -o OUT"
+LET_GO = (
+    "solve FILE",
+    "solve FILE --duration 0.05 --steps 4",
+    "solve FILE -o OUT.csv",
+    "view FILE -o OUT.png",
+)
+"""What files of mechanisms that are let go are tried with."""
 QUICK = (
     f"verify FILE --engine mujoco {_SHORT}",
     f"verify FILE --engine pymunk {_SHORT}",

@@ -43,9 +43,9 @@ ABSURD: st.SearchStrategy[object] = st.sampled_from(
 
 
 @st.composite
-def scene_files(draw: st.DrawFn) -> str:
-    """The text of a scene file."""
-    tree = draw(mechanisms())
+def scene_files(draw: st.DrawFn, made: st.SearchStrategy[Tree] | None = None) -> str:
+    """The text of a scene file, of driven `mechanisms` where no others are ``made``."""
+    tree = draw(mechanisms() if made is None else made)
     for _ in range(draw(st.sampled_from([0, 1, 1, 1, 2, 2, 4]))):
         draw(st.sampled_from([_stretch, _stretch, _twin, _tie, _tie, _spoil]))(draw, tree)
     return toml(tree)

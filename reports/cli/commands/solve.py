@@ -43,6 +43,15 @@ ENDLESS = 10**15
 
 def run_solve(request: SolveRequest, console: Console) -> None:
     """Show or write the reference. Raises CrankcheckError for what can not be asked."""
+    if request.output is not None:
+        check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
+    scene = load_scene(request.scene)
+    if scene.is_free:
+        from reports.cli.commands.solve_free import run_solve_free  # loads scipy
+
+        run_solve_free(scene, request, console)
+        return
+    _refuse_times(scene, request)
     if request.at_deg is not None and (request.turns or request.steps_per_turn):
         raise CrankcheckError(
             "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
@@ -51,10 +60,7 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     if request.clockwise and request.at_deg is None:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
     _check_figures(request)
-    if request.output is not None:
-        _check_page(request)
-        check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
-    scene = load_scene(request.scene)
+    _check_page(request)
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
     motion = (
@@ -90,6 +96,17 @@ def run_solve(request: SolveRequest, console: Console) -> None:
             "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
         )
     show_notes(console, scene, motion)
+
+
+def _refuse_times(scene: Scene, request: SolveRequest) -> None:
+    """Refuse what is asked of free motion alone, of a scene that is driven. Raises
+    CrankcheckError."""
+    for option, value in (("--duration", request.duration), ("--steps", request.steps)):
+        if value is not None:
+            raise CrankcheckError(
+                f'{option} {value:g}: {scene.name} is driven, and not let go (law = "free"); give '
+                "--turns and --steps-per-turn"
+            )
 
 
 def _check_page(request: SolveRequest) -> None:

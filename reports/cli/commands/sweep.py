@@ -52,10 +52,13 @@ def asked(request: SweepRequest) -> Study:
         request.scenes,
         request.engines,
         request.profiles,
-        _steps(request.steps_per_turn),
+        _steps("--steps-per-turn", request.steps_per_turn, "90,180,360"),
         request.turns,
         _overrides(request.settings, engines),
         request.forces,
+        request.free,
+        _steps("--dt", request.dt_s, "2e-3,1e-3"),
+        request.duration_s,
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 
@@ -79,11 +82,11 @@ def _overrides(
     return overrides
 
 
-def _steps(text: str | None) -> list[float]:
+def _steps(option: str, text: str | None, such_as: str) -> list[float]:
     """`90,180,360` as numbers."""
     try:
         return [] if text is None else [float(part) for part in text.split(",")]
     except ValueError:
         raise CrankcheckError(
-            f"--steps-per-turn {shown(text)}: write numbers with commas between, such as 90,180,360"
+            f"{option} {shown(text)}: write numbers with commas between, such as {such_as}"
         ) from None

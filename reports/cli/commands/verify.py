@@ -13,22 +13,40 @@ from rich.progress import Progress
 
 from models.errors import CrankcheckError
 from models.files import find_scenes
-from reports.cli.checking import VerifyRequest
+from models.scene import Scene
+from reports.cli.checking import PRESCRIBED, VerifyRequest
 from reports.judge.cell import Cell, Checked
 from reports.judge.frames import cell_frame, error_frame
 from reports.judge.rows import cell_row
-from reports.judge.tolerance import parse, refuse_forces_unasked
+from reports.judge.tolerance import (
+    check_names,
+    parse,
+    refuse_forces_unasked,
+    refuse_of_other_motion,
+)
 from reports.output.console import tell
 from reports.output.frame_file import csv, parquet
 from reports.output.junit import junit
 from reports.output.numbers import finite
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
-from reports.plan.chosen import chosen_engines, chosen_profiles, chosen_scenes, left_out_note
+from reports.plan.chosen import (
+    chosen_engines,
+    chosen_profiles,
+    chosen_scenes,
+    left_out_note,
+    refuse_unfollowed,
+)
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
+from reports.plan.free import (
+    free_names,
+    refuse_other_options,
+    refuse_unreleased,
+    scenes_of,
+)
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
-from reports.plan.steps import counted
+from reports.plan.steps import TURNS, counted, counted_free
 from reports.verify.all_cells import check_all
 from reports.verify.junit import suite
 from reports.verify.table import show
@@ -60,13 +78,14 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     to be run. Raises CrankcheckError for what can be told of the request before running."""
     cells = plan(request)
     files = {"--junit": request.junit, "--csv": request.csv, "--json": request.json}
-    read = find_scenes(request.scenes)
+    names = free_names(request.scenes) if request.free else request.scenes
+    read = find_scenes(names)
     check_outputs(files, request.folder, IN_FOLDER, inputs=read)
     if request.baseline is not None:
         _spare_baseline(files, request.baseline)
     digests = _digests(request)
     silent = silent_note(chosen_engines(())) if request.forces and not request.engines else ""
-    for note in filter(None, (*passages(cells), silent, left_out_note(request.scenes))):
+    for note in filter(None, (*passages(cells), silent, left_out_note(names))):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     base = _baseline(request, cells, digests)
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
@@ -105,24 +124,12 @@ def plan(request: VerifyRequest) -> list[Cell]:
     tolerance = parse(request.tolerance)
     if not request.forces:
         refuse_forces_unasked("--tol", tolerance)
-    if request.drive not in ("prescribed", "servo"):
-        raise CrankcheckError(
-            f"--drive {request.drive!r}: unknown; use prescribed or servo, or name the model whose "
-            "joint that is with --mjcf FILE"
-        )
-    scenes = chosen_scenes(request.scenes)
+    scenes = _scenes(request)
+    _refuse_options(request, scenes)
+    refuse_of_other_motion("--tol", tolerance, [scene.is_free for scene in scenes])
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
-    steps = {
-        scene.name: counted(scene, request.dt_s, request.steps_per_turn, request.turns)
-        for scene in scenes
-    }
-    for scene in scenes:
-        dt_s, count = steps[scene.name]
-        refuse_singular(scene, dt_s * count)
-        if request.forces:
-            refuse_forceless(scene, dt_s * count)
-        refuse_short_tables(scene, dt_s * count)
+    steps = {scene.name: _steps(request, scene) for scene in scenes}
     return [
         Cell(
             scene=scene,
@@ -131,7 +138,7 @@ def plan(request: VerifyRequest) -> list[Cell]:
             dt_s=dt_s,
             steps=count,
             gated=gated,
-            drive=cast(Drive, request.drive),
+            drive="free" if scene.is_free else cast(Drive, request.drive),
             tolerance=tolerance,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
@@ -143,9 +150,55 @@ def plan(request: VerifyRequest) -> list[Cell]:
     ]
 
 
+def _scenes(request: VerifyRequest) -> list[Scene]:
+    """The scenes, those that are to be let go with a driver that is."""
+    if request.free:
+        return scenes_of(request.scenes, free=True)
+
+    def check(scene: Scene) -> None:
+        check_names(scene)
+        if not scene.is_free:
+            refuse_unfollowed(scene)
+
+    return chosen_scenes(request.scenes, check)
+
+
+def _refuse_options(request: VerifyRequest, scenes: Sequence[Scene]) -> None:
+    """Refuse what the scenes have no use for. Raises CrankcheckError."""
+    if request.drive not in ("prescribed", "servo"):
+        raise CrankcheckError(
+            f"--drive {request.drive!r}: unknown; use prescribed or servo, let scenes go with "
+            "--free, or name the model whose joint that is with --mjcf FILE"
+        )
+    free = [scene.name for scene in scenes if scene.is_free]
+    if free and request.drive != PRESCRIBED:
+        raise CrankcheckError(
+            f"--drive {request.drive}: {free[0]} is let go, and nothing drives it; leave --drive "
+            "out, or the scene"
+        )
+    driven = {"--turns": request.turns, "--steps-per-turn": request.steps_per_turn}
+    refuse_other_options(scenes, {"--duration": request.duration_s}, driven)
+
+
+def _steps(request: VerifyRequest, scene: Scene) -> tuple[float, int]:
+    """Step [s] and number of steps of a scene. Raises CrankcheckError where it can not be run."""
+    if scene.is_free:
+        dt_s, count = counted_free(scene, request.dt_s, request.duration_s)
+        refuse_unreleased(scene, dt_s * count)
+        return dt_s, count
+    turns = TURNS if request.turns is None else request.turns
+    dt_s, count = counted(scene, request.dt_s, request.steps_per_turn, turns)
+    refuse_singular(scene, dt_s * count)
+    if request.forces:
+        refuse_forceless(scene, dt_s * count)
+    refuse_short_tables(scene, dt_s * count)
+    return dt_s, count
+
+
 def passages(cells: Sequence[Cell]) -> list[str]:
     """What is to be said of change points, once for every scene and duration of the cells."""
-    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in cells}
+    driven = (cell for cell in cells if cell.drive != "free")
+    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in driven}
     notes = (passage_note(scene, duration_s) for (_, duration_s), scene in runs.items())
     return [note for note in dict.fromkeys(notes) if note]
 
@@ -182,7 +235,7 @@ def _digests(request: VerifyRequest) -> dict[str, str]:
         return {}
     from reports.results.changes.reading import scene_digests
 
-    return scene_digests(request.scenes)
+    return scene_digests(free_names(request.scenes) if request.free else request.scenes)
 
 
 def _changes(

@@ -24,6 +24,7 @@ from reports.own_model.request import ModelRequest
 from reports.own_model.running import run_lines
 from reports.own_model.sentences import is_diff, recommended_head
 from reports.own_model.table import show
+from reports.plan.steps import TURNS
 from reports.verify.junit import suite
 from reports.workers.isolated import checked_limits
 from sim.own_models import reading_engine
@@ -47,6 +48,8 @@ NOT_OF_MODELS = {
     "baseline": "--baseline",
     "factor": "--factor",
     "forces": "--forces",
+    "free": "--free",
+    "duration_s": "--duration",
 }
 """What is asked of scenes alone, by the field of the request."""
 
@@ -104,7 +107,7 @@ def _asked(request: VerifyRequest) -> ModelRequest:
         branch=_branch(request.branch),
         dt_s=request.dt_s,
         steps_per_turn=request.steps_per_turn,
-        turns=request.turns,
+        turns=TURNS if request.turns is None else request.turns,
         tolerance=parse(request.tolerance),
         converge=request.converge,
     )

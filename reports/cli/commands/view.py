@@ -43,7 +43,8 @@ def run_view(
     draw = picture.strip if output.suffix.lower() == ".png" else picture.animation
     content = draw(scene, with_forces=with_forces)
     write(output, content)
-    told = harmless(f"{output}: {scene.name} over one turn")
+    what = "in free motion" if scene.is_free else "over one turn"
+    told = harmless(f"{output}: {scene.name} {what}")
     console.print(told, highlight=False, markup=False)
 
 

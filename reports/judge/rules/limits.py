@@ -21,9 +21,9 @@ class Within(Criterion):
     def check(self, evidence: Evidence) -> Finding | None:
         """Rates near a change point are held to theirs, and what takes the larger share is told."""
         errors, tolerance = evidence.errors, tolerance_name(self.quantity, self.source)
-        if errors is None:
+        limit = evidence.limits.get(tolerance)
+        if errors is None or limit is None:
             return None
-        limit = evidence.limits[tolerance]
         worst = errors.worst(self.quantity, self.source)
         passing = errors.worst(self.quantity, self.source, "passage")
         if passing is not None:
@@ -35,8 +35,10 @@ class Within(Criterion):
         level: Level = "pass" if worst.pure <= limit.number else "fail"
         at_crank = errors.worst(self.quantity, self.source, "geometric")
         geometric = f"; {measure(at_crank)} at the logged crank angle" if at_crank else ""
+        raw = errors.worst(self.quantity, self.source, "raw")
+        before = f" over the sensitivity; {measure(raw)} as it is" if raw else ""
         number = f"{limit.number:.2g} {share(worst)} ({limit.origin})"
-        text = f"{place(worst)}{geometric}; limit {number}"
+        text = f"{place(worst)}{before}{geometric}; limit {number}"
         return Finding(self.id, level, text, worst.pure, limit.number)
 
 

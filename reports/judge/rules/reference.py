@@ -79,6 +79,8 @@ class ReferenceCertain:
             return None
         worst, name, limit = 0.0, "", 0.0
         for key, body, bound in _bounds(evidence.errors):
+            if key not in evidence.limits:
+                continue
             share = bound / evidence.limits[key].number
             share = math.inf if math.isnan(share) else share
             if share > worst:

@@ -25,7 +25,8 @@ class StartWithin:
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
-        rows = [row for row in errors.rows if row.kind == "start"] if errors else []
+        every = errors.rows if errors else ()
+        rows = [row for row in every if row.kind == "start" and row.tolerance in evidence.limits]
         if errors is None or not rows:
             return None
         limits = {row.tolerance: start_limit(row.tolerance, evidence, errors) for row in rows}

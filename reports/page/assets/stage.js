@@ -29,13 +29,20 @@ crankcheck.stage = (name, { overlays, drawn = () => {}, home = () => 0, lasts = 
     return (drawing.turning ? ((rounded % 360) + 360) % 360 : rounded).toFixed(0);
   };
 
+  /** Where the drawing stands, as it is shown and as it is said: a crank's angle, or a time. */
+  function place(at) {
+    if (drawing.until_s === undefined) return [`${degrees(at)}°`, `crank at ${degrees(at)} degrees`];
+    const seconds = ((at / (mechanism.samples - 1)) * drawing.until_s).toPrecision(3);
+    return [`${seconds} s`, `at ${seconds} seconds`];
+  }
+
   function draw() {
     const each = overlays(mechanism);
     const cut = mechanism.show(position, each, Number(factor?.value ?? 1));
-    const told = degrees(position);
     slider.value = String(Math.round(position));
-    slider.setAttribute("aria-valuetext", `crank at ${told} degrees`);
-    part("angle").textContent = `${told}°`;
+    const [shown, said] = place(position);
+    slider.setAttribute("aria-valuetext", said);
+    part("angle").textContent = shown;
     const off = each.map((run) => `${run.name} ${short(mechanism.farthest(run.rows, position))} m`);
     if (readout) readout.textContent = (off.length ? `Off the reference here by: ${off.join("; ")}.` : "No run is drawn.") +
       (cut ? " What would leave the drawing is cut off." : "");

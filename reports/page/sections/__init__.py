@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from reports.page.sections.convergence import build as convergence
 from reports.page.sections.fairness import build as fairness
+from reports.page.sections.free import build as free
 from reports.page.sections.hard import build as hard
 from reports.page.sections.motion import build as motion
 from reports.page.sections.precision import build as precision
@@ -24,6 +25,7 @@ SECTIONS: dict[str, Callable[[PageReport], Section | None]] = {
     "verdict": verdict,
     "recommendation": recommendation,
     "precision": precision,
+    "free": free,
     "convergence": convergence,
     "reading_forces": reading_forces,
     "motion": motion,

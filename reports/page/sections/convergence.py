@@ -21,6 +21,7 @@ SHARES = {
     "F": "of largest reaction",
     "F L": "of largest reaction at longest link",
     "M": "of largest torque",
+    "T": "of largest kinetic energy",
 }
 DIAGRAMS = {"place_pure": ("place", "rad, or of longest link")} | {
     f"{tolerance_name(entry.name, each.source)}_pure".replace("-", "_"): (

@@ -13,6 +13,7 @@ import numpy as np
 from analytic.structure.mobility import analyse
 from models.array import Array
 from models.errors import CrankcheckError
+from models.released import let_go
 from models.scene import Scene
 from reports.describe.facts import facts
 from reports.describe.law import describe_law
@@ -128,13 +129,14 @@ class _DrawnScene:
         trace = self.report.stored.trace
         parts = None if body is None else split(line, trace, body, self.scene.longest_m)
         rows = line.cells.set_index("key")
+        scene = let_go(self.scene) if line.drive == "free" else self.scene
         return {
             "look": self.report.look(line).number,
             "floor": "" if parts is None else _floor(parts),
             "cells": [
                 {
                     "steps": rows.loc[key]["steps_per_turn"],
-                    "off": displacements(self.scene, trace(key), time_s),
+                    "off": displacements(scene, trace(key), time_s),
                     "parts": self._parts(parts.cells.get(key)) if parts else None,
                 }
                 for key in chosen(line, self.sizes, self.held)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
 from collections.abc import Mapping, Sequence
 
@@ -31,7 +32,7 @@ def build(report: Report) -> Section:
             "other_processors": left_out(report.stored.cells),
             "settings": [_settings(report, engine) for engine in report.engines],
             "cells": [
-                {"look": report.look(line), **row}
+                {"look": report.look(line), "drive_pure": math.nan, **row}
                 for line in report.lines
                 for row in line.cells.to_dict("records")
             ],

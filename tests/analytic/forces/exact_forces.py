@@ -7,16 +7,19 @@ for the unknown forces of its joints, and all of them are solved at once.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
 from mpmath import matrix, mp, mpf
 
-from analytic.structure.mobility import sliding_body
+from analytic.kinematics import solve
 from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
-from models.joints import block_name, local_point
+from models.joints import block_name, local_point, sliding_body
 from models.loads import Load
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Point, Scene, Slider
+from models.springs import PinSpring, SlideSpring, Spring
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number
 
@@ -112,6 +115,8 @@ def exact_forces(
         _inertia(scene, name, bodies[name], b, at[name])
     for load in scene.loads.values():
         _apply(scene, load, time_s, solved, bodies, b, at[load.body])
+    for spring in scene.springs.values():
+        _stretch(scene, spring, solved, bodies, b, at)
     for joint, size in (friction or {}).items():
         _rub(scene, joint, size, bodies, b, at)
     found = list(mp.lu_solve(a, b))
@@ -220,16 +225,80 @@ def _rub(
             if body != GROUND:
                 b[at[body] + 2] -= sign * size
         return
-    slider = scene.sliders[joint]
+    _along_line(scene, scene.sliders[joint], size, bodies, b, at)
+
+
+def _along_line(
+    scene: Scene,
+    slider: Slider,
+    size: Number,
+    bodies: Mapping[str, _Body],
+    b: matrix,
+    at: Mapping[str, int],
+) -> None:
+    """A force of the guide on what slides."""
     body, angle = sliding_body(slider), bodies[slider.on].theta + mpf(slider.direction_rad)
-    x, y = bodies[body].place(local_point(scene, body, slider.point))
+    place = bodies[body].place(local_point(scene, body, slider.point))
     fx, fy = size * mp.cos(angle), size * mp.sin(angle)
-    for name, sign in ((body, 1), (slider.on, -1)):
-        if name != GROUND:
-            ox, oy = bodies[name].origin
-            b[at[name]] -= sign * fx
-            b[at[name] + 1] -= sign * fy
-            b[at[name] + 2] -= sign * ((x - ox) * fy - (y - oy) * fx)
+    _push(body, place, (fx, fy), bodies, b, at)
+    _push(slider.on, place, (-fx, -fy), bodies, b, at)
+
+
+def _push(
+    name: str,
+    place: Pair,
+    force: Pair,
+    bodies: Mapping[str, _Body],
+    b: matrix,
+    at: Mapping[str, int],
+) -> None:
+    """Take a force on a body off what its joints have to bring about."""
+    if name == GROUND:
+        return
+    ox, oy = bodies[name].origin
+    b[at[name]] -= force[0]
+    b[at[name] + 1] -= force[1]
+    b[at[name] + 2] -= (place[0] - ox) * force[1] - (place[1] - oy) * force[0]
+
+
+def _stretch(
+    scene: Scene,
+    spring: Spring,
+    solved: Solved,
+    bodies: Mapping[str, _Body],
+    b: matrix,
+    at: Mapping[str, int],
+) -> None:
+    """A spring; in a pin its whole turns are those of the floats."""
+    rate, damping, free = mpf(spring.rate), mpf(spring.damping), mpf(spring.free)
+    if isinstance(spring, SlideSpring):
+        sliding = solved.sliders[spring.slider]
+        size = -(rate * (sliding.value - free) + damping * sliding.rate)
+        _along_line(scene, scene.sliders[spring.slider], size, bodies, b, at)
+    elif isinstance(spring, PinSpring):
+        one, other = (bodies[name] for name in spring.bodies)
+        off = other.theta - one.theta - free - 2 * mp.pi * _turns_at_start(scene, spring)
+        size = rate * off + damping * (other.omega - one.omega)
+        for name, own in zip(spring.bodies, (size, -size), strict=True):
+            if name != GROUND:
+                b[at[name] + 2] -= own
+    else:
+        held = _pins(scene)
+        ends = [solved.points[name] for name in spring.points]
+        x, y = ends[1].x - ends[0].x, ends[1].y - ends[0].y
+        length = mp.hypot(x.value, y.value)
+        speed = (x.value * x.rate + y.value * y.rate) / length
+        pull = (rate * (length - free) + damping * speed) / length
+        for name, end, sign in zip(spring.points, ends, (1, -1), strict=True):
+            force = (sign * pull * x.value, sign * pull * y.value)
+            _push(held[name][0], (end.x.value, end.y.value), force, bodies, b, at)
+
+
+def _turns_at_start(scene: Scene, spring: PinSpring) -> int:
+    """The whole turns by which its angle is off the free one at time 0."""
+    links = solve(scene, np.zeros(1), bound=False).links
+    one, other = (links[n].theta[0] if n in links else 0.0 for n in spring.bodies)
+    return round((other - one - spring.free) / math.tau)
 
 
 def value_of(own: Characteristic, x: Number) -> Number:

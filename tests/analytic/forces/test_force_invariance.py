@@ -24,6 +24,7 @@ from models.scene import Scene
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded
 from tests.worlds.other_way import sped_up
+from tests.worlds.sprung import sprung
 
 CLOSE = 1e-11
 
@@ -95,6 +96,13 @@ def test_forces_go_with_the_scene(name: str, change: str) -> None:
 def test_forces_of_any_loads_go_with_the_scene(name: str, change: str) -> None:
     for seed in range(8):
         _goes_with(loaded(load_scene(name), random.Random(seed)), CHANGES[change])
+
+
+@pytest.mark.parametrize("change", [name for name in CHANGES if CHANGES[name].fast > 0.0])
+@pytest.mark.parametrize("name", LOADED)
+def test_forces_of_springs_go_with_the_scene(name: str, change: str) -> None:
+    for seed in range(3):
+        _goes_with(sprung(load_scene(name), random.Random(seed)), CHANGES[change])
 
 
 def _goes_with(scene: Scene, change: Change) -> None:

@@ -64,7 +64,7 @@ def test_no_computation_imports_another() -> None:
     assert not any(".check" in name for name in reached("analytic.forces.kinetostatics"))
     for opinion in ("analytic.check.multipliers", "analytic.check.power"):
         rooms = {name.split(".")[1] for name in reached(opinion)}
-        assert rooms <= {"check", "structure"}
+        assert rooms <= {"check", "multibody"}
     assert "analytic.check.constraints" not in reached("analytic.check.power")
 
 

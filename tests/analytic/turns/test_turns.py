@@ -174,7 +174,7 @@ def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: i
     """Also in cells that are too wide to be sure, and where the mechanism is open in the middle;
     and one that is said to be open all over does not close anywhere."""
     scene = designed.scene
-    ready = kinematics._prepared(kinematics.Same(scene))
+    ready = kinematics.prepared(scene)
     look = CellSolver(scene, ready.steps, ready.passages)
     rng = np.random.default_rng(seed)
     middle, half = rng.uniform(-math.pi, math.pi, 200), 10.0 ** rng.uniform(-4.0, 0.0, 200)
@@ -349,7 +349,7 @@ def test_samples_that_follow_from_one_another_are_not_looked_up(
     scene = load_scene("fourbar-double-crank")
     time_s = np.linspace(0.0, 2.0 * scene.driver.law.period_s, 2000)
     quick = sampled(scene, time_s)
-    ready = kinematics._prepared(kinematics.Same(scene))
+    ready = kinematics.prepared(scene)
     monkeypatch.setitem(vars(ready), "turns", replace(ready.turns, step_rad=0.0))
     for link, angle in sampled(scene, time_s).items():
         assert np.array_equal(angle, quick[link])
@@ -360,7 +360,7 @@ def test_an_angle_that_is_not_sure_leads_nobody_astray(monkeypatch: pytest.Monke
     scene = whitworth(0.1)
     time_s = np.linspace(0.0, PERIOD, 2000)
     wanted = sampled(scene, time_s)["lever"]
-    ready = kinematics._prepared(kinematics.Same(scene))
+    ready = kinematics.prepared(scene)
     wrapped = np.remainder(wanted + math.pi, math.tau) - math.pi
     over = int(np.argmax(wrapped > 3.1))
     for lost in (slice(over + 1, over + 20), slice(over - 1, over)):

@@ -9,7 +9,7 @@ import pytest
 
 from tests.worlds.command import PYTHON
 
-HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl")
+HEAVY = ("mujoco", "pymunk", "pandas", "numpy", "matplotlib", "pyarrow", "openpyxl", "scipy")
 SCRIPT = """
 import json, sys, time
 began = time.process_time()
@@ -55,7 +55,7 @@ def test_the_reference_is_solved_without_an_engine() -> None:
     code, _, loaded, output = start("solve", "fourbar-lecture-1", "--at-deg", "90")
     assert code == 0
     assert "4.6761490" in output
-    assert not {"mujoco", "pymunk", "matplotlib"} & set(loaded)
+    assert not {"mujoco", "pymunk", "matplotlib", "scipy"} & set(loaded)
 
 
 def test_a_users_mistake_ends_with_2_and_no_traceback_in_a_real_process() -> None:

@@ -30,7 +30,7 @@ def off_by(link: str, angle_rad: float) -> Callable[[Poses], Poses]:
 def test_it_is_the_last_turn_at_equal_parts(
     fourbar: Scene, disturbed: Disturbed, steps: int
 ) -> None:
-    found = trace(fourbar, disturbed(fourbar, steps=steps))
+    found = trace(Truth(fourbar, bound=False), disturbed(fourbar, steps=steps))
     assert found["time_s"].size == 91
     turns = np.diff(found["driver_rad"]) * 90 / math.tau
     np.testing.assert_allclose(turns, 1.0, rtol=1e-12)
@@ -38,14 +38,14 @@ def test_it_is_the_last_turn_at_equal_parts(
 
 
 def test_an_error_keeps_its_sign(fourbar: Scene, disturbed: Disturbed) -> None:
-    found = trace(fourbar, disturbed(fourbar, off_by("rocker", -1e-3)))
+    found = trace(Truth(fourbar, bound=False), disturbed(fourbar, off_by("rocker", -1e-3)))
     np.testing.assert_allclose(found["angle.rocker"], -1e-3, rtol=1e-6)
     np.testing.assert_allclose(found["angle.coupler"], 0.0, atol=1e-12)
     np.testing.assert_allclose(found["drive"], 0.0, atol=1e-12)
 
 
 def test_a_late_crank_is_drive_and_not_geometry(fourbar: Scene, disturbed: Disturbed) -> None:
-    found = trace(fourbar, disturbed(fourbar, off_by("crank", 1e-3)))
+    found = trace(Truth(fourbar, bound=False), disturbed(fourbar, off_by("crank", 1e-3)))
     np.testing.assert_allclose(found["drive"], 1e-3, rtol=1e-9)
     assert np.max(np.abs(found["angle.rocker"])) < 1e-12
     assert np.max(np.abs(found["geometric.angle.rocker"])) > 1e-4
@@ -59,14 +59,14 @@ def test_its_largest_errors_are_no_larger_than_those_of_the_whole_run(
     assert errors is not None
     worst = errors.worst("gap")
     assert worst is not None
-    assert 0.0 < np.max(trace(fourbar, run)["gap"]) <= worst.maximum
+    assert 0.0 < np.max(trace(Truth(fourbar, bound=False), run)["gap"]) <= worst.maximum
 
 
 def test_a_run_cut_short_gives_what_there_is(fourbar: Scene, disturbed: Disturbed) -> None:
-    found = trace(fourbar, disturbed(fourbar, steps=100))
+    found = trace(Truth(fourbar, bound=False), disturbed(fourbar, steps=100))
     assert 10 <= found["time_s"].size <= 14
     assert found["time_s"][0] == 0.0
 
 
 def test_a_run_that_logged_nothing_gives_nothing(fourbar: Scene, disturbed: Disturbed) -> None:
-    assert trace(fourbar, replace(disturbed(fourbar), motion=None)) == {}
+    assert trace(Truth(fourbar, bound=False), replace(disturbed(fourbar), motion=None)) == {}

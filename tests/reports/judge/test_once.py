@@ -25,7 +25,7 @@ FULL = STEPS + 1
 def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
     """Preparations, as "prepared", and solutions by their number of samples."""
     counts: Counter[object] = Counter()
-    analyse, motion = kinematics.analyse, kinematics._Prepared.motion
+    analyse, motion = kinematics.analyse, kinematics.Prepared.motion
 
     def analysed(scene: Scene) -> object:
         counts["prepared"] += 1
@@ -36,7 +36,7 @@ def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
         return motion(ready, names, time_s, *args, **bound)
 
     monkeypatch.setattr(kinematics, "analyse", analysed)
-    monkeypatch.setattr(kinematics._Prepared, "motion", moved)
+    monkeypatch.setattr(kinematics.Prepared, "motion", moved)
     return counts
 
 

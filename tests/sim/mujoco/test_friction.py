@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from analytic.forces import kinetostatics
+from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from models.errors import EngineError
 from models.files import load_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.mjcf import build
 from models.scene import Scene
+from models.window_chain import Chain
 from sim.run import run
 from tests.sim.mujoco.test_reactions import STEPS, acting, opened
 
@@ -69,3 +71,18 @@ def test_friction_that_grows_with_the_reaction_has_no_text() -> None:
     scene = replace(FOURBAR, friction={"B": CoulombFriction("B", 0.1, 0.01)})
     with pytest.raises(EngineError, match=r"friction.B: .*constant friction alone"):
         build(scene, solve(FOURBAR, np.zeros(1)).state())
+
+
+def test_a_free_rod_slows_down_at_its_rate_and_then_stands() -> None:
+    """1 N m on 1/3 kg m^2: from 1 rad/s it takes a third of a second, and a sixth of a radian."""
+    chain = Chain(0, gravity_m_s2=0.0)
+    scene = rubbing(chain.scene(), A0=1.0)
+    state = ChainMotion(chain).motion(np.zeros(1)).state(0)
+    done = run(scene, state, "mujoco", dt_s=2e-3, steps=300, drive="free")
+    assert done.motion is not None
+    rod, time_s = done.motion.links["rocker0"], done.motion.time_s
+    sliding = time_s < 0.33
+    turned = np.abs(rod.theta - rod.theta[0])
+    np.testing.assert_allclose(turned[sliding], (time_s - 1.5 * time_s**2)[sliding], atol=1e-12)
+    assert turned[-1] == pytest.approx(1.0 / 6.0, abs=5e-5)  # but for the step in which it stops
+    assert abs(rod.omega[-1]) < 1e-12

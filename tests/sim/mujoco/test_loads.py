@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.array import Array
 from models.characteristics import Constant, Sine, Tabulated
 from models.errors import EngineError
 from models.files import load_scene
@@ -17,10 +16,7 @@ from models.joints import block_name
 from models.loads import Load
 from models.mjcf import build
 from models.scene import Scene
-from sim.mujoco.session import MujocoSession
-from sim.registry import engine
 from sim.run import run
-from sim.settings import resolved
 from tests.sim.mujoco.test_reactions import acting, opened, worst_of
 from tests.worlds.loading import loaded_mechanism
 
@@ -85,31 +81,6 @@ def test_loads_on_a_block_without_mass_on_a_guide_that_moves(load: Load, works: 
         return
     with pytest.raises(EngineError, match=r"loads.along: .* give sliders.B a mass_kg above 0"):
         opened(scene)
-
-
-def ends(scene: Scene, steps: int, *, late: float = 0.0) -> Array:
-    """The angles of a free mechanism after 0.6 s; the loads come ``late`` by so many steps."""
-    own = {"solref_timeconst_steps": 0, "solref_timeconst_s": 0.005}
-    settings = resolved(engine("mujoco").profiles["tuned"], own)
-    dt_s, state = 0.6 / steps, solve(scene, np.zeros(1)).state()
-    session = MujocoSession(scene, state, settings, dt_s, "free")
-    at_times = session._loading.at_times
-    session._loading.at_times = lambda time_s: at_times(time_s - late * dt_s)  # type: ignore[method-assign]
-    poses = session.record(steps, steps).poses
-    return np.array([poses.bodies[link].theta[-1] for link in scene.links])
-
-
-def test_a_load_known_ahead_is_of_second_order_and_at_the_start_of_a_step_of_first() -> None:
-    scene = with_loads(FOURBAR, Load("pulse", "rocker", None, Sine(0.5, 0.3, 0.7)))
-    exact = ends(scene, 4800)
-
-    def errors(late: float) -> Array:
-        return np.array([np.abs(ends(scene, n, late=late) - exact).max() for n in (600, 1200)])
-
-    middle, start = errors(0.0), errors(0.5)
-    assert middle[0] / middle[1] > 3.5
-    assert start[0] / start[1] < 2.5
-    assert start[1] > 30.0 * middle[1]
 
 
 def test_a_load_of_the_crank_angle_is_one_whether_it_is_known_ahead_or_read() -> None:

@@ -1,0 +1,235 @@
+"""The equation of a machine over time: windows of collocation, from kink to kink.
+
+Windows are as long as their polynomials allow. They end at every kink over time; where a load, a
+stroke or friction goes over to another formula by where the machine is or how fast, the window is
+solved again until it ends there. At rest friction may hold the machine.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from analytic.free.gauss import Gauss, sums
+from analytic.free.kinks import cells, heeds_direction, is_kinked, time_kinks
+from analytic.free.machine import Machine
+from analytic.free.track import MOST, Track, Window
+from analytic.free.window import Scale, Solved, solve_window
+from models.array import Array
+from models.errors import CrankcheckError
+from models.scene import Scene
+
+GROWTH, LEAST = 2.0, 0.15
+"""By how much a window may be longer than the one before it, and shorter when tried again."""
+SHORTEST = 1e-12
+"""A window, over the whole time, that is not to be had shorter."""
+LOOKS, LOOKED = 257, 7
+"""Instants at which a change of formula is looked for, and how often between two of them."""
+TINY = 1e-150
+"""A rate that only says which way the machine is about to move."""
+AIMS = 30
+"""Windows that are tried so as to end at a change of formula."""
+SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
+"""They are solved to a little before it, and used up to it."""
+
+
+@dataclass
+class Integration:
+    """An integration on its way, which stands at ``u``, ``v`` of its machine's chart.
+
+    ``edges_s`` are the instants at which what acts is not smooth.
+    """
+
+    scene: Scene
+    rule: Gauss
+    until_s: float
+    machine: Machine
+    u: float
+    v: float
+    wound: dict[str, float]
+    now_s: float = 0.0
+    long_s: float = 0.0
+    fastest: float = 0.0
+    windows: list[Window] = field(default_factory=list)
+    edges_s: list[float] = field(default_factory=list)
+
+    def run(self) -> Track:
+        """All windows. Raises CrankcheckError where it fails."""
+        borders = [*time_kinks(self.scene, self.until_s), self.until_s]
+        self.long_s = self.until_s / 100.0
+        for border in borders:
+            self._to(border)
+            if border < self.until_s:
+                self.edges_s.append(border)
+        return Track(tuple(self.windows))
+
+    def _to(self, border_s: float) -> None:
+        """Windows up to an instant; in between everything over time is smooth."""
+        while self.now_s < border_s:
+            if self.v == 0.0 and heeds_direction(self.scene):
+                way = self._way(np.array([self.now_s]))[0]
+                if way == 0.0:
+                    self._rest(border_s)
+                    continue
+            else:
+                way = math.copysign(1.0, self.v)
+            self._step(border_s, way)
+            self._hop()
+
+    def _step(self, border_s: float, way: float) -> None:
+        """One window."""
+        left = border_s - self.now_s
+        long_s = min(self.long_s, left)
+        if 0.5 * left < long_s < left:
+            long_s = 0.5 * left  # two alike instead of a short one at the end
+        solved, lasts_s, edge = self._solved(long_s, way)
+        end_s = border_s if lasts_s == left else self.now_s + lasts_s
+        self._keep(solved, lasts_s, end_s, bends=edge)
+        if edge:
+            self.edges_s.append(end_s)
+            if heeds_direction(self.scene) and abs(self.v) <= 1e-9 * self.fastest:
+                self.v = 0.0
+
+    def _keep(self, solved: Solved, lasts_s: float, end_s: float, *, bends: bool) -> None:
+        chart, series = self.machine.chart, solved.series()
+        window = Window(
+            chart, self.now_s, end_s, solved.long_s, *series, *solved.changes(),
+            wound=self.wound, bends=bends,
+        )  # fmt: skip
+        self.windows.append(window)
+        self.now_s, (self.u, self.v) = end_s, solved.at(lasts_s)
+        self.fastest = max(self.fastest, abs(self.v), abs(float(series[1][0])))
+        if self.wound:
+            ends = self.machine.lengths(np.array([self.u]), self.wound)
+            self.wound = {name: float(q[0]) for name, q in ends.items()}
+
+    def _solved(self, long_s: float, way: float) -> tuple[Solved, float, bool]:
+        """A window that is short enough, how long it lasts [s], and whether it ends at a change of
+        formula: that is a little beyond what was solved, for which one formula counts so. Raises
+        CrankcheckError."""
+        failed: CrankcheckError | None = None
+        aimed = 0
+        while long_s > SHORTEST * self.until_s or 0 < aimed < AIMS:
+            try:
+                solved = self._tried(long_s, way)
+            except CrankcheckError as error:
+                solved, failed = None, error
+            if solved is None:
+                long_s, aimed = 0.25 * long_s, 0
+                continue
+            end = self._change(solved, beyond=aimed > 0) if self._kinked else None
+            landed = end is not None and long_s <= end <= BEYOND * long_s
+            if end is not None and not (landed and solved.converged) and aimed < AIMS:
+                aimed, long_s = aimed + 1, end * SHORT_OF
+                continue
+            excess = solved.excess(self._scale())
+            share = 0.9 * max(excess, 1e-30) ** (-1.0 / self.rule.count)
+            if solved.converged and excess <= 1.0 and (landed or end is None):
+                self.long_s = max(self.long_s, long_s) if aimed else long_s * min(GROWTH, share)
+                if landed:
+                    return solved, self._change(solved, precisely=True) or long_s, True
+                return solved, long_s, False
+            long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
+            aimed = 0
+        raise failed or CrankcheckError(
+            f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
+            f"{self.scene.driver.link} at {self._driver_deg():.6g} deg: what acts, or what moves, "
+            "is not smooth there, or has no mass"
+        )
+
+    def _tried(self, long_s: float, way: float) -> Solved | None:
+        start = self._acceleration(
+            np.array([self.now_s + 1e-3 * long_s]),
+            np.array([self.u]),
+            np.array([self.v or way * TINY]),
+        )
+        first = np.full(self.rule.count, float(start[0]))
+        if not np.isfinite(first).all():
+            return None
+        state = (self.now_s, self.u, self.v)
+        return solve_window(self.rule, self._acceleration, state, long_s, first, self._scale())
+
+    def _acceleration(self, time_s: Array, u: Array, v: Array) -> Array:
+        with np.errstate(all="ignore"):
+            return self.machine.acceleration(time_s, u, v, self.wound)
+
+    def _scale(self) -> Scale:
+        return Scale(
+            max(1.0, abs(self.u)) if self.machine.chart.limit is None else 1.0, self.fastest
+        )
+
+    @cached_property
+    def _kinked(self) -> bool:
+        return is_kinked(self.scene)
+
+    def _driver_deg(self) -> float:
+        return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
+
+    def _change(
+        self, solved: Solved, *, beyond: bool = False, precisely: bool = False
+    ) -> float | None:
+        """How long after the start of a window, or a little beyond it, a formula first gives way to
+        another [s], None where none does."""
+        u, v, _ = solved.series()
+        h = solved.long_s
+
+        def numbers(after_s: Array) -> Array:
+            share = after_s / h
+            ones = np.ones((len(share), 1))
+            return cells(self.machine, sums(ones * u, share), sums(ones * v, share))
+
+        end = (BEYOND if beyond or precisely else 1.0) * h
+        low, high = 0.0, end
+        looks = np.concatenate([h * self.rule.places, [high]])
+        if self.windows and not self.windows[-1].bends:
+            looks = np.concatenate([[0.0], looks])  # else it starts between two formulas
+        first = numbers(looks[:1])
+        low = float(looks[0])
+        for _ in range(LOOKED if precisely else 2):
+            other = (numbers(looks) != first).any(axis=0)
+            if not other.any():
+                return None if high == end else high
+            k = int(np.argmax(other))
+            high, low = float(looks[k]), float(looks[k - 1]) if k else low
+            if high - low <= 1e-17 * max(self.now_s, h):
+                break
+            looks = np.linspace(low, high, LOOKS)[1:]
+        return high
+
+    def _way(self, time_s: Array) -> Array:
+        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,)."""
+        u, v = np.full_like(time_s, self.u), np.full_like(time_s, TINY)
+        ahead = self._acceleration(time_s, u, v)
+        back = self._acceleration(time_s, u, -v)
+        return np.where(ahead > 0.0, 1.0, np.where(back < 0.0, -1.0, 0.0))
+
+    def _rest(self, border_s: float) -> None:
+        """A window at rest, until something moves the machine, or to an instant."""
+        low, high = self.now_s, border_s
+        for _ in range(LOOKED):
+            looks = np.linspace(low, high, LOOKS)
+            moved = np.flatnonzero(self._way(looks[1:]) != 0.0)
+            if not moved.size:
+                break
+            k = int(moved[0])
+            low, high = float(looks[k]), float(looks[k + 1])
+        n = self.rule.count
+        still = Window(
+            self.machine.chart, self.now_s, high, high - self.now_s,
+            np.array([self.u, 0.0]), np.zeros(1), np.zeros(1),
+            np.diag([1.0, 0.0]), np.stack([np.ones(n), np.zeros(n)]), self.wound,
+        )  # fmt: skip
+        self.windows.append(still)
+        self.now_s = high
+        if high < border_s:
+            self.edges_s.append(high)
+
+    def _hop(self) -> None:
+        """Take the chart of the other limit where the motion is nearer to it."""
+        chart = self.machine.chart
+        if chart.left(self.u) is not None:
+            chart, self.u, self.v = chart.next(self.u, self.v)
+            self.machine = Machine(self.scene, chart)

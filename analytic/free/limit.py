@@ -1,0 +1,213 @@
+"""A limit of the driver's angle, and the motion of the mechanism through it.
+
+::
+
+    x |    ___          x of a link over the driver's angle phi: at the limit phi* the driver turns
+      |        \\        back, and the dyad passes from one assembly into the other
+      |         |
+      |     ___/        phi = phi* - side u^2      u > 0: the one assembly, u < 0: the other
+      +---------|---
+              phi*      over u everything is smooth, and x has a rate
+
+The root of the dyad, which is 0 there, is the difference of nearly the same numbers beside it; it
+is taken as u times what it is over u, a smooth function. In u = 0 the formulas of the dyad say 0/0:
+there its unknowns come of interpolation from both sides, as in a change point
+(`analytic.change_points.smooth`). Source: limit positions, e.g. Norton, Design of Machinery,
+section 4.10; u is the local coordinate of a fold.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from analytic.change_points.sign import HALVES, LEAST_CERTAIN
+from analytic.change_points.smooth import Index, Piece, Rates, Unknown, put
+from analytic.dyads.chunk import Chunk
+from analytic.dyads.parts import Dyad, First, OpenError, Second
+from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError
+from analytic.kinematics import prepared
+from models.array import Array
+from models.errors import CrankcheckError, ReachError
+from models.scene import Scene
+
+REACH, AHEAD = 0.8, 0.1
+"""The share of a range within which its limit is the place to count from, and of which is looked
+beyond it."""
+COUNTS = (24, 32, 48, 64, 96, 128, 192, 256)
+
+
+@dataclass(frozen=True, eq=False)
+class Limit:
+    """The limit ``driver_rad`` of the driver in the assembly of ``scene``, in which the dyad
+    ``dyad`` is stretched or folded. ``side`` is 1 where the driver's range, of ``length_rad``,
+    ends there, -1 where it begins."""
+
+    scene: Scene
+    driver_rad: float
+    side: int
+    dyad: str
+    length_rad: float
+
+    def coordinate(self, driver_rad: float) -> float:
+        """u of the assembly of the scene at a driver angle within its range."""
+        return math.sqrt(max(0.0, self.side * (self.driver_rad - driver_rad)))
+
+    def chunk(self, u: Array, rates: Rates, *, bound: bool) -> Chunk:
+        """The mechanism at coordinates u (T,) with rates of u and what they and u may be wrong
+        by. Raises ReachError."""
+        theta = self.driver_rad - self.side * u * u
+        first, second = -2.0 * self.side * u, -2.0 * self.side
+        omega = first * rates.omega
+        alpha = second * rates.omega**2 + first * rates.alpha
+        error = self._driver_error(u, theta, rates) if bound else None
+        passing, roots = {self.dyad: _Passing(self, u, rates)}, {self.dyad: self.root(u)}
+        return prepared(self.scene).chunk(theta, omega, alpha, error, passing, roots)
+
+    def root(self, u: Array) -> Array:
+        """The root of the dyad at coordinates (T,), without its sign."""
+        low, high = -AHEAD * self.length_rad, REACH * self.length_rad
+        square = chebyshev.chebval((2.0 * u * u - low - high) / (high - low), self._quotient)
+        return np.asarray(np.abs(u) * np.sqrt(np.maximum(square, 0.0)))
+
+    @cached_property
+    def _quotient(self) -> Array:
+        """The square of the root over u^2, in Chebyshev's polynomials of u^2 from a little before
+        the limit, where the dyad is open, to `REACH` of the range."""
+        low, high = -AHEAD * self.length_rad, REACH * self.length_rad
+        for count in COUNTS:
+            x = chebyshev.chebpts1(count)
+            w = 0.5 * (low + high) + 0.5 * (high - low) * x
+            closure = prepared(self.scene).stretched(self.driver_rad - self.side * w).closures
+            square = np.asarray(closure[self.dyad].square)
+            series = chebyshev.chebvander(x, count - 1).T @ square * (2.0 / count)
+            series[0] *= 0.5
+            if np.abs(series[-2:]).max() <= 1e-14 * np.abs(series).max():
+                break
+        return _over_argument(_trimmed(series), low, high)
+
+    def _driver_error(self, u: Array, theta: Array, rates: Rates) -> AngleError:
+        """What the driver may be wrong by where u and its rates are by ``rates.error``."""
+        e, v, a = rates.error, np.abs(rates.omega), np.abs(rates.alpha)
+        far = np.abs(u) + e.theta
+        return AngleError(
+            2.0 * far * e.theta + 2 * EPS * (np.abs(theta) + abs(self.driver_rad)),
+            2.0 * (far * e.omega + v * e.theta) + 4 * EPS * far * v,
+            2.0 * ((2.0 * v + e.omega) * e.omega + far * e.alpha + a * e.theta)
+            + 4 * EPS * (v * v + far * a),
+        )
+
+    @cached_property
+    def piece(self) -> Piece:
+        """The dyad's unknowns about the limit, over u. Raises CrankcheckError where they are not
+        smooth to within rounding."""
+        best, least = None, math.inf
+        with np.errstate(all="ignore"):
+            for half in HALVES:
+                try:
+                    piece = Piece.of(self._solved, 0.0, half, self.scene.longest_m)
+                except (OpenError, ReachError):
+                    continue
+                if piece.doubt < least:
+                    best, least = piece, piece.doubt
+                elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
+                    break
+        if best is None or least >= LEAST_CERTAIN:
+            raise CrankcheckError(
+                f"{self.scene.name}: {self.scene.driver.link} comes to its limit at "
+                f"{math.degrees(self.driver_rad):.6g} deg, where the dyad of {self.dyad} has no "
+                "smooth way into its other assembly that can be told from others to within "
+                "rounding; another singular position is too near: change a length"
+            )
+        return best
+
+    def _solved(self, u: Array) -> tuple[Unknown, Unknown]:
+        """The unknowns of the dyad as it stands, per unit of the rate of u."""
+        theta = self.driver_rad - self.side * u * u
+        alpha = np.full_like(u, -2.0 * self.side)
+        bare = _Bare(u)
+        passing, roots = {self.dyad: bare}, {self.dyad: self.root(u)}
+        omega = -2.0 * self.side * u
+        prepared(self.scene).chunk(theta, omega, alpha, EXACT_ANGLE, passing, roots)
+        return bare.unknowns
+
+
+def _trimmed(series: Array) -> Array:
+    """Without the end that is rounding."""
+    large = np.flatnonzero(np.abs(series) > 2e-15 * np.abs(series).max())
+    return series[: int(large[-1]) + 3]
+
+
+def _over_argument(series: Array, low: float, high: float) -> Array:
+    """Chebyshev's series of (p(w) - p(0)) / w, of that of p(w) over [low, high]."""
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
+    count = len(series) - 1
+    # w T_k = centre T_k + half (T_(k - 1) + T_(k + 1)) / 2, whose sum has to be p but for p(0).
+    table = np.zeros((count + 1, count))
+    for k in range(count):
+        table[k, k] += centre
+        table[abs(k - 1), k] += 0.5 * half
+        table[k + 1, k] += 0.5 * half
+    rest = series.copy()
+    rest[0] -= chebyshev.chebval(-centre / half, series)
+    return np.asarray(np.linalg.lstsq(table, rest, rcond=None)[0])
+
+
+class _Bare:
+    """In place of a passage while its piece is made: the dyad as its formulas have it."""
+
+    def __init__(self, u: Array) -> None:
+        self.u = u
+        self.unknowns: tuple[Unknown, Unknown]
+
+    def sign(self, _: Array) -> Array:
+        return np.where(self.u < 0.0, -1.0, 1.0)
+
+    def mend(self, _: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
+        short = dyad.closure.short_m
+        assert short is not None
+        if np.any(short > 0.5 * dyad.closure.rounding_m):
+            raise OpenError(np.broadcast_to(short, self.u.shape))
+        self.unknowns = dyad.first, dyad.second
+        return dyad
+
+
+@dataclass
+class _Passing:
+    """The passage of a dyad through a limit at coordinates ``u`` (T,)."""
+
+    limit: Limit
+    u: Array
+    rates: Rates
+
+    def sign(self, _: Array) -> Array:
+        return np.where(self.u < 0.0, -1.0, 1.0)
+
+    def mend(self, chunk: Chunk, dyad: Dyad[First, Second]) -> Dyad[First, Second]:
+        limit, closure = self.limit, dyad.closure
+        assert closure.short_m is not None
+        short = np.broadcast_to(closure.short_m, self.u.shape)
+        # Beside the limit it closes, but for rounding; beyond its reach the root is not known.
+        beside = self.u * self.u <= REACH * limit.length_rad
+        if not beside.all():
+            raise OpenError(np.where(beside, -np.abs(short), np.abs(short)))
+        short = np.minimum(short, 0.0)
+        first, second = dyad.first, dyad.second
+        index = np.flatnonzero(np.abs(self.u) < limit.piece.window)
+        if index.size:
+            rates, x = self._at(index), self.u[index] / limit.piece.half
+            first = put(first, self.u.shape, index, *limit.piece.first.at(x, rates))
+            second = put(second, self.u.shape, index, *limit.piece.second.at(x, rates))
+        sine = np.where(np.isnan(dyad.sine), 0.0, dyad.sine)
+        return Dyad(first, second, sine, replace(closure, short_m=short))
+
+    def _at(self, index: Index) -> Rates:
+        """The rates of u at some of the samples."""
+        e = self.rates.error
+        each = (self.rates.omega, self.rates.alpha, e.theta, e.omega, e.alpha)
+        omega, alpha, *bounds = (np.broadcast_to(one, self.u.shape)[index] for one in each)
+        return Rates(omega, alpha, AngleError(*bounds))

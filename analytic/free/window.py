@@ -1,0 +1,132 @@
+"""One window of time, solved by Gauss' collocation and Newton's method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.free.gauss import Gauss, sums
+from models.array import Array
+
+Acceleration = Callable[[Array, Array, Array], Array]
+"""u'' at times, coordinates and rates, (T,)."""
+MOST_ROUNDS = 14
+NUDGE = 1e-6
+"""Of coordinates and rates, over their scale, for the derivatives of the acceleration."""
+STALLED = 1e-11
+"""A change of the acceleration, over its largest, at which Newton's method may end because it no
+longer shrinks: rounding."""
+SLOW = 1e-6
+"""Of the coordinate in a window: what moves no further is looked at no closer."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What is large in a motion: its coordinate (at least 1), its rate."""
+
+    u: float
+    v: float
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A window: accelerations at the nodes, and u, u' at its end; as good as there are, where
+    Newton's method has not ``converged``."""
+
+    rule: Gauss
+    long_s: float
+    u0: float
+    v0: float
+    a: Array
+    end: tuple[float, float]
+    by_u: Array
+    by_v: Array
+    converged: bool
+
+    def at(self, after_s: float) -> tuple[float, float]:
+        """u and u' a while after the start [s]: at the end, or hardly beyond it."""
+        if after_s == self.long_s:
+            return self.end
+        share = np.array([after_s / self.long_s])
+        u, v, _ = (float(sums(each[None], share)[0]) for each in self.series())
+        return u, v
+
+    def series(self) -> tuple[Array, Array, Array]:
+        """The coefficients of u, u', u''."""
+        h, own = self.long_s, self.rule.series @ self.a
+        v = h * (self.rule.lift_once @ own)
+        v[0] += self.v0
+        u = h * h * (self.rule.lift_twice @ own)
+        u[:2] += self.u0 + 0.5 * h * self.v0, 0.5 * h * self.v0
+        return u, v, own
+
+    def excess(self, scale: Scale) -> float:
+        """What is cut off of the polynomials over what may be: at most 1 is short enough."""
+        own, h, n = np.abs(self.rule.series @ self.a), self.long_s, self.rule.count
+        tail = float(max(own[-1], own[-2]))
+        rate = max(scale.v, abs(self.v0), SLOW * scale.u / h)
+        room = min(4e-15 * n * n * scale.u / h**2, 2e-14 * n * rate / h)
+        return tail / room
+
+    def changes(self) -> tuple[Array, Array]:
+        """The derivatives by u and u' at the start of those at the end, (2, 2), and of u at the
+        nodes, (2, n): the columns, and rows, are those of a start that is off in u, and in u'."""
+        h, rule = self.long_s, self.rule
+        matrix = _matrix(rule, h, self.by_u, self.by_v)
+        sides = np.stack([self.by_u, self.by_u * h * rule.places + self.by_v], axis=1)
+        a = np.linalg.solve(matrix, sides)
+        end_u = np.array([1.0, h]) + h * h * rule.end_twice @ a
+        end_v = np.array([0.0, 1.0]) + h * rule.end_once @ a
+        within = np.stack([np.ones(rule.count), h * rule.places]) + h * h * (rule.twice @ a).T
+        return np.stack([end_u, end_v]), within
+
+
+def _matrix(rule: Gauss, h: float, by_u: Array, by_v: Array) -> Array:
+    """That of Newton's method for the accelerations at the nodes."""
+    return np.asarray(
+        np.eye(rule.count) - h * h * by_u[:, None] * rule.twice - h * by_v[:, None] * rule.once
+    )
+
+
+def solve_window(
+    rule: Gauss,
+    acceleration: Acceleration,
+    start: tuple[float, float, float],
+    long_s: float,
+    first: Array,
+    scale: Scale,
+) -> Solved | None:
+    """A window from ``start`` (time, u, u'), or None where there is none.
+
+    ``first`` is where it begins, the accelerations at the nodes. Raises whatever ``acceleration``
+    does.
+    """
+    time_s, u0, v0 = start
+    h, n, a = long_s, rule.count, first
+    times = np.tile(time_s + h * rule.places, 3)
+    before, converged = np.inf, False
+    for _ in range(MOST_ROUNDS):
+        u = u0 + h * (rule.places * v0) + h * h * (rule.twice @ a)
+        v = v0 + h * (rule.once @ a)
+        off_u = NUDGE * scale.u
+        # Away from rest, where friction and strokes change.
+        off_v = np.copysign(NUDGE * max(scale.v, float(np.abs(v).max()), 1e-9), v)
+        found = acceleration(
+            times, np.concatenate([u, u + off_u, u]), np.concatenate([v, v, v + off_v])
+        )
+        if not np.isfinite(found).all():
+            return None
+        by_u, by_v = (found[n : 2 * n] - found[:n]) / off_u, (found[2 * n :] - found[:n]) / off_v
+        step = np.linalg.solve(_matrix(rule, h, by_u, by_v), found[:n] - a)
+        a = a + step
+        change = float(np.abs(step).max())
+        size = max(float(np.abs(a).max()), float(np.abs(v).max()) / h, SLOW * scale.u / h**2)
+        stalled = change <= STALLED * size and change > 0.25 * before
+        if converged := change <= 1e-15 * size or stalled:
+            break
+        before = change
+    end_v = v0 + h * float(rule.end_once @ a)
+    end_u = u0 + (h * v0 + h * h * float(rule.end_twice @ a))
+    return Solved(rule, h, u0, v0, a, (end_u, end_v), by_u, by_v, converged)

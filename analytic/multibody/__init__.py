@@ -1,0 +1,1 @@
+"""Forward dynamics in redundant coordinates, with a Lagrange multiplier for every constraint."""

@@ -1,0 +1,18 @@
+"""What an integration gives: the state of an assembly over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from analytic.multibody.passage import Passage
+from models.array import Array
+
+
+@dataclass(frozen=True)
+class Course:
+    """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
+
+    state: Callable[[Array], Array]
+    steps: int
+    passages: tuple[Passage, ...] = ()

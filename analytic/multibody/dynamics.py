@@ -1,0 +1,131 @@
+"""The equations of motion of an assembly: accelerations and multipliers at a state.
+
+    M q'' + Phi_q^T lambda = Q(q, q', t)        Phi_q q'' = gamma - 2 alpha Phi_q q' - beta^2 Phi
+
+with Baumgarte's terms, which let what a constraint is open decay, as the right side of those of
+accelerations; without them alpha and beta are 0. Source: J. Baumgarte, Stabilization of constraints
+and integrals of motion in dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 1972.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.pushes import Pushes, Strokes
+from analytic.multibody.saddle import Saddle
+from models.array import Array
+from models.errors import CrankcheckError
+
+WEAK = 1e-2
+"""A singular value over the largest below which, in a change point, it counts as 0."""
+MOST_PROJECTIONS = 20
+NEAR = 1e-9
+"""A step of a projection, over the longest link or in radians, whose square is below rounding."""
+
+
+@dataclass(frozen=True)
+class Energies:
+    """Kinetic and potential energy, with that of springs [J], and the ``work`` that loads and
+    dampers have done since the start, (T,)."""
+
+    kinetic: Array
+    potential: Array
+    work: Array
+
+    @property
+    def balance(self) -> Array:
+        """What stays as it is but for errors [J], (T,)."""
+        return self.kinetic + self.potential - self.work
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """An assembly that nothing drives, with what acts on it; ``rank`` is how many of its
+    constraints do not follow from others; ``alpha``, ``beta`` [1/s] of Baumgarte."""
+
+    assembly: Assembly
+    pushes: Pushes
+    rank: int
+    alpha: float = 0.0
+    beta: float = 0.0
+
+    @property
+    def redundant(self) -> bool:
+        """Whether some of the constraints follow from others."""
+        return self.rank < self.assembly.equations
+
+    def solve(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
+        """q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where they
+        are not determined, and as `Pushes.on`."""
+        return self._solved(time_s, now, self.pushes.on(time_s, now))
+
+    def _solved(self, time_s: Array, now: Configuration, pushed: Array) -> tuple[Array, Array]:
+        assembly = self.assembly
+        jacobian = assembly.jacobian(now)
+        mass, top = assembly.weigh(now.q, now.rates)
+        top += pushed
+        bottom = assembly.gamma(now)
+        if self.alpha or self.beta:
+            open_rate = (jacobian @ now.rates[:, :, None])[:, :, 0]
+            bottom = bottom - 2.0 * self.alpha * open_rate - self.beta**2 * assembly.gaps(now)
+        seconds, multipliers = np.empty_like(now.q), np.empty_like(bottom)
+        for i in range(len(now.q)):
+            saddle = self._saddle(mass[i], jacobian[i], float(time_s[i]))
+            seconds[i], multipliers[i] = saddle.solve(top[i], bottom[i])
+        return seconds, multipliers
+
+    def multipliers(self, time_s: Array, now: Configuration, seconds: Array) -> Array:
+        """The multipliers (T, m) that go with accelerations q'' (T, n), the smallest ones."""
+        mass, right = self.assembly.weigh(now.q, now.rates)
+        right += self.pushes.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
+        rows = np.swapaxes(self.assembly.jacobian(now), 1, 2)
+        each = zip(rows, right, strict=True)
+        return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
+
+    def _saddle(self, mass: Array, jacobian: Array, time_s: float) -> Saddle:
+        try:
+            return Saddle(mass, jacobian, redundant=self.redundant)
+        except CrankcheckError as error:
+            raise CrankcheckError(f"{self.assembly.scene.name}: at {time_s:g} s {error}") from None
+
+    def rates(self, time_s: float, state: Array, strokes: Strokes) -> Array:
+        """The derivative of a state by time: of q, q' and the work of loads and dampers; the loads
+        of ``strokes`` act or not, whichever way their sliders move."""
+        n, at = self.assembly.size, np.array([time_s])
+        now = self.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
+        pushed = self.pushes.on(at, now, strokes)
+        seconds, _ = self._solved(at, now, pushed)
+        power = (pushed * now.rates).sum(axis=1)
+        for stretch in self.pushes.stretches(now):  # what springs take up they keep
+            power += stretch.spring.rate * (stretch.q - stretch.spring.free) * stretch.rate
+        return np.concatenate([now.rates[0], seconds[0], power])
+
+    def energies(self, now: Configuration, work: Array) -> Energies:
+        """The energies at a configuration, beside the work until then [J]."""
+        assembly = self.assembly
+        pushed = (assembly.mass(now.q) @ now.rates[:, :, None])[:, :, 0]
+        potential = assembly.height_energy(now.q)
+        for stretch in self.pushes.stretches(now):
+            spring = stretch.spring
+            potential = potential + 0.5 * spring.rate * (stretch.q - spring.free) ** 2
+        return Energies(0.5 * (now.rates * pushed).sum(axis=1), potential, work)
+
+    def closed(self, q: Array, rates: Array) -> tuple[Array, Array]:
+        """The coordinates (n,) on the constraints that are next to some, in the norm of the mass
+        matrix, and the rates that the constraints allow."""
+        assembly = self.assembly
+        unit = max(1.0, assembly.scene.longest_m)
+        now = assembly.at_rest(q[None])
+        saddle = Saddle(
+            assembly.mass(now.q)[0], assembly.jacobian(now)[0], redundant=self.redundant
+        )
+        for _ in range(MOST_PROJECTIONS):
+            step, _ = saddle.solve(0.0, -assembly.gaps(now)[0])
+            now = assembly.at_rest(now.q + step)
+            if np.abs(step).max() <= NEAR * unit:
+                break
+        step, _ = saddle.solve(0.0, -assembly.jacobian(now)[0] @ rates)
+        return now.q[0], rates + step

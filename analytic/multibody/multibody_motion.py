@@ -1,0 +1,231 @@
+"""The motion of a mechanism of any mobility that was let go, by the method that integrates it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from analytic.multibody.adaptive import Adaptive
+from analytic.multibody.as_motion import as_motion
+from analytic.multibody.assembly import Configuration
+from analytic.multibody.course import Course
+from analytic.multibody.dynamics import Dynamics, Energies
+from analytic.multibody.fixed_steps import FixedSteps
+from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.outset import Outset
+from analytic.multibody.passage import Passage
+from models.array import Array, Mask
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.samples import samples
+from models.scene import Scene
+
+TOLERANCE = 1e-13
+NUDGE = 1e-6
+"""What the start is changed by to see it grow [rad, or of the longest link]."""
+LOOKS = 2001
+"""Times at which the growth of a change is looked at."""
+MOST_NUMBERS = 4_000_000
+"""Of derivatives of markers that are worked out at a time."""
+
+
+@dataclass(frozen=True)
+class Projection:
+    """The method of order 8 with steps of a size that keeps to ``tolerance``; after each step the
+    state is put back onto the constraints."""
+
+    tolerance: float = TOLERANCE
+
+
+@dataclass(frozen=True)
+class Baumgarte:
+    """Constraints whose violation decays by ``alpha`` and ``beta`` [1/s]; alpha = beta is critical
+    damping. With ``step_s`` [s] by steps of one size, of order 4; without, as `Projection`."""
+
+    alpha: float
+    beta: float
+    step_s: float | None = None
+    tolerance: float = TOLERANCE
+
+    def __post_init__(self) -> None:
+        rates, step = (self.alpha, self.beta), 1.0 if self.step_s is None else self.step_s
+        if not (np.isfinite([*rates, step]).all() and min(rates) >= 0.0 and step > 0.0):
+            raise CrankcheckError(
+                f"Baumgarte: found alpha {self.alpha:g}, beta {self.beta:g} and step_s "
+                f"{self.step_s}; give rates [1/s] of 0 or more, and a step [s] above 0"
+            )
+
+
+Method = Projection | Baumgarte
+
+
+@dataclass(frozen=True)
+class MultibodyMotion:
+    """What a scene does from time 0, when it is let go, to ``until_s``, as one method has it."""
+
+    dynamics: Dynamics
+    method: Method
+    until_s: float
+    start: tuple[Array, Array]
+
+    @property
+    def scene(self) -> Scene:
+        return self.dynamics.assembly.scene
+
+    @cached_property
+    def _course(self) -> Course:
+        return self._integrated(*self.start, self.method)
+
+    def _integrated(self, q: Array, rates: Array, method: Method) -> Course:
+        """The state over time."""
+        if isinstance(method, Baumgarte):
+            dynamics = replace(self.dynamics, alpha=method.alpha, beta=method.beta)
+            if method.step_s is not None:
+                return FixedSteps(dynamics, method.step_s).course(q, rates, self.until_s)
+            return Adaptive(dynamics, method.tolerance, projected=False).course(
+                q, rates, self.until_s
+            )
+        return Adaptive(self.dynamics, method.tolerance, projected=True).course(
+            q, rates, self.until_s
+        )
+
+    def at(self, time_s: Array) -> Motion:
+        """The motion at times [s], (T,), with its reactions. Raises CrankcheckError for times
+        beyond it."""
+        instants = samples(time_s, "time_s")
+        parts = []
+        for some, now, _ in self._configurations(instants):
+            seconds, multipliers = self._solved(some, now)
+            motion = as_motion(self.dynamics.assembly, some, now, seconds)
+            forces = joint_forces(
+                self.scene, self.dynamics.assembly.pin_pairs(), some, -multipliers,
+                np.zeros_like(some),
+            )  # fmt: skip
+            parts.append(replace(motion, forces=forces))
+        return _joined(parts)
+
+    @property
+    def change_points_s(self) -> tuple[float, ...]:
+        """When it has gone through a change point [s]."""
+        return tuple(passage.at_s for passage in self._course.passages)
+
+    def _passing(self, time_s: Array) -> Iterator[tuple[Passage, Mask]]:
+        """The passages through change points, and which of the times [s] are in each."""
+        for passage in self._course.passages:
+            yield passage, (passage.begin_s < time_s) & (time_s < passage.end_s)
+
+    def _solved(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
+        """q'' (T, n) and the multipliers (T, m); in a change point, where the equations do not say
+        them, those of the motion before and after it, and the smallest multipliers."""
+        n, passed = now.q.shape[1], np.zeros(len(time_s), dtype=bool)
+        for _, within in self._passing(time_s):
+            passed |= within
+        if not passed.any():
+            return self._dynamics.solve(time_s, now)
+        seconds = np.empty_like(now.q)
+        multipliers = np.empty((len(time_s), self.dynamics.assembly.equations))
+        if not passed.all():
+            found = self._dynamics.solve(time_s[~passed], now.some(~passed))
+            seconds[~passed], multipliers[~passed] = found
+        for passage, within in self._passing(time_s):
+            seconds[within] = passage.slope(time_s[within])[n : 2 * n].T
+        multipliers[passed] = self._dynamics.multipliers(
+            time_s[passed], now.some(passed), seconds[passed]
+        )
+        return seconds, multipliers
+
+    @property
+    def _dynamics(self) -> Dynamics:
+        """The equations that the method integrates."""
+        method = self.method
+        if isinstance(method, Baumgarte):
+            return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
+        return self.dynamics
+
+    def energy(self, time_s: Array) -> Energies:
+        """The energies at times [s], (T,)."""
+        instants = samples(time_s, "time_s")
+        parts = [
+            self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
+        ]
+        return Energies(
+            *(np.concatenate(own) for own in zip(*(vars(p).values() for p in parts), strict=True))
+        )
+
+    def gap(self, time_s: Array) -> Array:
+        """The largest violation of a constraint at times [s], [m or rad], (T,)."""
+        instants = samples(time_s, "time_s")
+        gaps = [
+            np.abs(self.dynamics.assembly.gaps(now)).max(axis=1, initial=0.0)
+            for _, now, _ in self._configurations(instants)
+        ]
+        return np.concatenate(gaps)
+
+    def _configurations(self, time_s: Array) -> Iterator[tuple[Array, Configuration, Array]]:
+        """Times, all markers then, and the work until then, some times after the other."""
+        if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):
+            raise CrankcheckError(
+                f"{self.scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let "
+                f"go at 0, and integrated up to {self.until_s:g} s"
+            )
+        assembly = self.dynamics.assembly
+        n = assembly.size
+        at_once = max(1, MOST_NUMBERS // (3 * n * assembly.markers))
+        for first in range(0, len(time_s), at_once):
+            some = time_s[first : first + at_once]
+            state = self._course.state(np.minimum(some, self.until_s)).T
+            q, rates = state[:, :n], state[:, n : 2 * n]
+            if isinstance(self.method, Projection):  # between steps too
+                passed = np.zeros(len(some), dtype=bool)
+                for _, within in self._passing(some):
+                    passed |= within
+                for i in np.flatnonzero(~passed):
+                    q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
+            yield some, assembly.at_rates(q, rates), state[:, -1]
+
+    def sensitivity(self, time_s: Array) -> Array:
+        """G (T,): by how much a small change of the start, along any of the freedoms, has grown by
+        then at most, in any coordinate; at least 1."""
+        return np.interp(time_s, *self._growth)
+
+    @cached_property
+    def _growth(self) -> tuple[Array, Array]:
+        time_s = np.linspace(0.0, self.until_s, LOOKS)
+        rough, outset = Projection(1e-10), Outset(self.dynamics.assembly)
+        q, rates = self.start
+        n = len(q)
+        near = self._integrated(q, rates, rough).state(time_s)[:n]
+        growth = np.ones(LOOKS)
+        for direction in outset.freedoms(q):
+            nudged = self.dynamics.closed(q + NUDGE * direction, rates)
+            far = self._integrated(*nudged, rough).state(time_s)[:n]
+            grown = np.abs((far - near) / self.dynamics.assembly.units[:, None]).max(axis=0) / NUDGE
+            growth = np.maximum(growth, grown)
+        return time_s, np.maximum.accumulate(growth)
+
+
+def _joined(parts: list[Motion]) -> Motion:
+    """Motions one after the other."""
+    if len(parts) == 1:
+        return parts[0]
+    first = parts[0]
+
+    def own(kind: str) -> dict[str, object]:
+        return {
+            name: type(body)(
+                *(
+                    np.concatenate([getattr(getattr(p, kind)[name], key) for p in parts])
+                    for key in vars(body)
+                )
+            )
+            for name, body in getattr(first, kind).items()
+        }
+
+    forces = type(first.forces).joined([p.forces for p in parts])  # type: ignore[union-attr,misc]
+    return Motion(
+        np.concatenate([p.time_s for p in parts]),
+        own("links"), own("points"), own("sliders"), forces=forces,  # type: ignore[arg-type]
+    )  # fmt: skip

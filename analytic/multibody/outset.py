@@ -1,0 +1,244 @@
+"""The coordinates and rates with which a motion starts, from what a scene says of its start.
+
+The positions are found by Newton's method on all constraints. As many of the named angles and
+displacements as the mechanism has freedoms count as they are, the driver's first; further ones are
+where Newton's method starts, and have to be as near as somebody writes them down who read them off
+a drawing. The rates are those that the constraints allow, and have the named values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.placing import Placing
+from analytic.multibody.pushes import Pushes
+from models.array import Array
+from models.errors import CrankcheckError, few
+from models.joints import sliding_angle, sliding_body
+from models.motion import State
+from models.poses import frames
+
+ROUGH_RAD, ROUGH = math.radians(1.0), 0.01
+"""What a named angle, and a named displacement over the longest link, may be off by where others
+say already where the mechanism is."""
+SAME = 1e-9
+"""What a named speed may be off by where others say it already, over the largest."""
+INDEPENDENT = 1e-7
+"""A singular value over the largest, from which on rows count as independent of each other."""
+MOST_STEPS = 60
+EPS = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class _Named:
+    """A value that the start names: of a coordinate, with the derivatives of that (n,)."""
+
+    words: str
+    value: float
+    found: float
+    row: Array
+    rough: float
+
+
+@dataclass(frozen=True)
+class Outset:
+    """Finds the start of the scene of an assembly."""
+
+    assembly: Assembly
+
+    def find(self, near: State | None) -> tuple[Array, Array]:
+        """The coordinates and rates (n,) of the start.
+
+        Parameters
+        ----------
+        near : State or None
+            A state to look for the position from; None for what the scene names. Of a scene that
+            is driven the rates are those of the state.
+
+        Raises
+        ------
+        CrankcheckError
+            A start in which the joints are open, or which is not named whole; speeds that
+            contradict each other.
+        """
+        scene = self.assembly.scene
+        rough = self._guess() if near is None else self._from_state(near)[0]
+        if near is not None and not scene.is_free:
+            return self._closed(rough, []), self._from_state(near)[1]
+        q = self._positioned(rough, whole=near is None)
+        return q, self._moving(q)
+
+    def _from_state(self, near: State) -> tuple[Array, Array]:
+        """Coordinates and rates at a state; a block without mass has a frame too."""
+        assembly = self.assembly
+        scene, placed = assembly.scene, frames(assembly.scene, near)
+        q, rates = np.zeros(assembly.size), np.zeros(assembly.size)
+        sliders = {sliding_body(s): s for s in scene.sliders.values() if s.link is None}
+        for body, at in assembly.at.items():
+            if body in placed:
+                frame = placed[body]
+                q[at : at + 3] = *frame.origin, frame.theta
+                rates[at : at + 3] = *frame.velocity, frame.omega
+            else:
+                slider = sliders[body]
+                guide = placed[slider.on]
+                q[at : at + 3] = *near.position[slider.point], guide.theta + sliding_angle(slider)
+                rates[at : at + 3] = *near.velocity[slider.point], guide.omega
+        return q, rates
+
+    def _guess(self) -> Array:
+        """Every body where the angles and displacements that the scene names have it.
+
+        Raises CrankcheckError, with the links that have to be named.
+        """
+        placing = Placing(self.assembly)
+        placing.spread()
+        missing = [body for body in self.assembly.bodies if body not in placing.origins]
+        if missing:
+            unknown = [body for body in missing if body not in placing.angles] or missing
+            raise CrankcheckError(
+                f"{self.assembly.scene.name}: where {few(unknown, 8)} start is not named; give "
+                "their angles in start.angles_deg, to a degree"
+            )
+        return np.concatenate(
+            [[*placing.origins[body], placing.angles[body]] for body in self.assembly.bodies]
+        )
+
+    def _named(self, now: Configuration, *, rates: bool) -> Iterator[_Named]:
+        """The values that the start names, the driver's first, at coordinates."""
+        scene, start = self.assembly.scene, self.assembly.scene.start
+        theta, omega, _ = (float(each[0]) for each in scene.driver.law.at(np.zeros(1)))
+        own = {scene.driver.link: omega if rates else theta}
+        turning = start.rates_rad_s if rates else start.angles_rad
+        sliding = start.speeds_m_s if rates else start.displacements_m
+        key = "rates_rad_s" if rates else "angles_deg"
+        for link, value in [*own.items(), *turning.items()]:
+            marker = self.assembly.frames[link]
+            found = float((now.velocity if rates else now.place)[0, marker, 2])
+            turns = 0.0 if rates else math.tau * round((value - found) / math.tau)
+            words = "driver" if link in own else f"start.{key}.{link}"
+            yield _Named(words, value - turns, found, now.gradient[0, marker, 2], ROUGH_RAD)
+        pushes = Pushes(self.assembly, now.q[0]) if sliding else None
+        for name, value in sliding.items():
+            assert pushes is not None
+            slide = pushes.slide(name, now)
+            found = float((slide.speed if rates else slide.displacement)[0])
+            words = f"start.{'speeds_m_s' if rates else 'displacements_m'}.{name}"
+            yield _Named(words, value, found, slide.gradient[0], ROUGH * scene.longest_m)
+
+    def _positioned(self, rough: Array, *, whole: bool) -> Array:
+        """The closed position next to a rough one, with the named values that count."""
+        now = self.assembly.at_rest(rough[None])
+        rows, counting = self.assembly.jacobian(now)[0], []
+        rank = self._rank(rows)
+        for named in self._named(now, rates=False):
+            more = np.vstack([rows, named.row])
+            if self._rank(more) > rank:
+                rows, rank = more, rank + 1
+                counting.append(named.words)
+        if whole and rank < self.assembly.size:
+            raise CrankcheckError(
+                f"{self.assembly.scene.name}: {self.assembly.size - rank} more of the angles of "
+                f"links have to be named in start.angles_deg; {few(counting, 8)} say where the "
+                "others are"
+            )
+        q = self._closed(rough, counting)
+        for named in self._named(self.assembly.at_rest(q[None]), rates=False):
+            if abs(named.value - named.found) > named.rough:
+                raise CrankcheckError(self._apart(named, counting))
+        return q
+
+    def _apart(self, named: _Named, counting: list[str]) -> str:
+        """That a named value is none that the joints allow."""
+        unit, by = ("m", 1.0) if named.words.startswith("start.displ") else ("deg", 180.0 / math.pi)
+        return (
+            f"{self.assembly.scene.name}: {named.words} is {by * named.value:.6g} {unit}, and the "
+            f"joints are open there by {by * abs(named.value - named.found):.3g} {unit}: with "
+            f"{few(counting, 8)} it is {by * named.found:.6g} {unit}"
+        )
+
+    def _closed(self, rough: Array, counting: list[str]) -> Array:
+        """Newton's method from a rough position, by least squares. Raises CrankcheckError."""
+        assembly, q = self.assembly, rough
+        unit, last = self.assembly.units, math.inf
+        for _ in range(MOST_STEPS):
+            now = assembly.at_rest(q[None])
+            rows, left = [assembly.jacobian(now)[0]], [assembly.gaps(now)[0]]
+            for named in self._named(now, rates=False) if counting else ():
+                if named.words in counting:
+                    rows.append(named.row[None])
+                    left.append(np.array([named.found - named.value]))
+            step = self._least(np.vstack(rows), -np.concatenate(left))
+            size = float(np.abs(step / unit).max())
+            if size > 0.5:  # no further than half a radian at a time
+                step *= 0.5 / size
+            q = q + step
+            if size <= 4.0 * EPS or (size < 1e-9 and size >= 0.5 * last):
+                break
+            last = size
+        open_by = np.abs(assembly.gaps(assembly.at_rest(q[None]))[0]).max(initial=0.0)
+        if open_by > 1e-10 * assembly.scene.longest_m:
+            raise CrankcheckError(
+                f"{assembly.scene.name}: the start cannot be assembled: at {self._said(counting)} "
+                f"the joints stay open by {open_by:.3g} m; name other angles"
+            )
+        return q
+
+    def _said(self, counting: list[str]) -> str:
+        theta = float(self.assembly.scene.driver.law.at(np.zeros(1))[0][0])
+        others = [words for words in counting if words != "driver"]
+        return few([f"{math.degrees(theta):.6g} deg of the driver", *others], 8)
+
+    def _moving(self, q: Array) -> Array:
+        """The rates that the joints allow and that have the named values."""
+        assembly, scene = self.assembly, self.assembly.scene
+        now = assembly.at_rest(q[None])
+        named = list(self._named(now, rates=True))
+        rows = np.vstack([assembly.jacobian(now)[0], *(one.row for one in named)])
+        values = np.array([one.value for one in named])
+        if not values.any():
+            return np.zeros(assembly.size)
+        free = assembly.size - self._rank(rows)
+        if free:
+            raise CrankcheckError(
+                f"{scene.name}: the start moves, and {free} of its freedoms have no speed; give "
+                "start.rates_rad_s of as many more links, 0 where they do not turn"
+            )
+        rates = self._least(rows, np.concatenate([np.zeros(assembly.equations), values]))
+        off = [abs(float(one.row @ rates) - one.value) for one in named]
+        stuck = float(np.abs(assembly.jacobian(now)[0] @ rates).max(initial=0.0))
+        worst = int(np.argmax(off))
+        if max(off[worst], stuck) > SAME * max(1.0, scene.longest_m) * float(np.abs(values).max()):
+            raise CrankcheckError(
+                f"{scene.name}: {few([one.words for one in named], 8)} contradict each other: the "
+                f"joints allow no speeds of these values; {named[worst].words} is "
+                f"{named[worst].value:.6g}, and {named[worst].row @ rates:.6g} in the nearest "
+                "that they allow"
+            )
+        return rates
+
+    def _rank(self, rows: Array) -> int:
+        return int(np.linalg.matrix_rank(self.assembly.scaled(rows), tol=INDEPENDENT))
+
+    def _least(self, rows: Array, right: Array) -> Array:
+        """The smallest of the solutions, or of the nearest to one."""
+        scaled = rows * self.assembly.units
+        size = np.abs(scaled).max(axis=1, initial=0.0)
+        size[size == 0.0] = 1.0
+        found = np.linalg.lstsq(scaled / size[:, None], right / size, rcond=INDEPENDENT)[0]
+        return np.asarray(found * self.assembly.units)
+
+    def freedoms(self, q: Array) -> Array:
+        """Directions of q that all joints allow, one a row, each of the largest entry 1 in the
+        units of coordinates, (f, n)."""
+        _, sizes, directions = np.linalg.svd(
+            self.assembly.scaled(self.assembly.jacobian(self.assembly.at_rest(q[None]))[0])
+        )
+        rank = int((sizes > INDEPENDENT).sum())
+        free = directions[rank:]
+        return np.asarray(free / np.abs(free).max(axis=1, keepdims=True) * self.assembly.units)

@@ -1,0 +1,149 @@
+"""Loads and springs of a scene as generalised forces on its coordinates, in an assembly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.multibody.assembly import Assembly, Configuration
+from models.array import Array
+from models.loads import Load
+from models.springs import LineSpring, PinSpring, Spring
+
+Strokes = Mapping[str, bool]
+"""Whether each load that acts on one stroke of a slider does so."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The q of a spring [m or rad], its rate, and its derivatives by the coordinates, (T,), (T,)
+    and (T, n)."""
+
+    spring: Spring
+    q: Array
+    rate: Array
+    gradient: Array
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Displacement [m] and speed [m/s] of a slider, (T,), and the derivatives of the displacement
+    by the coordinates, (T, n)."""
+
+    displacement: Array
+    speed: Array
+    gradient: Array
+
+
+class Pushes:
+    """What acts on an assembly from outside or between its bodies, but for weights.
+
+    ``turns`` are the whole turns by which the angle of each spring in a pin is ahead of that
+    within half a turn of its free angle, as the motion starts.
+    """
+
+    def __init__(self, assembly: Assembly, start: Array) -> None:
+        self.assembly, self.scene = assembly, assembly.scene
+        now = assembly.at_rest(start[None])
+        self._turns = {
+            spring.name: float(np.round((self._turned(spring, now)[0] - spring.free) / math.tau))
+            for spring in self.scene.springs.values()
+            if isinstance(spring, PinSpring)
+        }
+
+    def on(self, time_s: Array, now: Configuration, strokes: Strokes | None = None) -> Array:
+        """The generalised forces at times [s] and a configuration (T, n).
+
+        ``strokes`` says for loads on one stroke whether they act, which otherwise the speed of the
+        slider does. Raises CrankcheckError as `Load.magnitude`.
+        """
+        right = np.zeros_like(now.q)
+        for load in self.scene.loads.values():
+            marker = self._marker(load)
+            size = self.magnitude(load, time_s, now, strokes)
+            if load.point is None:
+                right += size[:, None] * now.gradient[:, marker, 2]
+                continue
+            angle = np.full_like(size, load.direction_rad)
+            if load.frame == "body":
+                angle = angle + now.place[:, self.assembly.frames[load.body], 2]
+            force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            right += (force[:, None] @ now.gradient[:, marker, :2])[:, 0]
+        for stretch in self.stretches(now):
+            spring = stretch.spring
+            pull = spring.rate * (stretch.q - spring.free) + spring.damping * stretch.rate
+            right -= pull[:, None] * stretch.gradient
+        return right
+
+    def _marker(self, load: Load) -> int:
+        if load.point is None:
+            return self.assembly.frames[load.body]
+        return self.assembly.marker(load.body, load.point)
+
+    def magnitude(
+        self, load: Load, time_s: Array, now: Configuration, strokes: Strokes | None
+    ) -> Array:
+        """The force or torque of a load, (T,)."""
+        speed = None
+        if load.slider is not None and load.stroke != "both" and strokes is None:
+            speed = self.slide(load.slider, now).speed
+        size = load.magnitude(self.over(load, time_s, now), speed)
+        if strokes is not None and not strokes.get(load.name, True):
+            return np.zeros_like(size)
+        return size
+
+    def over(self, load: Load, time_s: Array, now: Configuration) -> Array:
+        """What the magnitude of a load goes by, in the unit of `Load.over`, (T,)."""
+        if load.over == "time":
+            return time_s
+        if load.over == "angle":
+            return now.place[:, self.assembly.frames[self.scene.driver.link], 2]
+        if load.over == "omega":
+            return now.velocity[:, self.assembly.frames[load.body], 2]
+        assert load.slider is not None
+        slide = self.slide(load.slider, now)
+        return slide.displacement if load.over == "displacement" else slide.speed
+
+    def slide(self, name: str, now: Configuration) -> Slide:
+        """How far a slider is along its line."""
+        tip, guide = self.assembly.tips[name], self.assembly.guides[name]
+        angle = now.place[:, guide, 2]
+        along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        away = now.place[:, tip, :2] - now.place[:, guide, :2]
+        aside = (across * away).sum(axis=1)  # 0 but for what the joint is open
+        drawn = now.gradient[:, tip, :2] - now.gradient[:, guide, :2]
+        gradient = (along[:, None] @ drawn)[:, 0] + aside[:, None] * now.gradient[:, guide, 2]
+        speed = (gradient * now.rates).sum(axis=1)
+        return Slide((along * away).sum(axis=1), speed, gradient)
+
+    def stretches(self, now: Configuration) -> Iterator[Stretch]:
+        """How far every spring is stretched."""
+        for spring in self.scene.springs.values():
+            if isinstance(spring, LineSpring):
+                yield self._line(spring, now)
+            elif isinstance(spring, PinSpring):
+                first, second = (self.assembly.frames[body] for body in spring.bodies)
+                gradient = now.gradient[:, second, 2] - now.gradient[:, first, 2]
+                q = self._turned(spring, now) - math.tau * self._turns[spring.name]
+                yield Stretch(spring, q, (gradient * now.rates).sum(axis=1), gradient)
+            else:
+                slide = self.slide(spring.slider, now)
+                yield Stretch(spring, slide.displacement, slide.speed, slide.gradient)
+
+    def _turned(self, spring: PinSpring, now: Configuration) -> Array:
+        first, second = (now.place[:, self.assembly.frames[body], 2] for body in spring.bodies)
+        return np.asarray(second - first)
+
+    def _line(self, spring: LineSpring, now: Configuration) -> Stretch:
+        a, b = (self.assembly.carriers[point][1] for point in spring.points)
+        way = now.place[:, b, :2] - now.place[:, a, :2]
+        length = np.hypot(way[:, 0], way[:, 1])
+        # Of no length it has no direction, and whatever it pulls with pulls nowhere.
+        along = way / np.where(length > 0.0, length, 1.0)[:, None]
+        drawn = now.gradient[:, b, :2] - now.gradient[:, a, :2]
+        gradient = (along[:, None] @ drawn)[:, 0]
+        return Stretch(spring, length, (gradient * now.rates).sum(axis=1), gradient)

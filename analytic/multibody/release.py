@@ -1,0 +1,104 @@
+"""Let a mechanism go, of any mobility, by the equations of motion of all its bodies at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.multibody.as_motion import as_motion
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.multibody_motion import Method, MultibodyMotion, Projection
+from analytic.multibody.outset import Outset
+from analytic.multibody.pushes import Pushes
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import State
+from models.scene import Scene
+
+PROJECTED = Projection()
+LIGHT = 1e-12
+"""The mass of a freedom over that of the heaviest, below which it counts as none."""
+
+
+def release_multibody(
+    scene: Scene, until_s: float, method: Method = PROJECTED, *, near: State | None = None
+) -> MultibodyMotion:
+    """The motion of a scene from its start, when it is let go.
+
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism of any mobility, with its masses. If its driver follows a law, it is let go at
+        time 0 of that.
+    until_s : float
+        For how long [s].
+    method : Method
+        `Projection` is to about 1e-11 times the sensitivity; `Baumgarte` shows what that costs.
+    near : State or None
+        Where to look for the position of the start; None for a scene that names the angles of its
+        links in ``[start]``.
+
+    Raises
+    ------
+    CrankcheckError
+        A start that is open, not named whole, or in a change point; speeds that contradict each
+        other; a freedom without mass; friction; an integration that fails.
+    """
+    dynamics, q, rates = _ready(scene, near)
+    return MultibodyMotion(dynamics, method, until_s, (q, rates))
+
+
+def start_state(scene: Scene, near: State | None = None) -> State:
+    """A scene as it is let go, with the accelerations of that instant; of any mobility.
+
+    Parameters and errors as those of `release_multibody`.
+    """
+    dynamics, q, rates = _ready(scene, near)
+    now = dynamics.assembly.at_rates(q[None], rates[None])
+    at = np.zeros(1)
+    seconds, _ = dynamics.solve(at, now)
+    return as_motion(dynamics.assembly, at, now, seconds).state()
+
+
+def _ready(scene: Scene, near: State | None) -> tuple[Dynamics, Array, Array]:
+    """The equations of a scene, and its coordinates and rates at the start."""
+    if scene.friction:
+        raise CrankcheckError(
+            f"{scene.name}: friction in {', '.join(scene.friction)}, which the equations of motion "
+            "with multipliers do not have here; leave it out, or give dampers"
+        )
+    assembly = Assembly(scene)
+    q, rates = Outset(assembly).find(near)
+    free = Outset(assembly).freedoms(q)
+    dynamics = Dynamics(assembly, Pushes(assembly, q), assembly.size - len(free))
+    _check_start(dynamics, q, free)
+    return dynamics, q, rates
+
+
+def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
+    """Raises CrankcheckError for a start in a change point, and for a freedom without mass."""
+    assembly, count = dynamics.assembly, len(free)
+    if count == 0:
+        raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
+    mass = assembly.mass(q[None])[0]
+    masses = np.linalg.eigvalsh(free @ mass @ free.T)
+    if masses[0] <= LIGHT * max(masses[-1], np.abs(mass).max()):
+        raise CrankcheckError(
+            f"{assembly.scene.name}: {int((masses <= LIGHT * masses[-1]).sum()) or 1} of its "
+            f"{count} freedoms moves nothing that has a mass; give links or sliders a mass"
+        )
+    if dynamics.redundant and _freer(dynamics, q, free):
+        raise CrankcheckError(
+            f"{assembly.scene.name}: it starts in a change point, where it is free to go on in "
+            "several ways, and its accelerations are not determined; let it go beside it"
+        )
+
+
+def _freer(dynamics: Dynamics, q: Array, free: Array) -> bool:
+    """Whether a position has more freedoms than those next to it."""
+    outset = Outset(dynamics.assembly)
+    for direction in free:
+        beside, _ = dynamics.closed(q + 1e-3 * direction, np.zeros_like(q))
+        if len(outset.freedoms(beside)) < len(free):
+            return True
+    return False

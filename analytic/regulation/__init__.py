@@ -1,0 +1,1 @@
+"""How evenly a machine runs over its cycle, and the flywheel that makes it run so."""

@@ -1,0 +1,76 @@
+"""What the energy of a free run has drifted by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from models.array import Array
+from models.scene import Scene
+from reports.compare.errors import Error
+from reports.compare.free.free_beside import FreeBeside
+from reports.quantities.free import ENERGY
+
+SHARE = 0.1
+"""The least part of a run that a mean is taken over, and half of it the most."""
+WORKED = 1e-9
+"""The least work, over the largest kinetic energy, that is some."""
+
+
+def energy_rows(beside: FreeBeside) -> list[Error]:
+    """The drift of the energy: the mean over the last window less that over the first.
+
+    An engine's energy also comes and goes with its motion, by an offset of second order that is
+    none of its drift. What loads and dampers do is taken off, as the reference has it; it is known
+    at the true place and not at the engine's, so that the drift is over the sensitivity there.
+    """
+    run = beside.run
+    if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
+        return []
+    time_s = run.velocity_time_s
+    energy = getattr(beside.let_go, "energy", None)
+    if energy is None:
+        return []
+    known = energy(np.maximum(time_s, 0.0))
+    largest = float(np.max(known.kinetic))
+    if not largest > 0.0:
+        return []
+    off = run.energy.total_j - known.work
+    change = drift(off, time_s, window_s(beside.scene, float(time_s[-1] - time_s[0])))
+    worked = float(np.ptp(known.work)) > WORKED * largest
+    size = abs(change) / (beside.pure_growth if worked else 1.0)
+    measure = ENERGY.of("mechanism")
+    return [
+        Error(
+            quantity=ENERGY.name,
+            body_kind="mechanism",
+            body="mechanism",
+            source="reported",
+            kind="total",
+            unit=measure.unit,
+            scale=largest,
+            maximum=size,
+            rms=size,
+            final=size,
+            time_of_maximum_s=float(time_s[-1]),
+            driver_at_maximum_rad=float(beside.driver_rad[-1]),
+            bound=0.0,
+            samples=int(time_s.size),
+        )
+    ]
+
+
+def window_s(scene: Scene, lasts_s: float) -> float:
+    """How long a mean is taken over [s]: a period of a pendulum of the longest link, or a tenth of
+    the run where that is longer; half of the run at most."""
+    weight = math.hypot(*scene.gravity_m_s2)
+    swing = math.tau * math.sqrt(scene.longest_m / weight) if weight else 0.0
+    return min(max(SHARE * lasts_s, swing), 0.5 * lasts_s)
+
+
+def drift(series: Array, time_s: Array, over_s: float) -> float:
+    """The mean of a series over its last while less that over its first."""
+    first = series[time_s <= time_s[0] + over_s]
+    last = series[time_s >= time_s[-1] - over_s]
+    return float(np.mean(last) - np.mean(first))

@@ -1,0 +1,72 @@
+"""A run that was let go, beside the motion that its masses and forces give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.array import Array
+from models.motion import Motion
+from reports.compare.beside import Beside
+from reports.compare.completeness import incomplete
+from reports.compare.tracks import Track
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    from analytic.free.free_motion import FreeMotion
+
+
+@dataclass(frozen=True)
+class FreeBeside(Beside):
+    """A run as far as the truth of it is known; ``whole_run`` goes on to its own end.
+
+    Errors at the same time are over the sensitivity of the motion where they are judged: by so
+    much as a small change of the start grows, the truth itself is uncertain to anybody who builds
+    the mechanism.
+    """
+
+    whole_run: Run = field(kw_only=True)
+    let_go: FreeMotion = field(kw_only=True)
+
+    @cached_property
+    def at_crank(self) -> Motion:
+        """The truth in the position that the run's own coordinate has at each instant."""
+        return self.let_go.beside(self.motion)
+
+    @cached_property
+    def driver_rad(self) -> Array:
+        return self.driver_at(self.motion.time_s, self.reference)
+
+    @cached_property
+    def growth(self) -> Array:
+        """The sensitivity at the logged instants, (T,)."""
+        return self.let_go.sensitivity(self.motion.time_s)
+
+    def driver_at(self, time_s: Array, reference: Motion) -> Array:
+        return reference.links[self.scene.driver.link].theta
+
+    def judged(self, track: Track, time_s: Array) -> Track:
+        """The error at the same time over the sensitivity; joints are closed at any time."""
+        if track.quantity == "gap":
+            return track
+        growth = self.let_go.sensitivity(time_s)
+        over = growth[:, None] if track.error.ndim == 2 else growth
+        return replace(track, error=track.error / over, bound=track.bound / growth)
+
+    @property
+    def incomplete(self) -> str:
+        return incomplete(self.whole_run)
+
+    @property
+    def left_out(self) -> int:
+        """How many samples are not judged, as the truth is not known well enough there."""
+        logged = self.whole_run.motion
+        return 0 if logged is None else logged.time_s.size - self.motion.time_s.size
+
+    @property
+    def pure_growth(self) -> float:
+        """The largest sensitivity."""
+        return float(np.max(self.growth))

@@ -1,0 +1,162 @@
+"""The errors of a run that was let go: phase, places and rates at the same time over the
+sensitivity of the motion, the geometry at the run's own angle, and what has to be conserved."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+
+import numpy as np
+
+from analytic.forces.jolts import jolts
+from models.array import Array
+from models.errors import CrankcheckError
+from models.poses import mass_ratio
+from reports.compare.change_points import conditioning
+from reports.compare.curvature import curvature
+from reports.compare.error_rows import Instants, instants_of, whole_row
+from reports.compare.errors import Error, Errors
+from reports.compare.force_rows import force_rows
+from reports.compare.free.energy_drift import energy_rows
+from reports.compare.free.free_beside import FreeBeside
+from reports.compare.free.free_branch import free_departure
+from reports.compare.free.free_facts import FreeFacts
+from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
+from reports.compare.series import length
+from reports.compare.tracks import Track
+from reports.compare.uneven import uneven, unevenly_turned
+from reports.quantities.free import GEOMETRY, PHASE
+
+COURSE = 400
+"""Instants at which the growth of the errors is kept."""
+LEAST_SINE = 0.3
+"""Of a transmission angle, where the driver passes a limit of its own: near it the geometry is that
+of another coordinate, which is not singular there."""
+TWICE = 4.0
+"""Roundings of a sum in a sum, see `reports.compare.drive_rounding`."""
+
+
+def free_errors(beside: FreeBeside) -> Errors:
+    """The errors of a run that was let go, as far as the truth is known."""
+    run, reference, scene = beside.run, beside.reference, beside.scene
+    at = instants_of(beside, beside.motion.time_s, reference)
+    same_time = _same_time(beside)
+    geometry, notes = _geometry(beside, at)
+    reported, not_reported = reported_rows(beside)
+    borne = force_rows(beside)
+    jolt = jolts(scene, beside.whole)
+    far = uneven(scene, reference, at.driver_rad)
+    facts = _facts(beside, same_time)
+    return Errors(
+        rows=(
+            *_phase_and_places(beside, same_time, at),
+            *geometry,
+            *whole_rows(beside, at, "closure"),
+            *reported,
+            *differenced_rows(beside, at),
+            *energy_rows(beside),
+            *borne.rows,
+        ),
+        not_reported=(*not_reported, *borne.not_reported),
+        notes=(*notes, *_notes(beside, facts), *borne.notes),
+        curvature=curvature(scene, beside.whole),
+        conditioning=max(
+            conditioning(reference, at.driver_rad), LEAST_SINE if facts.passages else 0.0
+        ),
+        step_rad=scene.driver.law.peak_speed_rad_s * run.dt_s,
+        missing=beside.missing,
+        incomplete=beside.incomplete or borne.incomplete,
+        uncertain={key: bound / facts.sensitivity for key, bound in uncertain(beside).items()},
+        departure=free_departure(beside),
+        summed_rad=_summed(at, run.steps),
+        jolt=float(jolt[0]),
+        worst_jolt=float(np.max(jolt)),
+        mass_ratio=mass_ratio(scene),
+        starts_in_passage=bool(np.any(at.passed[: at.first])),
+        uneven={body: size / facts.sensitivity for body, size in far.items()},
+        uneven_rates=unevenly_turned(scene, far),
+        contradictions=borne.contradictions,
+        unbalanced=borne.unbalanced,
+        start_load=borne.start_load,
+        inertia_share=borne.inertia_share,
+        travel_rad=_travel(beside),
+        free=facts,
+    )
+
+
+def free_places(beside: FreeBeside) -> list[Error]:
+    """Phase, places at the same time, geometry and gaps alone."""
+    at = instants_of(beside, beside.motion.time_s, beside.reference)
+    return [
+        *_phase_and_places(beside, _same_time(beside), at),
+        *_geometry(beside, at)[0],
+        *whole_rows(beside, at, "closure"),
+    ]
+
+
+def _same_time(beside: FreeBeside) -> tuple[Track, ...]:
+    """The phase and all places against the truth at the same time, as they are."""
+    return (*beside.tracks((PHASE.name,), beside.reference), *beside.places)
+
+
+def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants) -> Iterable[Error]:
+    """Errors at the same time, as they are and over the sensitivity."""
+    for track in tracks:
+        yield whole_row(beside.judged(track, at.time_s), at)
+        yield whole_row(track, at, kind="raw")
+
+
+def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
+    """Errors against the truth in the position of the run's own coordinate, or a note of why there
+    are none."""
+    if not np.all(np.isfinite(beside.crank)):
+        return [], ("no geometry: the logged angle of the driver is not finite",)
+    try:
+        tracks = beside.tracks((GEOMETRY.name,), beside.at_crank)
+    except CrankcheckError as error:
+        return [], (f"no geometry: the run left the range of its own coordinate ({error})",)
+    return [whole_row(track, at) for track in tracks], ()
+
+
+def _travel(beside: FreeBeside) -> float:
+    """The angle that the driver turns through, weighed as `Errors.travel_rad` says."""
+    speed = np.abs(beside.reference.links[beside.scene.driver.link].omega)
+    peak = beside.scene.driver.law.peak_speed_rad_s
+    return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
+
+
+def _summed(at: Instants, steps: int) -> float:
+    """The most that rounding makes of an angle that is added up twice in so many steps [rad]."""
+    farthest = float(np.max(np.abs(at.driver_rad)))
+    return TWICE * steps * sys.float_info.epsilon / 2.0 * farthest
+
+
+def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
+    """How the errors grow, at `COURSE` instants."""
+    worst: Array = np.zeros_like(beside.motion.time_s)
+    for track in same_time:
+        pure = length(track.error) / track.scale
+        worst = np.maximum(worst, np.where(np.isfinite(pure), pure, np.inf))
+    kept = np.unique(np.linspace(0, worst.size - 1, COURSE).round().astype(np.intp))
+    raw, judged = np.maximum.accumulate(worst), np.maximum.accumulate(worst / beside.growth)
+    time_s = beside.motion.time_s
+    return FreeFacts(
+        sensitivity=beside.pure_growth,
+        until_s=float(time_s[-1]),
+        left_out=beside.left_out,
+        time_s=time_s[kept],
+        raw=raw[kept],
+        judged=judged[kept],
+        passages=sum(passage.time_s <= time_s[-1] for passage in beside.let_go.passages),
+    )
+
+
+def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
+    """What is to be told of the truth."""
+    if facts.left_out:
+        yield (
+            f"the truth ends at t = {facts.until_s:.4g} s, where it is no longer known to a "
+            f"quarter of the limit: {facts.left_out} samples after it are not judged"
+        )
+    if facts.passages:
+        yield f"the driver turns back at {facts.passages} limits of its angle on the way"

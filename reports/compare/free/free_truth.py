@@ -1,0 +1,107 @@
+"""The truth of a mechanism that was let go: integrated once, and asked for at sets of instants."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic.kinematics import solve_driven
+from models.array import Array
+from models.motion import Motion, State
+from models.released import Released
+from models.scene import Driver, Scene
+from reports.compare.beside import Beside, Truth
+from reports.compare.free.first_samples import first_samples
+from reports.compare.free.free_beside import FreeBeside
+from reports.compare.free.motion_parts import one_after_another
+from reports.quantities.free import PHASE
+from sim.engine import Run
+
+if TYPE_CHECKING:
+    from analytic.free.free_motion import FreeMotion
+
+LEAST_KNOWN = 0.25
+"""What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
+
+BEYOND = 1.01
+"""How much longer than a run is integrated: some velocities belong to half a step after it, and all
+steps of a sweep share one motion."""
+
+
+@lru_cache(maxsize=2)
+def _motion(pickled: bytes, until_s: float) -> FreeMotion:
+    """The motion of a scene, which may come from another process: kept by what it holds."""
+    from analytic.free.release import release  # loads scipy: for free motion alone
+
+    return release(pickle.loads(pickled), until_s)
+
+
+def free_truth(
+    scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
+) -> FreeTruth:
+    """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
+    `analytic.free.release`."""
+    motion = _motion(pickle.dumps(scene), float(f"{BEYOND * steps * dt_s:.9g}"))
+    peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
+    law = Released(
+        float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
+    )
+    given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
+    numbers = PHASE.criteria[0].tolerance
+    budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)
+    paced = replace(scene, driver=Driver(scene.driver.link, law))
+    return FreeTruth(paced, let_go=motion, known_rad=LEAST_KNOWN * (given or budget))
+
+
+@dataclass(frozen=True)
+class FreeTruth(Truth):
+    """The reference of a scene that is let go; ``scene`` has the largest speed of its driver as
+    that of its start, which errors of rates are over. Samples count as long as what the truth may
+    be off by, over the sensitivity, is at most ``known_rad``."""
+
+    let_go: FreeMotion = field(kw_only=True)
+    known_rad: float = field(kw_only=True)
+
+    @property
+    def start(self) -> State:
+        return self.at(np.zeros(1)).state()
+
+    def _solved(self, time_s: Array) -> Motion:
+        if time_s.size and time_s[0] < 0.0:
+            early = self._before(time_s[time_s < 0.0])
+            return one_after_another(early, self.at(time_s[time_s >= 0.0]))
+        return self.let_go.at(time_s, bound=self.bound)
+
+    def _before(self, time_s: Array) -> Motion:
+        """The motion that leads to the start, within a step of it: there some engines have the
+        velocities of their first sample. The third rate of the driver is taken as constant."""
+        link, h = self.scene.driver.link, -float(time_s[0])
+        early = self.let_go.at(np.array([0.0, h, 2.0 * h])).links[link]
+        theta, omega, alpha = early.theta[0], early.omega[0], early.alpha[0]
+        jerk = (4.0 * early.alpha[1] - 3.0 * alpha - early.alpha[2]) / (2.0 * h)
+        t = time_s
+        return solve_driven(
+            self.scene,
+            theta + t * (omega + t * (alpha / 2.0 + t * jerk / 6.0)),
+            omega + t * (alpha + t * jerk / 2.0),
+            alpha + t * jerk,
+            time_s,
+            bound=self.bound,
+        )
+
+    def beside(self, run: Run) -> Beside | None:
+        """The run as far as the truth is known, beside it; None where it logged nothing."""
+        motion = run.motion
+        if motion is None or not motion.time_s.size:
+            return None
+        unsure = self.let_go.error_rad(motion.time_s) / self.let_go.sensitivity(motion.time_s)
+        lost = np.flatnonzero(~(unsure <= self.known_rad))
+        kept = max(int(lost[0]), 1) if lost.size else motion.time_s.size
+        known = first_samples(run, kept)
+        assert known.motion is not None
+        return FreeBeside(self, known, known.motion, whole_run=run, let_go=self.let_go)

@@ -1,0 +1,80 @@
+"""A free motion in words and columns: its energy, how sure it is, and what it meets on the way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from rich.table import Table
+
+from analytic.free.free_motion import FreeMotion
+from models.array import Array
+from models.motion import Motion
+from reports.describe.tables import Columns, tables_over_time
+from reports.output.numbers import count, error_text
+from reports.plan.singular import continued_note
+
+ROUNDING = 1e-15
+"""An energy that is less of the largest is 0."""
+NAMED = 4
+"""Instants that a note names."""
+
+
+def free_columns(free: FreeMotion, time_s: Array) -> dict[str, Array]:
+    """What a free motion has beside its places and rates, by names with units: energies, what
+    loads, dampers and friction have done since the start, the sensitivity, and what the driver's
+    angle may be off by."""
+    energy = free.energy(time_s)
+    return {
+        "kinetic_j": energy.kinetic,
+        "potential_j": energy.potential,
+        "work_j": energy.work,
+        "sensitivity": free.sensitivity(time_s),
+        "error_rad": free.error_rad(time_s),
+    }
+
+
+def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
+    """The driver's motion and the energy over time."""
+    energy = free.energy(motion.time_s)
+    driver = motion.links[free.scene.driver.link]
+    own: Columns = [("omega\nrad/s", driver.omega), ("alpha\nrad/s^2", driver.alpha)]
+    series = {"kinetic": energy.kinetic, "potential": energy.potential, "work": energy.work}
+    largest = max(float(np.max(np.abs(each))) for each in series.values())
+    kept: Columns = [
+        (f"{name}\nJ", np.where(np.abs(each) <= ROUNDING * largest, 0.0, each))
+        for name, each in series.items()
+    ]
+    bodies = [("", own), ("energy", kept)]
+    return tables_over_time(free.scene, motion, bodies, width)
+
+
+def free_notes(free: FreeMotion, motion: Motion) -> list[str]:
+    """How sure the motion is up to its last sample, and what it goes through until then, in
+    sentences."""
+    last = np.array([float(np.max(motion.time_s))])
+    off, growth = float(free.error_rad(last)[0]), float(free.sensitivity(last)[0])
+    notes = [
+        f"Integrated with high precision, no closed form: the angle of {free.scene.driver.link} is "
+        f"off by at most {error_text(off)} rad at {last[0]:g} s.",
+        f"Sensitivity {growth:.3g}: what the start is changed by has grown so many times by then.",
+    ]
+    passed = [one for one in free.passages if one.time_s <= last[0]]
+    limits = [
+        f"{math.degrees(one.driver_rad):.6g} deg at {one.time_s:.6g} s ({one.dyad})"
+        for one in passed
+    ]
+    if limits:
+        notes.append(f"Limits in which {free.scene.driver.link} turns back: {_few(limits)}.")
+    if continued := continued_note(motion):
+        notes.append(f"{continued[0].upper()}{continued[1:]}.")
+    edges = [f"{time_s:.6g}" for time_s in free.edges_s if time_s <= last[0]]
+    if edges:
+        instants = count(len(edges), "instant")
+        notes.append(f"What acts is not smooth at {instants}: {_few(edges)} s.")
+    return notes
+
+
+def _few(words: list[str]) -> str:
+    left = len(words) - NAMED
+    return ", ".join(words[:NAMED]) + (f", and {left} more" if left > 0 else "")

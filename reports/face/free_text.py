@@ -1,0 +1,27 @@
+"""A free motion on the terminal: what is let go, how it moves, and what is special."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from analytic.free.free_motion import FreeMotion
+from analytic.structure.mobility import analyse
+from models.motion import Motion
+from reports.describe.frame import cleaned
+from reports.describe.free_motion import free_notes, free_tables
+from reports.describe.tables import motion_tables
+from reports.face.solution_text import heading
+
+
+def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
+    """Print the mechanism, every sample of its motion, and the notes."""
+    scene = free.scene
+    console.print(heading(scene, analyse(scene)), highlight=False, markup=False)
+    shown = cleaned(motion)
+    tables = motion_tables(scene, shown, console.width)
+    if scene.driver.link in motion.links:
+        tables = [*free_tables(free, shown, console.width), *tables]
+    for table in tables:
+        console.print(table, "")
+    for note in free_notes(free, motion):
+        console.print(note, style="yellow", highlight=False, markup=False)

@@ -1,0 +1,1 @@
+"""The steady cycle of a machine and its flywheel, drawn for a paper."""

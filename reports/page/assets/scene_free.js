@@ -1,0 +1,10 @@
+"use strict";
+// A scene that is let go, in motion as it was integrated.
+
+(() => {
+  const own = crankcheck.embedded("motion");
+  const stage = crankcheck.stage("motion", { overlays: () => [], lasts: () => own.lasts_ms });
+  stage.set(own.drawing);
+  stage.draw();
+  stage.start();
+})();

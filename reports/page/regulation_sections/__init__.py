@@ -1,0 +1,1 @@
+"""The sections of the page of a steady cycle, and of a flywheel."""

@@ -1,0 +1,52 @@
+"""A scene that is let go, in motion, and the figures of its free motion."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from analytic.free.free_motion import FreeMotion
+from reports.describe.free_motion import free_notes
+from reports.drawing.moving import drawing
+from reports.page.sections.motion import scene_words
+from reports.page.sections.section import Section
+
+CAPTIONS: Mapping[str, str] = {
+    "over-time": "The driver's angle and angular velocity.",
+    "energy": "What the motion keeps of its energy, and what is done on it.",
+    "phase": "The driver's angular velocity over its angle.",
+}
+"""What stands under a figure; one that is not here has its name."""
+LEAST, MOST, IN_A_TURN, IN_A_SECOND = 121, 1201, 45, 60
+"""Instants of the drawing: at least and at most, in a turn, and in a second."""
+SHORTEST_MS, LONGEST_MS = 4000, 12000
+"""What a round may take."""
+
+
+def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
+    """The section; ``figures`` are SVG files by their name."""
+    turns = free.peak_speed_rad_s * free.until_s / math.tau
+    wanted = max(IN_A_TURN * turns, IN_A_SECOND * free.until_s)
+    time_s = np.linspace(0.0, free.until_s, int(np.clip(wanted, LEAST, MOST)))
+    motion = free.at(time_s, bound=False)
+    drawn = drawing(free.scene, time_s, motion)
+    lasts_ms = float(np.clip(1000.0 * free.until_s, SHORTEST_MS, LONGEST_MS))
+    return Section(
+        anchor="motion",
+        title="In motion",
+        template="scene_free.html",
+        words={
+            "scene": scene_words(free.scene),
+            "notes": free_notes(free, motion),
+            "figures": [
+                (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
+                for name, svg in figures.items()
+            ],
+        },
+        embedded={"drawing": drawn | {"until_s": free.until_s}, "lasts_ms": lasts_ms},
+        scripts=("arrows.js", "mechanism.js", "stage.js", "scene_free.js"),
+        styles=("forces.css",),
+    )

@@ -1,0 +1,164 @@
+"""What is compared of free motion alone: its phase, its geometry, and what it has to conserve."""
+
+from __future__ import annotations
+
+from models.motion import Motion
+from models.scene import Scene
+from reports.quantities.moving import every_place
+from reports.quantities.quantity import Criterion, Measure, Quantity, Series, Tolerance
+from sim.engine import Run
+
+
+def _driver(motion: Motion | None, scene: Scene) -> Series:
+    link = motion and motion.links.get(scene.driver.link)
+    return {scene.driver.link: link.theta} if link else {}
+
+
+def _driver_bound(scene: Scene, reference: Motion) -> Series:
+    bound = reference.bound and reference.bound.links.get(scene.driver.link)
+    return {scene.driver.link: bound.theta} if bound else {}
+
+
+PHASE = Quantity(
+    name="phase",
+    role="free",
+    head="phase\n/ G",
+    measures=(
+        Measure(
+            body_kind="driver",
+            column="phase_error_rad",
+            unit="rad",
+            share="rad",
+            scale=lambda scene, reference: 1.0,
+            truth=lambda scene, reference: _driver(reference, scene),
+            logged=lambda scene, run: _driver(run.motion, scene),
+            bound=_driver_bound,
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC127",
+            "phase",
+            "Let go, a mechanism that is a little too fast or too slow is ever further from where "
+            "it should be. The driver's angle is held to the integrated one at the same time, over "
+            "the sensitivity of the motion: what a small change of its start has grown by.",
+            "Shorten the step (--dt), or take an integrator of higher order, and look at what "
+            "damps the joints.",
+            short="phase",
+            diagram="phase: the driver's angle over the sensitivity",
+            tolerance=Tolerance(
+                "Second order, for the longest while: a loss of energy makes an error of phase "
+                "that grows with the square of time, and the sensitivity with time alone.",
+                cap=0.1,  # IFToMM's class of low precision, whatever the step
+                coefficient=6.5,
+                power=1.0,
+                lasting=1.2,
+            ),
+        ),
+    ),
+)
+GEOMETRY = Quantity(
+    name="geometry",
+    role="free",
+    head="geom.\nat phi",
+    measures=(
+        every_place("link", "geometry_angle_error_rad"),
+        every_place("slider", "geometry_displacement_error_m"),
+        every_place("point", "geometry_position_error_m"),
+    ),
+    criteria=(
+        Criterion(
+            "CC128",
+            "geometry",
+            "All places at the angle that the run's own coordinate has: a linkage that has come "
+            "open is told from one whose phase has run away.",
+            "Stiffen the loop (MuJoCo: solref, solimp; pymunk: iterations, error_bias), or shorten "
+            "the step.",
+            short="geom",
+            diagram="geometry at the run's own angle",
+            tolerance=Tolerance(
+                "A step moves the pins along tangents, which leaves an arc of step^2/2 times the "
+                "curvature to be closed; a dyad passes it on enlarged by 1/sine of its "
+                "transmission angle.",
+                cap=2e-2,
+                coefficient=0.8,
+                power=1.0,
+                conditioned=True,
+                closes=True,
+            ),
+        ),
+    ),
+)
+
+
+def _nothing(scene: Scene, of: Motion | Run) -> Series:
+    return {}
+
+
+ENERGY = Quantity(
+    name="energy",
+    role="free",
+    head="energy\n/ T",
+    measures=(
+        Measure(
+            body_kind="mechanism",
+            column="energy_drift_j",
+            unit="J",
+            share="T",
+            scale=lambda scene, reference: 1.0,
+            truth=_nothing,
+            logged=_nothing,
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC129",
+            "energy drift",
+            "What the energy of the engine has drifted by, less the work of loads and dampers: the "
+            "mean over the last while less that over the first, as a share of the largest kinetic "
+            "energy. An offset that comes and goes with the motion is none.",
+            "Shorten the step (--dt); look for what damps or drives the bodies unasked.",
+            short="drift",
+            diagram="drift of energy",
+            tolerance=Tolerance(
+                "Joints that are closed by impulses, or by springs with dampers, take energy at "
+                "every step, of second order for the longest while.",
+                cap=0.1,
+                coefficient=0.7,
+                power=1.0,
+                lasting=3.4,
+            ),
+        ),
+    ),
+)
+MOMENTUM = Quantity(
+    name="momentum",
+    role="free",
+    measures=(
+        Measure(
+            body_kind="mechanism",
+            column="momentum_drift_kg_m2_s",
+            unit="kg m^2/s",
+            share="of the largest",
+            scale=lambda scene, reference: 1.0,
+            truth=_nothing,
+            logged=_nothing,
+        ),
+    ),
+    criteria=(
+        Criterion(
+            "CC130",
+            "momentum drift",
+            "Without weight and loads, a mechanism that is pinned to the ground at one point keeps "
+            "its angular momentum about that point.",
+            "Look for damping in the pin, or for what acts from outside unasked.",
+            short="mom",
+            tolerance=Tolerance(
+                "Pins exert no moment about themselves, at any step: what is left is rounding, and "
+                "the arc of a step.",
+                cap=0.1,
+                coefficient=10.0,
+            ),
+        ),
+    ),
+)

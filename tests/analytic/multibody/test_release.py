@@ -1,0 +1,211 @@
+"""Motions of mechanisms: beside the equation of the machine, on their way, and with jumps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.free.release import release
+from analytic.free.window_chain import ChainMotion
+from analytic.kinematics import solve
+from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.multibody_motion import MultibodyMotion, Projection
+from analytic.multibody.release import release_multibody
+from analytic.multibody.rigid import RigidBodies
+from models.array import Array
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.scene import Scene
+from models.window_chain import Chain
+from tests.analytic.multibody.scenes import (
+    DOUBLE_PENDULUM,
+    FIVE_BAR,
+    SLIDER_CRANK,
+    THESIS,
+    scene,
+)
+
+SPRINGS = """
+[springs.line]
+points = ["A", "C"]
+rate_n_m = 60.0
+damping_n_s_m = 0.3
+free_m = 0.3
+[springs.pin]
+pin = "B"
+rate_n_m_rad = 0.2
+damping_n_m_s = 0.01
+free_deg = 20.0
+[springs.slide]
+slider = "C"
+rate_n_m = 80.0
+damping_n_s_m = 0.2
+free_m = 0.35
+[loads.motor]
+link = "crank"
+law = "polynomial"
+over = "omega"
+torque_n_m = [0.1, -0.01]
+[loads.wind]
+link = "rod"
+point = "C"
+frame = "body"
+direction_deg = 90.0
+force_n = 0.4
+"""
+CASES = {
+    "swing": load_scene("fourbar-swing"),
+    "spun": scene(SLIDER_CRANK + "speed_rad_s = 15.0\n"),
+    "pulse": scene(THESIS, 0.0),
+    "springs": scene(SLIDER_CRANK + "start_deg = 30.0\n" + SPRINGS),
+}
+
+
+def let_go(mechanism: Scene, until_s: float) -> MultibodyMotion:
+    """By the multibody form, from the assembly that the closed form has."""
+    near = solve(mechanism, np.zeros(1), bound=False).state()
+    return release_multibody(mechanism, until_s, near=near)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_goes_as_the_equation_of_the_machine_says(name: str) -> None:
+    mechanism, until_s = CASES[name], 0.15
+    time_s = np.linspace(0.0, until_s, 11)
+    free, other = let_go(mechanism, until_s), release(mechanism, until_s)
+    grown = free.sensitivity(time_s)
+    found, wanted = free.at(time_s), other.at(time_s, bound=False)
+    for link, motion in found.links.items():
+        assert np.all(np.abs(motion.theta - wanted.links[link].theta) <= 1e-9 * grown), link
+        assert motion.omega == pytest.approx(wanted.links[link].omega, abs=1e-8)
+        assert motion.alpha == pytest.approx(wanted.links[link].alpha, abs=1e-6)
+    for slider, motion in found.sliders.items():
+        assert motion.displacement == pytest.approx(wanted.sliders[slider].displacement, abs=1e-10)
+        assert motion.acceleration == pytest.approx(wanted.sliders[slider].acceleration, abs=1e-6)
+    for point, place in found.points.items():
+        assert place.acceleration == pytest.approx(wanted.points[point].acceleration, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_joints_stay_closed_and_energy_balances(name: str) -> None:
+    time_s = np.linspace(0.0, 0.5, 37)
+    free = let_go(CASES[name], 0.5)
+    energy = free.energy(time_s)
+    assert free.gap(time_s).max() < 1e-15
+    assert np.ptp(energy.balance) < 3e-11 * energy.kinetic.max()
+
+
+def test_faults_in_the_equations_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    time_s = np.linspace(0.0, 0.1, 5)
+    right = let_go(CASES["spun"], 0.1).at(time_s).links["crank"].theta
+    gamma, weigh = Assembly.gamma, RigidBodies.weigh
+
+    def bent(self: Assembly, now: Configuration) -> Array:
+        return gamma(self, now) * (1.0 + 1e-6)
+
+    def heavy(self: RigidBodies, q: Array, rates: Array) -> tuple[Array, Array]:
+        mass, push = weigh(self, q, rates)
+        mass[:, 2, 2] *= 1.0 + 1e-6  # of the crank, about its pin
+        return mass, push
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Assembly, "gamma", bent)
+        energy = let_go(CASES["spun"], 0.1).energy(time_s)
+        assert np.ptp(energy.balance) > 1e-9 * energy.kinetic.max()
+    monkeypatch.setattr(RigidBodies, "weigh", heavy)
+    wrong = let_go(CASES["spun"], 0.1).at(time_s).links["crank"].theta
+    assert np.abs(wrong - right).max() > 1e-8
+
+
+@pytest.mark.parametrize("text", [DOUBLE_PENDULUM, FIVE_BAR], ids=["double pendulum", "five-bar"])
+def test_two_freedoms_converge_and_keep_their_energy(text: str) -> None:
+    time_s = np.linspace(0.0, 0.25, 11)
+    fine = release_multibody(scene(text), 0.25)
+    rough = release_multibody(scene(text), 0.25, Projection(1e-9))
+    for link, motion in fine.at(time_s).links.items():
+        assert motion.theta == pytest.approx(rough.at(time_s).links[link].theta, abs=1e-7)
+    energy = fine.energy(time_s)
+    assert np.ptp(energy.balance) < 1e-11 * np.ptp(energy.potential)
+    assert fine.sensitivity(time_s)[-1] >= 1.0
+
+
+def test_sensitivity_is_what_a_changed_start_grows_by() -> None:
+    mechanism = CASES["swing"]
+    law, end = mechanism.driver.law, np.array([0.5])
+    nudged = replace(mechanism, driver=replace(mechanism.driver, law=law.turned(1e-5)))
+    apart = [let_go(one, 0.5).at(end).links["crank"].theta[0] for one in (mechanism, nudged)]
+    grown = let_go(mechanism, 0.5).sensitivity(end)[0]
+    assert abs(apart[1] - apart[0]) <= 1.01e-5 * grown
+    assert grown < 100.0
+
+
+CUT = """
+[loads.cut]
+block = "C"
+direction_deg = 180.0
+slider = "C"
+stroke = "forward"
+"""
+
+
+def test_a_load_on_one_stroke_jumps_where_the_slider_turns() -> None:
+    """Its work is its force times the strokes."""
+    text = SLIDER_CRANK + "speed_rad_s = 40.0\nstart_deg = 150.0\n" + CUT + "force_n = 2.0\n"
+    free = let_go(scene(text), 0.1)
+    energy = free.energy(np.linspace(0.0, 0.1, 11))
+    assert np.ptp(energy.balance) < 1e-11 * energy.kinetic.max()
+    slider = free.at(np.linspace(0.0, 0.1, 2001)).sliders["C"]
+    forward = np.maximum(np.diff(slider.displacement), 0.0).sum()
+    assert energy.work[-1] == pytest.approx(-2.0 * forward, abs=1e-5)
+    assert energy.work[-1] < -0.05
+
+
+def test_a_table_has_kinks_at_its_rows() -> None:
+    """Its work is the area below it, between the places of start and end."""
+    table = (
+        '[loads.gas]\nblock = "C"\ndirection_deg = 0.0\nlaw = "table"\nslider = "C"\n'
+        'over = "displacement"\ninterpolation = "linear"\n'
+        "at_m = [0.1, 0.25, 0.3, 0.35, 0.41]\nforce_n = [0.0, 5.0, 2.0, 7.0, 1.0]\n"
+    )
+    free = let_go(scene(SLIDER_CRANK + "speed_rad_s = 20.0\nstart_deg = 60.0\n" + table), 0.06)
+    place = free.at(np.array([0.0, 0.06])).sliders["C"].displacement
+    rows = [row for row in (0.25, 0.3, 0.35) if place[1] < row < place[0]]
+    x = np.unique([*np.linspace(*place, 9), *rows])
+    area = -np.trapezoid(np.interp(x, [0.1, 0.25, 0.3, 0.35, 0.41], [0, 5, 2, 7, 1]), x)
+    assert rows
+    assert free.energy(np.array([0.06])).work[0] == pytest.approx(area, abs=1e-9)
+
+
+def test_a_load_that_holds_the_slider_is_said() -> None:
+    text = SLIDER_CRANK + "speed_rad_s = 15.0\n" + CUT + "force_n = 20.0\n"
+    with pytest.raises(CrankcheckError, match=r"loads\.cut holds slider C in place"):
+        let_go(scene(text), 1.0).at(np.array([1.0]))
+
+
+def test_a_chain_goes_through_its_flat_positions() -> None:
+    """At which its mobility is N + 1: twice down, and twice up, in one turn and a bit."""
+    turning = ChainMotion(Chain(2))
+    near = turning.motion(np.zeros(1)).state()
+    free = release_multibody(Chain(2).scene(), 2.0, near=near)
+    time_s = np.linspace(0.0, 2.0, 81)
+    found, (theta, _, alpha) = free.at(time_s), turning.at(time_s)
+    assert abs(theta[-1] - theta[0]) > math.tau
+    for rocker in Chain(2).rockers():
+        assert found.links[rocker].theta == pytest.approx(theta, abs=1e-6)
+        assert found.links[rocker].alpha == pytest.approx(alpha, abs=1e-3)
+
+
+def test_within_a_passage_the_motion_is_smooth() -> None:
+    turning = ChainMotion(Chain(1))
+    near = turning.motion(np.zeros(1)).state()
+    free = release_multibody(Chain(1).scene(), 0.75, Projection(1e-11), near=near)
+    (passage,) = free._course.passages
+    flat = np.linspace(passage.begin_s, passage.end_s, 9)
+    theta, _, alpha = turning.at(flat)
+    assert np.sin(theta).min() < 0.0 < np.sin(theta).max()
+    assert free.change_points_s == pytest.approx([flat.mean()], abs=1e-3)
+    found = free.at(flat).links["rocker1"]
+    assert found.theta == pytest.approx(theta, abs=1e-8)
+    assert found.alpha == pytest.approx(alpha, abs=1e-5)

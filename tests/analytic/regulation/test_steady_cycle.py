@@ -1,0 +1,244 @@
+"""The cycle that a machine repeats: by hand, beside an integration, and where there is none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from analytic.check.moved_scene import mirrored
+from analytic.regulation.periodic_energy import StallError
+from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
+from analytic.regulation.turning_machine import TurningMachine
+from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.errors import CrankcheckError
+from models.files import load_scene, shipped
+from models.friction import ConstantFriction, CoulombFriction
+from models.laws import Accelerating
+from models.scene import GROUND, Driver, Scene
+from models.springs import LineSpring, PinSpring, SlideSpring
+from models.staircase import Staircase
+from tests.analytic.regulation.worked import shaft, yoke
+
+
+def cycle(scene: Scene, flywheel: float = 0.0) -> SteadyCycle:
+    return steady_cycle(TurningMachine.of(scene), flywheel)
+
+
+def test_a_shaft_under_a_sine_by_hand() -> None:
+    """J 2 kg m^2, M = 20 sin u N m beside a drive that has nothing to close: W = 20 (1 - cos u),
+    largest at 180 deg, smallest at 0: 40 J of surplus. J w dw: J mean (w_max - w_min) = 40, so
+    delta = 40 / (2 10^2) = 0.2, w from 9 to 11 rad/s."""
+    found = cycle(shaft({"pull": (Sine(20.0, math.tau), "angle")}))
+    assert found.drive_n_m == pytest.approx(0.0, abs=1e-14)
+    assert found.delta == pytest.approx(0.2, rel=1e-14)
+    assert found.extreme_speeds_rad_s == pytest.approx((11.0, 9.0), rel=1e-14)
+    assert found.fastest == pytest.approx(math.pi, abs=1e-12)
+    assert math.remainder(found.slowest, math.tau) == pytest.approx(0.0, abs=1e-12)
+    assert found.surplus_j == pytest.approx(40.0, rel=1e-13)
+    assert found.inertia_range == pytest.approx((2.0, 2.0))
+
+
+def test_a_press_by_hand() -> None:
+    """A third of every turn takes 60 N m, at 10 rad/s: the drive gives 60 / 3 = 20 N m, and
+    20 2/3 2 pi = 83.776 J is gained beside the work, and lost in it. It is slowest where the work
+    ends, at 240 deg, and fastest where it begins, at 120 deg. delta = 83.776 / (2 100)."""
+    third = math.tau / 3.0
+    edge = 1e-7
+    work = Tabulated(
+        (0.0, third, third + edge, 2.0 * third, 2.0 * third + edge), (0.0, 0.0, -60.0, -60.0, 0.0),
+        period=math.tau,
+    )  # fmt: skip
+    found = cycle(shaft({"work": (work, "angle")}))
+    assert found.drive_n_m == pytest.approx(20.0, rel=1e-6)
+    assert found.surplus_j == pytest.approx(20.0 * 2.0 * third, rel=1e-6)
+    assert found.delta == pytest.approx(20.0 * 2.0 * third / 200.0, rel=1e-6)
+    assert found.machine.theta(np.array(found.fastest)) == pytest.approx(third, abs=1e-6)
+    assert found.machine.theta(np.array(found.slowest)) == pytest.approx(2.0 * third, abs=1e-6)
+    assert found.works_j["loads.work"] == pytest.approx(-20.0 * math.tau, rel=1e-6)
+    assert found.power_w == pytest.approx(20.0 * math.tau / found.period_s, rel=1e-6)
+
+
+def test_a_motor_and_a_fan_by_hand() -> None:
+    """Motor 30 - w, fan -0.1 w^2: 0.1 w^2 + w - 30 = 0, w = 5 (sqrt(13) - 1), without any
+    fluctuation; a change of the speed dies as exp(-(1 + 0.2 w) 2 pi / (J w)), one of the energy
+    as well."""
+    loads = {
+        "motor": (Polynomial((30.0, -1.0)), "omega"),
+        "fan": (Polynomial((0.0, 0.0, -0.1)), "omega"),
+    }
+    found = cycle(shaft(loads, free=True, speed=1.0))  # type: ignore[arg-type]  # literals
+    speed = 5.0 * (math.sqrt(13.0) - 1.0)
+    assert found.mean_rad_s == pytest.approx(speed, rel=1e-13)
+    assert found.delta == pytest.approx(0.0, abs=1e-12)
+    decay = math.exp(-(1.0 + 0.2 * speed) * math.tau / (2.0 * speed))
+    assert found.settling == pytest.approx(decay, rel=1e-6)
+    assert found.works_j["loads.motor"] == pytest.approx(math.tau * (30.0 - speed))
+
+
+def test_a_machine_of_variable_inertia_alone_by_hand() -> None:
+    """A Scotch yoke without loads: T is constant, w = c / sqrt(J), J from 0.5 to 0.62 kg m^2; it is
+    fastest at 0 and 180 deg."""
+    found = cycle(yoke())
+    high, low = found.extreme_speeds_rad_s
+    assert high / low == pytest.approx(math.sqrt(0.62 / 0.5), rel=1e-13)
+    assert high + low == pytest.approx(16.0, rel=1e-14)
+    assert found.inertia_range == pytest.approx((0.5, 0.62))
+    assert found.surplus_j == pytest.approx(0.0, abs=1e-10)
+
+
+def test_a_pushed_yoke_by_hand() -> None:
+    """F = 40 N, r = 0.2 m: T = T0 + 8 (cos u - 1), J = 0.5 + 0.12 sin^2 u. w^2 = 2 T / J has
+    its largest value at 0 and its smallest beyond 90 deg, where T' J = T J'."""
+    found = cycle(yoke(40.0))
+    start = found.course.at_borders[0]
+    u = np.linspace(0.0, math.tau, 50001)
+    square = 2.0 * (start + 8.0 * (np.cos(u) - 1.0)) / (0.5 + 0.12 * np.sin(u) ** 2)
+    assert found.extreme_speeds_rad_s[0] ** 2 == pytest.approx(square.max(), rel=1e-8)
+    assert found.extreme_speeds_rad_s[1] ** 2 == pytest.approx(square.min(), rel=1e-8)
+    s = found.slowest
+    energy, inertia = start + 8.0 * (math.cos(s) - 1.0), 0.5 + 0.12 * math.sin(s) ** 2
+    assert -8.0 * math.sin(s) * inertia == pytest.approx(energy * 0.12 * math.sin(2.0 * s))
+
+
+def integrated(found: SteadyCycle) -> tuple[float, float]:
+    """The energy after a cycle over that at its start, less 1, and the time of it, by DOP853 over
+    the angle."""
+    machine, course = found.machine, found.course
+
+    def rates(u: float, state: np.ndarray) -> tuple[float, float]:
+        at = np.array([u])
+        inertia = machine.inertia(at)[0] + course.flywheel
+        speed = np.sqrt(2.0 * state[:1] / inertia)
+        return float((machine.torque(at, speed) + course.drive)[0]), float(1.0 / speed[0])
+
+    done = solve_ivp(
+        rates, (0.0, machine.cycle_rad), (course.at_borders[0], 0.0),
+        method="DOP853", rtol=1e-8, atol=1e-12, max_step=0.15,
+    )  # fmt: skip
+    return float(done.y[0, -1] / course.at_borders[0] - 1.0), float(done.y[1, -1])
+
+
+def driven_by_a_motor() -> Scene:
+    """The compressor behind a motor, with a damper on its piston and a valve that hangs on a
+    spring."""
+    scene = load_scene("compressor")
+    motor = shaft(
+        {"motor": (Tabulated((0.0, 140.0, 160.0, 300.0), (60.0, 40.0, 0.0, -90.0)), "omega")}
+    )
+    released = shaft({}, free=True, speed=150.0).driver
+    springs = {
+        "damper": SlideSpring("damper", 0.0, 5.0, 0.0, "C"),
+        "spring": LineSpring("spring", 900.0, 2.0, 0.05, ("A", "C")),
+    }
+    return replace(
+        scene, loads={**scene.loads, **motor.loads}, springs=springs, driver=released,
+        friction={"C": ConstantFriction("C", 12.0), "B": ConstantFriction("B", 0.1)},
+    )  # fmt: skip
+
+
+def test_the_cycle_is_what_an_integration_repeats() -> None:
+    """Tables over speed, displacement and strokes, a spring, dampers and friction: some 2 s of
+    scalar steps, which nothing else has in common with the cells. They err: at a tolerance of
+    1e-11 and 19 s they are within 3e-10 and 2e-11."""
+    found = cycle(driven_by_a_motor(), 0.05)
+    off, period = integrated(found)
+    assert abs(off) < 2e-6
+    assert period == pytest.approx(found.period_s, rel=2e-7)
+    assert 0.0 < found.settling < 1.0
+    assert sum(found.works_j.values()) == pytest.approx(0.0, abs=1e-9 * found.work_j)
+    assert found.time_s(np.array([found.machine.cycle_rad]))[0] == pytest.approx(found.period_s)
+
+
+@pytest.mark.parametrize("name", shipped("forces"))
+def test_shipped_machines_close_their_balance(name: str) -> None:
+    scene = replace(load_scene(name), friction={})
+    found = cycle(scene, 1e4)
+    sum_ = sum(found.works_j.values())
+    assert sum_ == pytest.approx(0.0, abs=1e-9 * max(found.work_j, 1.0))
+    speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
+    assert found.mean_rad_s == pytest.approx(speed, rel=1e-13)
+
+
+def test_a_mirrored_machine_has_the_mirrored_cycle() -> None:
+    scene = load_scene("compressor")
+    one, other = cycle(scene), cycle(mirrored(scene))
+    assert other.machine.way == -one.machine.way
+    assert other.delta == pytest.approx(one.delta, rel=1e-10)
+    assert (other.fastest, other.slowest) == pytest.approx((one.fastest, one.slowest), rel=1e-8)
+
+
+def test_from_rest_a_machine_turns_to_the_side_that_its_motor_drives_it_to() -> None:
+    loads = {"motor": (Polynomial((-30.0, -1.0)), "omega")}
+    found = cycle_of(TurningMachine.of(shaft(loads, free=True, speed=0.0)))  # type: ignore[arg-type]  # literals
+    assert found.machine.way == -1.0
+    assert found.mean_rad_s == pytest.approx(30.0)
+
+
+def test_two_turns_are_the_cycle_of_a_four_stroke_engine() -> None:
+    found = cycle(load_scene("engine-four-stroke"))
+    assert found.machine.cycle_rad == pytest.approx(2.0 * math.tau)
+    assert found.drive_n_m < 0.0  # the drive takes what the gas gives
+
+
+SPRUNG = PinSpring("main", 1.0, 0.0, 0.0, "A", (GROUND, "crank"))
+TWO = {"one": (Sine(1.0, 2.0), "angle"), "other": (Sine(1.0, 3.0), "angle")}
+REFUSED = {
+    "no balance": (shaft({"pull": (Constant(3.0), "time")}, free=True),
+                   "gain 18.8496 J at any speed; add a torque on crank of -3 N m"),
+    "from rest": (shaft({"pull": (Sine(3.0, math.tau), "angle")}, free=True, speed=0.0),
+                  "starts from rest: any speed would do"),
+    "faster and faster": (shaft({"motor": (Polynomial((3.0, 1.0)), "omega")}, free=True),
+                          "goes faster and faster"),
+    "to rest": (shaft({"brake": (Polynomial((-3.0, -1.0)), "omega")}, free=True), "comes to rest"),
+    "a short table": (
+        shaft({"motor": (Tabulated((0.0, 20.0), (9.0, 4.0)), "omega")}, free=True),
+        "from 10 to 20 rad/s of crank, 40.84 to 25.13 J",
+    ),
+    "a start beyond a table": (
+        shaft({"motor": (Tabulated((20.0, 30.0), (9.0, -4.0)), "omega")}, free=True, speed=5.0),
+        "the table goes from 20 to 30",
+    ),
+    "time": (shaft({"pull": (Sine(3.0, 1.0), "time")}), "loads.pull follows time"),
+    "steps": (shaft({"pull": (Staircase((1.0,), (3.0,)), "time")}), "loads.pull follows time"),
+    "no period": (shaft({"pull": (Polynomial((1.0, 1.0)), "angle")}), "never repeats"),
+    "no common cycle": (shaft(TWO), "repeat after 114.592 deg, 171.887 deg"),
+    "a wound spring": (replace(shaft({}), springs={"main": SPRUNG}),
+                       "springs.main is wound up by 360 deg"),
+    "no turn": (load_scene("fourbar-double-rocker"), "swings or speeds up"),
+    "no law": (replace(shaft({}), driver=Driver("crank", Accelerating(0.0, 1.0, 1.0))),
+               "swings or speeds up"),
+    "Coulomb": (replace(shaft({}), friction={"C": CoulombFriction("C", 0.1)}), "friction.C"),
+    "a stop": (shaft({"pull": (Sine(300.0, math.tau), "angle")}), "put a flywheel on"),
+    "no mass": (shaft({"pull": (Sine(3.0, math.tau), "angle")}, inertia=0.0), "no mass moves"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_without_a_steady_cycle_it_says_why(name: str) -> None:
+    scene, words = REFUSED[name]
+    with pytest.raises(CrankcheckError) as raised:
+        cycle_of(TurningMachine.of(scene))
+    assert words in str(raised.value)
+
+
+def test_a_driver_that_does_not_turn_round_has_no_cycle() -> None:
+    scene = load_scene("fourbar-double-rocker")
+    scene = replace(scene, driver=shaft({}, free=True).driver)
+    scene = replace(scene, driver=replace(scene.driver, link=next(iter(scene.links))))
+    with pytest.raises(CrankcheckError, match="does not turn round"):
+        TurningMachine.of(scene)
+
+
+def test_a_machine_stops_from_the_coefficient_on_that_is_2() -> None:
+    """On a shaft delta = surplus / (J mean^2): at 2 the smallest speed is 0."""
+    for share, stops in ((0.99, False), (1.01, True)):
+        scene = shaft({"pull": (Sine(share * 200.0, math.tau), "angle")})
+        if stops:
+            with pytest.raises(StallError):
+                cycle(scene)
+        else:
+            assert cycle(scene).delta == pytest.approx(2.0 * share, rel=1e-9)

@@ -1,0 +1,147 @@
+"""`crankcheck solve` and `view` of a scene that is let go: tables, files, figures, a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from PIL import Image
+from typer.testing import CliRunner, Result
+
+from analytic.free.release import release
+from models.files import load_scene
+from reports.cli import app
+from tests.worlds.let_go import EVERYTHING
+
+Crank = Callable[..., Result]
+SHORT = ("solve", "fourbar-swing", "--duration", "0.5")
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def test_the_free_motion_is_told_with_its_energy_and_how_sure_it_is(crank: Crank) -> None:
+    result = crank(*SHORT, "--steps", "4")
+    assert result.exit_code == 0
+    said = " ".join(result.output.split())
+    assert "mobility 1; driver crank, let go at rest at 0 deg, for 10 s; groups" in said
+    assert re.search(r"the angle of crank is off by at most \d.\de-\d\d rad at 0.5 s\.", said)
+    assert re.search(r"Sensitivity [\d.]+: what the start is changed by", said)
+    start, end = (
+        next(line.split() for line in result.output.splitlines() if line.startswith(head))
+        for head in ("    0  ", "  0.5  ")
+    )
+    kinetic, potential, work = map(float, end[4:7])
+    assert kinetic + potential == pytest.approx(float(start[5]), rel=1e-6)
+    assert work == 0.0
+
+
+def test_limits_and_instants_on_the_way_are_told(crank: Crank, tmp_path: Path) -> None:
+    result = crank("solve", "fourbar-double-rocker-swing", "--duration", "0.5", "--steps", "2")
+    said = " ".join(result.output.split())
+    assert "Limits in which driver turns back: -92.866 deg at 0.415855 s (C)." in said
+    path = tmp_path / "everything.toml"
+    path.write_text(EVERYTHING, encoding="utf-8")
+    said = " ".join(crank("solve", str(path), "--duration", "0.3", "--steps", "2").output.split())
+    assert re.search(r"What acts is not smooth at \d+ instants: 0.1, .*0.25.* s\.", said)
+
+
+def test_a_file_has_the_motion_the_energies_and_the_sensitivity(
+    crank: Crank, tmp_path: Path
+) -> None:
+    path = tmp_path / "swing.csv"
+    assert crank(*SHORT, "-o", str(path)).exit_code == 0
+    frame = pd.read_csv(path)
+    assert len(frame) == 1001
+    free = release(load_scene("fourbar-swing"), 0.5)
+    time_s = np.linspace(0.0, 0.5, 1001)
+    assert np.array_equal(frame["time_s"], time_s)
+    motion, energy = free.at(time_s), free.energy(time_s)
+    assert np.array_equal(frame["rocker_theta_rad"], motion.links["rocker"].theta)
+    assert np.array_equal(frame["C_y_m"], motion.points["C"].position[:, 1])
+    assert np.array_equal(frame["kinetic_j"], energy.kinetic)
+    assert np.array_equal(frame["sensitivity"], free.sensitivity(time_s))
+    assert {"potential_j", "work_j", "error_rad"} <= set(frame)
+
+
+def test_figures_and_a_page_are_written(crank: Crank, tmp_path: Path) -> None:
+    page, folder = tmp_path / "page.html", tmp_path / "figures"
+    result = crank(*SHORT, "--figures", str(folder), "-o", str(page))
+    assert result.exit_code == 0
+    names = {each.name for each in folder.iterdir()}
+    assert names == {f"{n}.{k}" for n in ("over-time", "energy", "phase") for k in ("svg", "pdf")}
+    text = page.read_text(encoding="utf-8")
+    assert "free motion over 0.5 s" in text
+    assert text.count("data:image/svg+xml;base64,") == 3
+    assert "Sensitivity" in text
+
+
+def test_a_picture_shows_it_moving(crank: Crank, tmp_path: Path) -> None:
+    path = tmp_path / "pulse.png"
+    result = crank("view", "fourbar-pulse", "-o", str(path))
+    assert result.exit_code == 0
+    assert "fourbar-pulse in free motion" in " ".join(result.output.split())
+    with Image.open(path) as picture:
+        assert picture.size[0] > 1000
+
+
+REFUSED = {
+    "solve fourbar-swing --at-deg 90": "--at-deg: fourbar-swing is let go, and moves over time",
+    "solve fourbar-swing --turns 2": "leave --turns out, and give --duration and --steps",
+    "solve fourbar-swing --steps-per-turn 9": "--steps-per-turn: fourbar-swing is let go",
+    "solve fourbar-swing --clockwise": "--clockwise: fourbar-swing is let go",
+    "solve fourbar-swing --along C:30": "--along: fourbar-swing is let go",
+    "solve fourbar-swing --forces": "--forces: fourbar-swing is let go",
+    "solve fourbar-swing --duration 0": "--duration 0: give seconds above 0",
+    "solve fourbar-swing --duration -1": "--duration -1: give seconds above 0",
+    "solve fourbar-swing --duration nan": "--duration nan: give seconds above 0",
+    "solve fourbar-swing --duration inf": "--duration inf: give seconds above 0",
+    "solve fourbar-swing --steps 0": "--steps 0: give at least 1",
+    "solve fourbar-swing --steps 1000000": "--steps 1000000: 1000001 samples; at most 1000000",
+    "solve fourbar-swing --steps 9 -o OUT.html": "a page has its own samples; leave out --steps",
+    "solve fourbar-swing -o OUT.json": "-o OUT.json",
+    "solve fourbar-lecture-1 --duration 2": '--duration 2: fourbar-lecture-1 is driven, and not let go (law = "free")',
+    "solve fourbar-lecture-1 --steps 2": "--steps 2: fourbar-lecture-1 is driven",
+    "view fourbar-swing --forces -o OUT.png": "it is drawn without its forces",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_what_makes_no_sense_of_a_free_motion_is_refused(
+    line: str, crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = crank(*line.split())
+    assert result.exit_code == 2
+    assert REFUSED[line] in " ".join(result.stderr.split())
+    assert not list(tmp_path.iterdir())
+
+
+SHORT_OF = {
+    "motor": ("at_rad_s = [-40.0, 60.0]", "at_rad_s = [-1.0, 2.5]", "loads.motor: over the omega"),
+    "start": ("rates_rad_s = { crank = 2.0 }", "rates_rad_s = { rod = 2.0 }", "rod"),
+}
+
+
+@pytest.mark.parametrize("fault", SHORT_OF)
+def test_what_shows_on_the_way_is_one_message(fault: str, crank: Crank, tmp_path: Path) -> None:
+    old, new, said = SHORT_OF[fault]
+    assert old in EVERYTHING
+    path = tmp_path / "scene.toml"
+    path.write_text(EVERYTHING.replace(old, new), encoding="utf-8")
+    result = crank("solve", str(path), "--duration", "0.3")
+    assert result.exit_code == 2
+    assert said in " ".join(result.stderr.split())
+    assert result.stderr.startswith("crankcheck: ")

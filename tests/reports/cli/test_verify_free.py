@@ -1,0 +1,146 @@
+"""`--free` of verify and sweep from the command line: verdict, table, files, and every mistake."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.scene_text import scene_text
+from reports.cli import app
+from reports.cli.checking import VerifyRequest
+from reports.cli.commands.verify import plan
+from reports.store.reader import read_store
+
+Crank = Callable[..., Result]
+SCENE = "fourbar-swing"
+SHORT = ["--duration", "0.1", "--jobs", "1", "--profile", "tuned"]
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+    return lambda *args: runner.invoke(app, list(args), catch_exceptions=False)
+
+
+def flat(text: str) -> str:
+    return " ".join(text.replace("│", " ").split())
+
+
+def test_what_is_let_go_is_within_and_has_a_table_of_its_own(crank: Crank, tmp_path: Path) -> None:
+    result = crank("verify", SCENE, *SHORT, "-o", str(tmp_path))
+    assert result.exit_code == 0, result.output
+    text = flat(result.output)
+    assert "free motion, profile tuned (gated)" in text
+    assert "WITHIN TOLERANCE: all 2 cells (1 scene x 2 engines)" in text
+    assert "dt 0.001 s over 0.1 s" in text
+    cells = pd.read_csv(tmp_path / "verify.csv")
+    assert list(cells["drive"]) == ["free", "free"]
+    assert (cells["phase_pure"] <= cells["phase_limit_pure"]).all()
+    assert list(cells["horizon_1e-1_s"]) == pytest.approx([0.1, 0.1])
+    assert not {"drive_pure", "drive_error_rad", "reaction_pure"} & set(cells)
+    content = json.loads((tmp_path / "verify.json").read_text())["cells"]
+    found = {finding["rule"] for cell in content for finding in cell["findings"]}
+    assert {"CC127", "CC128", "CC110", "CC115", "CC117"} <= found
+    assert "CC102" not in found
+    again = crank("verify", SCENE, *SHORT, "--baseline", str(tmp_path))
+    assert again.exit_code == 0, again.output
+    assert "NOT WORSE" in again.output
+
+
+def test_a_limit_that_is_not_kept_ends_with_1(crank: Crank) -> None:
+    result = crank("verify", SCENE, *SHORT, "--engine", "pymunk", "--tol", "phase=1e-9")
+    assert result.exit_code == 1
+    assert "CC127 phase: driver crank:" in flat(result.output)
+    assert "over the sensitivity" in flat(result.output)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        ([SCENE, "--turns", "2"], ["--turns: what is let go has no turns; give --dt"]),
+        ([SCENE, "--steps-per-turn", "90"], ["--steps-per-turn: what is let go has no turns"]),
+        ([SCENE, "--drive", "servo"], ["--drive servo: fourbar-swing is let go"]),
+        (["fourbar-lecture-1", "--duration", "2"], ["--duration: it is of scenes", "--free"]),
+        (["fourbar-lecture-1", "--tol", "phase=1"], ["--tol phase: it is of free motion"]),
+        ([SCENE, "--tol", "drive=1"], ["--tol drive: it is of a drive"]),
+        ([SCENE, "--tol", "reaction=1"], ["--tol reaction: forces are not judged"]),
+        ([SCENE, "--dt", "1"], ["10 steps of fourbar-swing", "80 at least"]),
+        ([SCENE, "--dt", "1e-9"], ["1e+10 steps of fourbar-swing", "300000 at most"]),
+        ([SCENE, "--duration", "-1"], ["--duration -1: give a number above 0"]),
+        ([SCENE, "--dt", "0"], ["--dt 0: give a number above 0"]),
+        (["--free", "slider-crank-self-locking"], ["friction that grows", "take it out"]),
+        (["--mjcf", "x.xml", "--free"], ["--mjcf and --free"]),
+    ],
+)
+def test_what_can_not_be_is_one_message_and_2(
+    crank: Crank, arguments: list[str], parts: list[str]
+) -> None:
+    result = crank("verify", *arguments)
+    assert result.exit_code == 2, result.output
+    for part in parts:
+        assert part in flat(result.stderr), result.stderr
+
+
+def test_driven_scenes_are_let_go_with_free_and_stay_driven_without() -> None:
+    both = plan(VerifyRequest(("fourbar-lecture-1", SCENE), engines=("pymunk",), turns=1.0))
+    drives = {(cell.scene.name, cell.drive) for cell in both}
+    assert drives == {("fourbar-lecture-1", "prescribed"), (SCENE, "free")}
+    cells = plan(VerifyRequest(("fourbar-lecture-1",), engines=("pymunk",), free=True))
+    assert {cell.drive for cell in cells} == {"free"}
+    law = load_scene("fourbar-lecture-1").driver.law
+    assert cells[0].dt_s == 1e-3
+    assert abs(cells[0].steps * cells[0].dt_s - 10.0 * law.period_s) < 1e-3
+
+
+def test_a_scene_without_a_mass_that_moves_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    text = scene_text(load_scene(SCENE))
+    bare = "\n".join(
+        "mass_kg = 0.0" if line.startswith("mass_kg") else line for line in text.splitlines()
+    )
+    path = tmp_path / "bare.toml"
+    path.write_text(bare.replace("inertia_kg_m2", "inertia_kg_m2"))
+    with pytest.raises(CrankcheckError):
+        plan(VerifyRequest((str(path),)))
+
+
+def test_a_sweep_of_what_is_let_go_is_kept_shown_and_compared(crank: Crank, tmp_path: Path) -> None:
+    store, page = tmp_path / "store", tmp_path / "page.html"
+    options = ["--free", "--dt", "1e-3,5e-4", "--duration", "0.1", "--profile", "tuned"]
+    swept = crank("sweep", SCENE, "-o", str(store), *options, "--no-timing", "--jobs", "1")
+    assert swept.exit_code == 0, swept.output
+    cells = read_store(store).cells
+    assert len(cells) == 4
+    assert set(cells["drive"]) == {"free"}
+    assert set(cells["dt_s"]) == {1e-3, 5e-4}
+    assert cells["precision"].str.contains("1e-3|1e-1|fine|common").all()
+    shown = crank("report", str(store), "-o", str(page))
+    assert shown.exit_code == 0, shown.output
+    assert "Let go" in page.read_text()
+    assert crank("diff", str(store), str(store)).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (["--free", "--turns", "2"], "--turns: what is let go has no turns"),
+        (["--free", "--steps-per-turn", "90"], "--steps-per-turn: what is let go has no turns"),
+        (["fourbar-lecture-1", "--dt", "1e-3"], "--dt: it is of scenes that are let go"),
+        ([SCENE], "its driver is let go, and follows no law"),
+        (["--free", "--dt", "1;2"], "--dt '1;2': write numbers with commas"),
+    ],
+)
+def test_a_sweep_that_can_not_be_is_one_message_and_2(
+    crank: Crank, tmp_path: Path, arguments: list[str], part: str
+) -> None:
+    result = crank("sweep", *arguments, "-o", str(tmp_path / "store"))
+    assert result.exit_code == 2, result.output
+    assert part in flat(result.stderr), result.stderr
+    assert not (tmp_path / "store").exists()

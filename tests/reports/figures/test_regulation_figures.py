@@ -1,0 +1,59 @@
+"""The figures of regulation: nothing over something else, and the right curves."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from matplotlib.transforms import Bbox
+
+from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.regulation.turning_machine import TurningMachine
+from models.files import load_scene
+from reports.figures.regulation.all_figures import REGULATION_FIGURES
+from reports.figures.regulation.regulated import Regulated
+from reports.figures.style import styled
+from tests.reports.figures.test_layout import boxes
+
+
+@pytest.fixture(scope="module")
+def wanted() -> WantedFlywheel:
+    return wanted_flywheel(TurningMachine.of(load_scene("engine-four-stroke")), 0.02)
+
+
+@pytest.mark.parametrize("name", REGULATION_FIGURES)
+def test_words_keep_off_each_other_and_off_the_edge(wanted: WantedFlywheel, name: str) -> None:
+    with styled():
+        drawn = REGULATION_FIGURES[name](Regulated(wanted.cycle, wanted))
+        assert drawn is not None
+        found = boxes(drawn)
+    page = drawn.bbox
+    for text, box in found:
+        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
+        assert inside, f"{text!r} leaves the sheet"
+    for (a, first), (b, second) in itertools.combinations(found, 2):
+        shared = Bbox.intersection(first, second)
+        assert shared is None or min(shared.width, shared.height) < 2.0, f"{a!r} on {b!r}"
+
+
+def test_tangents_touch_the_curve_and_do_not_cross_it(wanted: WantedFlywheel) -> None:
+    diagram = wanted.diagram
+    for slope, above in zip(wanted.slopes, (True, False), strict=True):
+        height, at = diagram.tangent(slope, above=above)
+        off = height + slope * diagram.inertia - diagram.work
+        assert off[at] == pytest.approx(0.0, abs=1e-9 * np.ptp(diagram.work))
+        assert np.all(off >= 0.0 if above else off <= 0.0) or np.min(np.abs(off)) < 1e-9
+
+
+def test_the_speed_has_a_panel_without_the_flywheel_and_a_closer_one(
+    wanted: WantedFlywheel,
+) -> None:
+    figure = REGULATION_FIGURES["speed"](Regulated(wanted.cycle, wanted))
+    assert figure is not None
+    far, near = (np.ptp(axes.get_ylim()) for axes in figure.axes)
+    assert wanted.bare is not None
+    assert far > 20.0 * near
+    alone = REGULATION_FIGURES["speed"](Regulated(wanted.cycle))
+    assert alone is not None
+    assert len(alone.axes) == 1

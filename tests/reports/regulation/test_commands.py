@@ -1,0 +1,187 @@
+"""`crankcheck cycle` and `crankcheck flywheel`: what they print and write, and mistakes."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+import crankcheck
+from analytic.regulation.steady_cycle import cycle_of
+from analytic.regulation.turning_machine import TurningMachine
+from models.characteristics import Polynomial, Sine
+from models.files import load_scene
+from models.scene import Scene
+from models.scene_text import scene_text
+from reports.cli import app
+from tests.analytic.regulation.worked import shaft
+
+Crank = Callable[..., Result]
+
+
+@pytest.fixture
+def crank(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Crank:
+    """Run the command with arguments in a folder of its own, which has the shaft of 40 J."""
+    monkeypatch.chdir(tmp_path)
+    scene = shaft({"pull": (Sine(20.0, math.tau), "angle")})
+    Path("shaft.toml").write_text(scene_text(scene), encoding="utf-8")
+    runner = CliRunner()
+    return lambda *args: runner.invoke(app, list(args), catch_exceptions=False)
+
+
+def numbers(output: str, start: str) -> list[float]:
+    """The numbers of the one row that begins so."""
+    (words,) = re.findall(rf"^{re.escape(start)} +(.*)$", output, flags=re.MULTILINE)
+    return [float(each) for each in re.findall(r"[-+]?[\d.]+(?:e[-+]?\d+)?(?= |$)", words)]
+
+
+def test_a_cycle_is_told(crank: Crank) -> None:
+    result = crank("cycle", "shaft.toml")
+    assert result.exit_code == 0
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    assert numbers(result.output, "largest speed") == [11.0, 180.0]
+    assert numbers(result.output, "smallest speed")[0] == 9.0
+    assert numbers(result.output, "coefficient of fluctuation") == [0.2]
+    assert numbers(result.output, "surplus of work") == [40.0]
+    assert numbers(result.output, "loads.pull") == [0.0, 0.0]
+    assert "closes the balance of work." in " ".join(result.output.split())
+
+
+def test_the_drive_that_closes_the_balance_is_told(crank: Crank) -> None:
+    output = crank("cycle", "compressor").output
+    found = cycle_of(TurningMachine.of(load_scene("compressor")))
+    torque, *_ = numbers(output, "torque of the drive")
+    assert torque == pytest.approx(found.drive_n_m, rel=1e-6)
+    assert numbers(output, "drive")[0] == pytest.approx(found.drive_n_m * math.tau, rel=1e-6)
+    assert "here it gives 12.6045 N m" in " ".join(output.split())
+
+
+def test_a_flywheel_is_told(crank: Crank) -> None:
+    result = crank("flywheel", "shaft.toml", "--delta", "0.02")
+    assert result.exit_code == 0
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    assert numbers(result.output, "exact, of the full equation") == [18.0]
+    assert numbers(result.output, "coefficient of fluctuation") == [0.2, 0.02]
+    assert numbers(result.output, "largest speed") == [11.0, 10.1]
+    assert "tan psi_max = 51.005" in " ".join(result.output.split())
+
+
+def test_files_hold_all_digits(crank: Crank) -> None:
+    assert crank("cycle", "shaft.toml", "-o", "c.csv").exit_code == 0
+    assert crank("flywheel", "shaft.toml", "--delta", "0.02", "-o", "f.csv").exit_code == 0
+    assert crank("flywheel", "shaft.toml", "--delta", "0.02", "-o", "f.json").exit_code == 0
+    assert crank("cycle", "shaft.toml", "-o", "c.json").exit_code == 0
+    frame = pd.read_csv("c.csv")
+    assert len(frame) == 721
+    theta, omega = (frame[f"crank_{name}"].to_numpy() for name in ("theta_rad", "omega_rad_s"))
+    np.testing.assert_allclose(frame["work_j"], 20.0 * (1.0 - np.cos(theta)), atol=1e-9)
+    np.testing.assert_allclose(frame["energy_j"], omega**2, rtol=1e-12)
+    np.testing.assert_allclose(frame["returning_n_m"], 20.0 * np.sin(theta), atol=1e-9)
+    both = pd.read_csv("f.csv")
+    np.testing.assert_allclose(both["bare_crank_omega_rad_s"], omega, rtol=1e-9)
+    assert np.ptp(both["crank_omega_rad_s"]) == pytest.approx(0.2, rel=1e-4)
+    told = json.loads(Path("f.json").read_text())
+    assert told["flywheel_kg_m2"]["exact"] == pytest.approx(18.0, rel=1e-11)
+    assert told["without"]["delta"] == pytest.approx(0.2, rel=1e-12)
+    assert told["cycle"]["largest_at_deg"] == pytest.approx(180.0)
+    assert json.loads(Path("c.json").read_text())["cycle"]["delta"] == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_the_written_scene_has_the_flywheel(crank: Crank, free: bool) -> None:
+    options = ["--write", "w.toml", *(["--free"] * free)]
+    result = crank("flywheel", "compressor", "--delta", "0.03", *options)
+    assert result.exit_code == 0
+    assert "flywheel_kg_m2 = 0.0" in Path("w.toml").read_text()
+    scene = load_scene("w.toml")
+    assert scene.is_free is free
+    assert ("drive" in scene.loads) is free
+    again = crank("cycle", "w.toml", "-o", "again.json")
+    assert again.exit_code == 0
+    delta = json.loads(Path("again.json").read_text())["cycle"]["delta"]
+    # Let go its mean speed is that of its start, which the cycle has elsewhere.
+    assert delta == pytest.approx(0.03, rel=0.1 if free else 1e-9)
+
+
+def test_pages_and_figures_are_written(crank: Crank) -> None:
+    options = ["-o", "p.html", "--figures", "figs"]
+    assert crank("flywheel", "compressor", "--delta", "0.02", *options).exit_code == 0
+    text = Path("p.html").read_text(encoding="utf-8")
+    assert text.count("data:image/svg+xml;base64,") == 3
+    body = text.partition("<main")[2].partition("<script")[0]
+    assert "Wittenbauer" in body
+    assert "nan" not in body.lower().split()
+    names = {f"{name}.{kind}" for name in ("speed", "torques", "energy-mass")
+             for kind in ("svg", "pdf")}  # fmt: skip
+    assert {path.name for path in Path("figs").iterdir()} == names
+    # A shaft of constant moment of inertia has no energy-mass diagram.
+    assert crank("cycle", "shaft.toml", "-o", "s.html", "--figures", "two").exit_code == 0
+    assert Path("s.html").read_text(encoding="utf-8").count("data:image/svg+xml;base64,") == 2
+    assert len(list(Path("two").iterdir())) == 4
+
+
+MISTAKES = {
+    "no cycle": ("cycle toggle-press", "it comes to rest near crank"),
+    "no flywheel of 0": ("flywheel shaft.toml --delta 0", "--delta 0: "),
+    "below 0": ("flywheel shaft.toml --delta -1", "--delta -1: "),
+    "2": ("flywheel shaft.toml --delta 2 -o f.csv", "--delta 2: "),
+    "met": ("flywheel shaft.toml --delta 0.3 --write f.toml", "it is 0.2 already"),
+    "ending": ("cycle shaft.toml -o out.txt", "found '.txt'"),
+    "scene ending": ("flywheel shaft.toml --delta 0.1 --write f.csv", "found .csv; use .toml"),
+    "over itself": ("flywheel shaft.toml --delta 0.1 --write shaft.toml", "which is read"),
+    "free alone": ("flywheel shaft.toml --delta 0.1 --free", "give --write FILE.toml"),
+    "no scene": ("cycle shafts.toml", "shafts.toml"),
+    "a folder": ("cycle shaft.toml --figures shaft.toml", "--figures"),
+}
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_ends_with_2_one_message_and_nothing_written(crank: Crank, name: str) -> None:
+    line, words = MISTAKES[name]
+    before = set(Path().iterdir())
+    result = crank(*line.split())
+    assert result.exit_code == 2, result.output
+    assert words in " ".join(result.stderr.split())
+    assert result.stdout == ""
+    assert set(Path().iterdir()) == before
+
+
+def motorised() -> Scene:
+    loads = {
+        "pull": (Sine(20.0, math.tau), "angle"),
+        "motor": (Polynomial((30.0, -3.0)), "omega"),
+    }
+    return shaft(loads, free=True)  # type: ignore[arg-type]  # literals
+
+
+def test_in_python_results_are_small_values_that_print_as_the_commands() -> None:
+    found = crankcheck.cycle(motorised())
+    assert found.mean_rad_s == pytest.approx(10.0, rel=0.01)
+    assert found.drive_n_m == 0.0
+    assert "Let go: the loads alone settle the speed." in str(found)
+    assert found.frame()["crank_omega_rad_s"].max() == pytest.approx(
+        found.extreme_speeds_rad_s[0], rel=1e-5
+    )
+    wheel = crankcheck.flywheel(motorised(), 0.01)
+    assert wheel.cycle.delta == pytest.approx(0.01, rel=1e-10)
+    again = crankcheck.cycle(wheel.scene)
+    assert again.delta == pytest.approx(0.01, rel=1e-10)
+    assert again.extreme_angles_deg == pytest.approx(wheel.cycle.extreme_angles_deg)
+    assert "<table" in wheel._repr_html_()
+    free = wheel.cycle.scene_let_go(2.0)
+    assert free.driver.law.period_s == pytest.approx(2.0 * wheel.cycle.details.period_s)
+
+
+def test_in_python_messages_name_arguments() -> None:
+    scene = replace(motorised(), name="shaft")
+    for delta in (0.0, "much", True):
+        with pytest.raises(crankcheck.CrankcheckError, match=r"^delta"):
+            crankcheck.flywheel(scene, delta)  # type: ignore[arg-type]  # that is what is refused

@@ -1,0 +1,276 @@
+"""Springs in MuJoCo: what they do to the motion, to the reactions, and what its file says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import mujoco  # type: ignore[import-untyped]  # ships no stubs
+import numpy as np
+import pytest
+
+from analytic.free.machine import Machine
+from analytic.free.release import release
+from analytic.kinematics import solve, solve_driven
+from models.array import Array
+from models.characteristics import Polynomial
+from models.errors import EngineError
+from models.files import load_scene
+from models.joints import block_name, joints, local_point, riding_body
+from models.loads import Load
+from models.mjcf import build
+from models.motion import State
+from models.poses import centre_of, mass_of
+from models.released import Released
+from models.scene import GROUND, Driver, Scene
+from models.spring_ends import line_ends
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+from sim.check import refuse_other_model
+from sim.engine import Log
+from sim.mujoco.session import MujocoSession
+from sim.registry import engine
+from sim.run import run
+from sim.settings import resolved
+from sim.spring_lengths import spring_lengths
+from tests.sim.mujoco.test_reactions import acting, cross, turned
+
+TUNED = resolved(engine("mujoco").profiles["tuned"], None)
+DT_S = 1e-4
+START_RAD, SPEED_RAD_S = 0.7, 3.0
+
+
+def let_go(name: str, *springs: Spring, speed_rad_s: float = SPEED_RAD_S) -> Scene:
+    """A shipped scene, let go in some position of its own."""
+    scene = load_scene(name)
+    driver = Driver(scene.driver.link, Released(START_RAD, speed_rad_s, 1.0))
+    return replace(scene, driver=driver, springs={one.name: one for one in springs})
+
+
+def massless(scene: Scene) -> Scene:
+    sliders = {
+        name: replace(one, mass_kg=0.0, inertia_kg_m2=0.0) for name, one in scene.sliders.items()
+    }
+    return replace(scene, sliders=sliders)
+
+
+FOURBAR, CRANK = "fourbar-lecture-1", "slider-crank-excel-210"
+SCENES = {
+    "between points": let_go(FOURBAR, LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))),
+    "of the ground": let_go(FOURBAR, LineSpring("l", 300.0, 40.0, 0.0, ("C", "A"))),
+    "where a loop closes": let_go(
+        FOURBAR, PinSpring("p", 2.0, 0.1, 0.3, "C", ("coupler", "rocker"))
+    ),
+    "seen from the other": let_go(
+        FOURBAR, PinSpring("p", 2.0, 0.1, -1, "C", ("rocker", "coupler"))
+    ),
+    "of the crank": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, 5.0, "A", (GROUND, "crank"))),
+    "at a pin": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, 0.3, "B", ("coupler", "crank"))),
+    "at the rocker": let_go(FOURBAR, PinSpring("p", 2.0, 0.1, -9.0, "D", ("rocker", GROUND))),
+    "along a line": let_go(CRANK, SlideSpring("s", 3e3, 30.0, 0.1, "C")),
+    "from behind": let_go(CRANK, SlideSpring("s", 3e3, 30.0, -1.0, "C")),
+    "of no mass": massless(let_go(CRANK, SlideSpring("s", 3e3, 30.0, 0.1, "C"))),
+    "on a link": let_go("slotted-lever", SlideSpring("s", 3e2, 3.0, 0.1, "B")),
+    "two of one": let_go(
+        FOURBAR,
+        PinSpring("p", 2.0, 0.0, 0.3, "A", (GROUND, "crank")),
+        PinSpring("q", 3.0, 0.1, 0.9, "A", ("crank", GROUND)),
+    ),
+    "all kinds": let_go(
+        CRANK,
+        SlideSpring("s", 3e3, 30.0, 0.1, "C"),
+        LineSpring("l", 3e3, 4.0, 0.1, ("B", "C")),
+        LineSpring("m", 3e3, 4.0, 0.1, ("A", "C")),
+        PinSpring("p", 20.0, 0.1, 0.3, "B", ("crank", "rod")),
+    ),
+}
+
+
+def start_of(scene: Scene) -> tuple[State, float]:
+    """The state of the start, and the acceleration of the driver by the equation of the machine."""
+    law = scene.driver.law
+    assert isinstance(law, Released)
+    theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
+    alpha = Machine(scene).acceleration(np.zeros(1), theta, omega)
+    motion = solve_driven(scene, theta, omega, alpha, np.zeros(1), bound=False)
+    return motion.state(), float(alpha[0])
+
+
+def opened(scene: Scene) -> MujocoSession:
+    return MujocoSession(scene, start_of(scene)[0], TUNED, DT_S, "free")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_springs_and_dampers_accelerate_as_in_the_equation_of_the_machine(name: str) -> None:
+    scene = SCENES[name]
+    _, alpha = start_of(scene)
+    _, without = start_of(replace(scene, springs={}))
+    driver = opened(scene).read().bodies[scene.driver.link]
+    assert driver.alpha[0] == pytest.approx(alpha, abs=2e-3 * abs(alpha - without))
+    undamped = {n: replace(one, damping=0.0) for n, one in scene.springs.items()}
+    _, loose = start_of(replace(scene, springs=undamped))
+    assert abs(loose - alpha) > 5e-3 * abs(alpha - without)  # dampers count
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_engine_holds_the_springs_of_the_scene(name: str) -> None:
+    scene = SCENES[name]
+    state, _ = start_of(scene)
+    session = opened(scene)
+    refuse_other_model(scene, state, session.facts(), DT_S, "free")
+    session._model.tendon_stiffness[0] *= 1.001
+    first = next(iter(scene.springs))
+    with pytest.raises(EngineError, match=rf"springs\.{first} has rate"):
+        refuse_other_model(scene, state, session.facts(), DT_S, "free")
+
+
+def pulls(scene: Scene, log: Log) -> dict[str, Array]:
+    """What each spring pulls its q back with, from the places that were logged."""
+    poses = log.poses
+    lengths = spring_lengths(scene, poses)
+    rates = {n: np.gradient(q, poses.time_s, edge_order=2) for n, q in lengths.items()}
+    return {
+        n: one.rate * (lengths[n] - one.free) + one.damping * rates[n]
+        for n, one in scene.springs.items()
+    }
+
+
+def left_over(scene: Scene, log: Log) -> float:
+    """What is left of the equilibrium of the bodies with their springs, over the largest force."""
+    poses, forces, pull = log.poses.bodies, acting(log), pulls(scene, log)
+    largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
+    theta = {GROUND: np.zeros_like(log.poses.time_s)} | {n: p.theta for n, p in poses.items()}
+    ends: list[tuple[str, Array, Array]] = []  # body, force, place
+    couples: list[tuple[str, Array]] = []
+    worst = 0.0
+
+    def place(body: str, local: tuple[float, float]) -> Array:
+        own = poses.get(body)
+        return np.array([local]) if own is None else own.origin + turned(own, local)
+
+    for point, by_body in forces.pins.items():
+        for body, force in by_body.items():
+            if body in poses:
+                ends.append((body, force, place(body, local_point(scene, body, point))))
+    for slide in joints(scene).slides:
+        slider, rider = slide.slider, riding_body(slide)
+        line = theta[slider.on] + slider.direction_rad
+        along = np.stack([np.cos(line), np.sin(line)], axis=-1)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
+        own, at = forces.sliders[slider.name], place(rider, local_point(scene, rider, slider.point))
+        pulled = [
+            pull[name]
+            for name, spring in scene.springs.items()
+            if isinstance(spring, SlideSpring) and spring.slider == slider.name
+        ]
+        push = own.normal[:, None] * across
+        back = sum(pulled, np.zeros_like(line))[:, None] * along
+        if rider == (slider.link or block_name(slider)):
+            ends.append((rider, push - back, at))
+            couples.append((rider, own.moment))
+        else:  # a block without mass hands on to its pin what it is given
+            on_block = forces.pins[slider.point][block_name(slider)] + push - back
+            worst = max(worst, float(np.abs(on_block).max()))
+        ends.append((slider.on, back - push, at))
+        couples.append((slider.on, -own.moment))
+    for name, spring in scene.springs.items():
+        if isinstance(spring, PinSpring):
+            couples += [(spring.bodies[0], pull[name]), (spring.bodies[1], -pull[name])]
+        elif isinstance(spring, LineSpring):
+            (a, at), (b, to) = line_ends(scene, spring)
+            way = place(b, to) - place(a, at)
+            force = pull[name][:, None] * way / np.hypot(*way.T)[:, None]
+            ends += [(a, force, place(a, at)), (b, -force, place(b, to))]
+    for body, pose in poses.items():
+        mass, inertia = mass_of(scene, body)
+        arm = turned(pose, centre_of(scene, body))
+        push = pose.origin_acceleration - arm * (pose.omega**2)[:, None]
+        push = push + np.stack([-pose.alpha * arm[:, 1], pose.alpha * arm[:, 0]], axis=-1)
+        force = mass * (np.array(scene.gravity_m_s2) - push)
+        moment = cross(arm, force) - inertia * pose.alpha
+        moment = moment + sum(couple for on, couple in couples if on == body)
+        for on, given, at in ends:
+            if on == body:
+                force = force + given
+                moment = moment + cross(at - pose.origin, given)
+        if body == scene.driver.link:
+            moment = moment + forces.torque
+        worst = max(worst, float(np.abs(force).max()), float(np.abs(moment).max()))
+    return worst / largest
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_springs_are_no_reactions_and_nothing_drives_the_crank(name: str) -> None:
+    """Dampers by differences, which are good to the second order of the step."""
+    scene = SCENES[name]
+    log = opened(scene).record_forces(40, 1)
+    assert left_over(scene, log) < 1e-5
+    forces = acting(log)
+    largest = max(float(np.abs(f).max()) for by in forces.pins.values() for f in by.values())
+    assert np.abs(forces.torque).max() < 1e-10 * largest * scene.longest_m
+
+
+def test_springs_of_a_driven_mechanism_are_borne_by_its_drive() -> None:
+    spring = LineSpring("l", 300.0, 4.0, 0.1, ("B", "D"))
+    scene = replace(load_scene(FOURBAR), springs={"l": spring})
+    state, law = solve(scene, np.zeros(1)).state(), scene.driver.law
+    session = MujocoSession(scene, state, TUNED, law.period_s / 720, "prescribed")
+    forces = acting(session.record_forces(100, 1)).stretch(slice(5, None))
+    theta, omega, _ = law.at(forces.time_s)
+    machine = Machine(scene)
+    _, slope = machine.inertia(theta)
+    torque = 0.5 * slope * omega**2 - machine.push(forces.time_s, theta, omega)
+    assert np.abs(forces.torque - torque).max() < 1e-3 * np.abs(torque).max()
+
+
+def test_springs_under_the_servo_s_integrator_have_the_iterations_that_they_need() -> None:
+    """With two of them `discrete` gives the run up at its first step."""
+    scene = replace(load_scene(FOURBAR), springs=SCENES["where a loop closes"].springs)
+    state, dt_s = solve(scene, np.zeros(1)).state(), scene.driver.law.period_s / 720
+    done = run(scene, state, "mujoco", dt_s=dt_s, steps=20, drive="servo")
+    assert (done.status, done.warnings) == ("ok", ())
+    assert (done.settings["iterations"], done.settings["iterations_of_springs"]) == (2, 20)
+    driven = run(scene, state, "mujoco", dt_s=dt_s, steps=20)
+    assert "iterations_of_springs" not in driven.settings
+
+
+def test_springs_add_lines_to_the_text_and_change_none() -> None:
+    scene = SCENES["between points"]
+    state, _ = start_of(scene)
+    bare, text = build(replace(scene, springs={}), state), build(scene, state)
+    rest = iter(text.splitlines())
+    assert all(line in rest for line in bare.splitlines())
+    assert "tendon" not in bare
+    tendon = '<spatial name="spring l" stiffness="300.0" damping="4.0" springlength="0.1">'
+    assert tendon in text
+    assert "armature" not in text
+    behind = build(SCENES["from behind"], start_of(SCENES["from behind"])[0])
+    assert 'springlength="1.0"' in behind  # -1 says something else to MuJoCo
+    assert 'coef="-1"' in behind
+
+
+def test_the_text_runs_by_itself() -> None:
+    scene = SCENES["at a pin"]
+    state, _ = start_of(scene)
+    model = mujoco.MjModel.from_xml_string(build(scene, state))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_step(model, data, 100)
+    done = run(scene, state, "mujoco", dt_s=1e-3, steps=100, drive="free")
+    assert done.motion is not None
+    own = data.qpos[model.joint("crank.A").qposadr[0]]
+    assert own == pytest.approx(done.motion.links["crank"].theta[-1], abs=1e-9)
+
+
+def test_springs_dampers_and_motors_are_followed_to_second_order() -> None:
+    """That of the closing springs of the loop."""
+    scene = let_go(FOURBAR, LineSpring("l", 30.0, 0.4, 0.1, ("B", "D")))
+    motor = Load("motor", "crank", None, Polynomial((0.3, -0.05)), "omega")
+    scene = replace(scene, loads={"motor": motor})
+    true, state = release(scene, 0.3), start_of(scene)[0]
+    errors = []
+    for steps in (300, 600):
+        done = run(scene, state, "mujoco", dt_s=0.3 / steps, steps=steps, drive="free")
+        assert done.motion is not None
+        off = done.motion.links["crank"].theta - true.law.at(done.motion.time_s)[0]
+        errors.append(np.abs(off).max())
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.3)
+    assert errors[1] < 1e-6

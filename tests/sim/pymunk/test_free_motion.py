@@ -1,0 +1,309 @@
+"""Free motion in pymunk: what acts belongs to the end of a step, and errors fall as its square."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analytic.free.machine import Machine
+from analytic.free.release import release
+from analytic.kinematics import solve, solve_driven
+from models.array import Array
+from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.errors import EngineError
+from models.files import load_scene
+from models.loads import Load
+from models.motion import State
+from models.released import Released
+from models.scene import GROUND, Driver, Scene
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
+from models.staircase import Staircase
+from models.window_chain import Chain
+from sim.engine import Run
+from sim.pymunk.engine import ENGINE
+from sim.pymunk.force_recipe import FORCE_RECIPE
+from sim.pymunk.snippet import SNIPPET
+from sim.run import run
+from sim.settings import resolved
+from sim.snippets import Stepping
+from tests.sim.pymunk.test_reactions import START
+
+INERTIA = 1.0 / 3.0
+"""Of a rod of 1 m and 1 kg about its end [kg m^2]."""
+
+
+def rod(*loads: Load, springs: tuple[Spring, ...] = ()) -> Scene:
+    """One rod on a pin, without weight, let go at an angle of 0."""
+    bare = Chain(0, gravity_m_s2=0.0).scene()
+    driver = Driver("rocker0", Released(0.0, 0.0, 1.0))
+    return replace(
+        bare,
+        driver=driver,
+        loads={load.name: load for load in loads},
+        springs={spring.name: spring for spring in springs},
+    )
+
+
+def start(scene: Scene, alpha: float) -> State:
+    """The state at time 0, with the acceleration that goes with it."""
+    law = scene.driver.law
+    assert isinstance(law, Released)
+    theta, omega, push = (np.array([x]) for x in (law.start_rad, law.speed_rad_s, alpha))
+    return solve_driven(scene, theta, omega, push, np.zeros(1), bound=False).state()
+
+
+def let_go(scene: Scene, alpha: float, dt_s: float, until_s: float = 1.0, **given: Any) -> Run:
+    steps = round(until_s / dt_s)
+    result = run(scene, start(scene, alpha), ENGINE, dt_s=dt_s, steps=steps, drive="free", **given)
+    assert (result.status, result.reason) == ("ok", "")
+    return result
+
+
+def angle(result: Run) -> Array:
+    assert result.motion is not None
+    return next(iter(result.motion.links.values())).theta
+
+
+def of_second_order(
+    scene: Scene, alpha: float, exact: Callable[[Array], Array], most: float
+) -> None:
+    """Sixteen times as good with a quarter of the step."""
+    rough, fine = (
+        float(np.abs(angle(ran) - exact(ran.motion.time_s)).max())  # type: ignore[union-attr]
+        for ran in (let_go(scene, alpha, dt_s) for dt_s in (4e-3, 1e-3))
+    )
+    assert fine < most
+    assert 13.0 < rough / fine < 19.0
+
+
+def motor(*coefficients: float) -> Load:
+    return Load("motor", "rocker0", None, Polynomial(coefficients), over="omega")
+
+
+def test_a_motor_pulls_by_the_speed_of_the_end_of_the_step() -> None:
+    """Torque 2 - 0.7 omega; by the speed of half a step before errors are of first order."""
+    tau = INERTIA / 0.7
+    of_second_order(
+        rod(motor(2.0, -0.7)),
+        2.0 / INERTIA,
+        lambda t: np.asarray(2.0 / 0.7 * (t + tau * np.expm1(-t / tau))),
+        3e-6,
+    )
+
+
+def test_a_motor_past_the_end_of_its_table_keeps_the_last_torque() -> None:
+    table = Load("m", "rocker0", None, Tabulated((0.0, 1.0), (2.0, 1.0)), over="omega")
+    theta = angle(let_go(rod(table), 2.0 / INERTIA, 1e-3))
+    assert np.diff(theta, 2)[-1] == pytest.approx(1e-6 * 1.0 / INERTIA, rel=1e-4)
+
+
+def swinging(damping: float) -> tuple[Scene, float]:
+    """A rod on a spring in its pin that wants it at 1 rad, and its acceleration at the start."""
+    knee = PinSpring("knee", 10.0, damping, 1.0, "A0", (GROUND, "rocker0"))
+    return rod(springs=(knee,)), 10.0 / INERTIA
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.8])
+def test_a_spring_with_a_damper_in_a_pin_swings_as_its_equation(damping: float) -> None:
+    scene, alpha = swinging(damping)
+    decay = damping / (2.0 * INERTIA)
+    pace = math.sqrt(10.0 / INERTIA - decay**2)
+    of_second_order(
+        scene,
+        alpha,
+        lambda t: np.asarray(
+            1.0 - np.exp(-decay * t) * (np.cos(pace * t) + decay / pace * np.sin(pace * t))
+        ),
+        3e-5,
+    )
+
+
+@pytest.mark.parametrize(
+    "places", [(0.0, 0.3, 0.5), (0.0, 0.3004, 0.5007), (0.0003, 0.0012, 0.0017)]
+)
+def test_a_jump_counts_with_its_share_of_a_step(places: tuple[float, float, float]) -> None:
+    """On the grid, beside it, in the first half step, and two of them in one."""
+    steps = Staircase(places, (2.0, -3.0, 1.0))
+    scene = rod(Load("switched", "rocker0", None, steps))
+    early = 2.0 / INERTIA if places[0] == 0.0 else 0.0
+    result = let_go(scene, early, 1e-3)
+    assert result.motion is not None
+    time_s = result.motion.time_s
+    exact = sum(
+        rise / INERTIA * np.maximum(time_s - place, 0.0) ** 2 / 2.0
+        for place, rise in zip(places, (2.0, -5.0, 4.0), strict=True)
+    )
+    off = np.abs(angle(result) - exact)
+    # In the step of a jump the place is off by a part of rise dt^2 / 2, and from there on as well.
+    assert off.max() < 3.0 * 5.0 / INERTIA * 1e-6 / 8.0
+    assert off[-1] < 1.01 * np.abs(off[100:]).max()
+
+
+ALONG = SlideSpring("along", 200.0, 2.0, 0.3, "C")
+ACROSS = LineSpring("across", 60.0, 1.0, 0.1, ("A", "C"))
+KNEE = PinSpring("knee", 1.5, 0.02, -0.3, "B", ("crank", "rod"))
+
+
+def cranking(*springs: Spring, name: str = "slider-crank-offset") -> Scene:
+    """A slider-crank without weight, let go at 1 rad with 2 rad/s."""
+    scene = load_scene(name)
+    driver = Driver(scene.driver.link, Released(1.0, 2.0, 1.0))
+    own = {spring.name: spring for spring in springs}
+    return replace(scene, driver=driver, gravity_m_s2=(0.0, 0.0), springs=own)
+
+
+def begin(scene: Scene) -> State:
+    """The state at the start, with the acceleration that the equation of the machine gives."""
+    law = scene.driver.law
+    assert isinstance(law, Released)
+    now = np.zeros(1), np.array([law.start_rad]), np.array([law.speed_rad_s])
+    return start(scene, float(Machine(scene).acceleration(*now)[0]))
+
+
+def off_by(scene: Scene, dt_s: float, **settings: str) -> float:
+    """The largest error of the crank's angle in 0.2 s [rad]."""
+    motion = release(scene, 0.2)
+    state = motion.at(np.zeros(1), bound=False).state()
+    result = run(
+        scene, state, ENGINE, dt_s=dt_s, steps=round(0.2 / dt_s), drive="free", settings=settings
+    )
+    assert (result.status, result.reason) == ("ok", "")
+    assert result.motion is not None
+    exact = motion.at(result.motion.time_s, bound=False).links["crank"].theta
+    return float(np.abs(angle(result) - exact).max())
+
+
+@pytest.mark.parametrize("name", ["slider-crank-offset", "slider-crank-excel-350"])
+def test_springs_of_every_kind_keep_the_order_of_the_step(name: str) -> None:
+    """With a block that has mass, and one without: dampers of pymunk's own are of first order."""
+    scene = cranking(ALONG, ACROSS, KNEE, name=name)
+    rough, fine = off_by(scene, 1e-3), off_by(scene, 2.5e-4)
+    assert 12.0 < rough / fine < 20.0
+    assert fine < 5e-5
+    shipped, finer = (off_by(scene, dt_s, springs="native") for dt_s in (1e-3, 2.5e-4))
+    assert 3.0 < shipped / finer < 8.0
+    assert finer > 3.0 * fine
+
+
+def test_springs_without_dampers_are_pymunk_s_own_to_rounding() -> None:
+    scene = cranking(*(replace(one, damping=0.0) for one in (ALONG, ACROSS, KNEE)))
+    settings = resolved(ENGINE.profiles["tuned"], None)
+    state, ends = begin(scene), []
+    for springs in ("forces", "native"):
+        session = ENGINE.open(scene, state, {**settings, "springs": springs}, 1e-3, "free")
+        told = session.facts().springs
+        assert told == {
+            name: pytest.approx((spring.rate, 0.0, spring.free), abs=1e-12)
+            for name, spring in scene.springs.items()
+        }
+        ends.append(session.record(200, 1).poses.bodies["rod"].theta)
+    np.testing.assert_allclose(*ends, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("springs", ["forces", "native"])
+@pytest.mark.parametrize("name", ["slider-crank-offset", "slider-crank-excel-350"])
+def test_springs_are_no_part_of_what_joints_bear(name: str, springs: str) -> None:
+    """Nor of the torque of a drive that is not there."""
+    scene = cranking(ALONG, ACROSS, KNEE, name=name)
+    state = begin(scene)
+    found = run(
+        scene,
+        state,
+        ENGINE,
+        dt_s=1e-3,
+        steps=100,
+        drive="free",
+        with_forces=True,
+        settings={"springs": springs},
+    ).motion
+    assert found is not None
+    assert found.forces is not None
+    assert found.forces.contradictions == ()
+    assert not found.forces.torque[1:].any()
+
+
+SLIDING = {
+    "slotted-lever": SlideSpring("along", 300.0, 3.0, 0.1, "B"),  # on a link, without mass
+    "scotch-yoke": SlideSpring("along", 300.0, 3.0, 0.1, "B"),  # on a link, with mass
+    "slider-crank-excel-350": ALONG,
+    "fourbar-lecture-1": PinSpring("knee", 5.0, 0.1, 0.3, "C", ("coupler", "rocker")),
+}
+
+
+@pytest.mark.parametrize("name", SLIDING)
+def test_a_driven_mechanism_takes_its_springs_with_it(name: str) -> None:
+    """The torque of the drive is what the power of springs asks for, either way."""
+    scene = replace(load_scene(name), springs={"one": replace(SLIDING[name], name="one")})
+    period_s = scene.driver.law.period_s
+    state = solve(scene, np.zeros(1)).state()
+    told = [
+        run(
+            scene,
+            state,
+            ENGINE,
+            dt_s=period_s / 720,
+            steps=720,
+            with_forces=True,
+            settings={"springs": springs},
+        )
+        for springs in ("forces", "native")
+    ]
+    forces, native = (one.motion.forces for one in told if one.motion is not None)
+    assert forces is not None
+    assert native is not None
+    assert forces.contradictions == native.contradictions == ()
+    exact = power(scene, forces.time_s)
+    size = np.abs(exact).max()
+    assert np.abs(forces.torque - exact)[START:].max() < 1e-3 * size
+    assert np.abs(native.torque - exact)[START:].max() < 3e-2 * size  # of first order
+
+
+def power(scene: Scene, time_s: Array) -> Array:
+    """The torque of the drive at constant speed, by the work of all that moves [N m]."""
+    machine, (theta, omega, _) = Machine(scene), scene.driver.law.at(time_s)
+    return np.asarray(
+        0.5 * machine.inertia(theta)[1] * omega**2 - machine.push(time_s, theta, omega)
+    )
+
+
+def test_what_almost_rests_at_the_start_is_not_taken_to_run_away() -> None:
+    """sin(pi) is 1e-16: by the pace of that start any speed would be a million times too fast."""
+    later = rod(Load("wave", "rocker0", None, Sine(3.0, 1.0, math.pi)))
+    assert np.ptp(angle(let_go(later, 3.0 * math.sin(math.pi) / INERTIA, 1e-3))) > 1.0
+
+
+def test_a_load_of_a_stroke_counts_with_its_share_of_the_step_that_turns_back() -> None:
+    """With all or nothing of it there, a quarter of the step makes the error a fifth."""
+    push = Load("push", "block C", "C", Constant(4.0), slider="C", stroke="forward")
+    scene = replace(cranking(replace(ALONG, damping=0.0)), loads={"push": push})
+    state = begin(scene)
+    angles = [
+        angle(run(scene, state, ENGINE, dt_s=dt_s, steps=n, every=every, drive="free"))
+        for dt_s, n, every in ((1e-3, 1000, 8), (2.5e-4, 4000, 32), (6.25e-5, 16000, 128))
+    ]
+    rough, fine = (np.abs(one - angles[-1]).max() for one in angles[:2])
+    assert rough / fine > 10.0
+
+
+def test_the_snippet_of_free_motion_says_how_it_starts_and_names_no_speed() -> None:
+    settings = resolved(ENGINE.profiles["tuned"], None)
+    text = SNIPPET.write(settings, Stepping(10.0, 1e-3), "free", [])
+    assert "dt = 0.001\nspace.step(dt)" in text
+    assert "rad/s" not in text
+    assert "v + a dt / 2" in text
+    assert "DampedSpring" in text
+    driven = SNIPPET.write(settings, Stepping(10.0, 1e-3), "prescribed", [])
+    assert "DampedSpring" not in driven
+
+
+def test_the_force_recipe_refuses_springs_and_free_motion() -> None:
+    scene = cranking(KNEE)
+    state = begin(scene)
+    settings = resolved(ENGINE.profiles["tuned"], None)
+    with pytest.raises(EngineError, match=r"leaves out springs\.knee, a driver that is let go"):
+        FORCE_RECIPE(scene, state, settings, 1e-3)

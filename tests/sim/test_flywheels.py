@@ -1,0 +1,104 @@
+"""A flywheel that was worked out does in an engine what it was worked out for."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from analytic.kinematics import solve
+from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.regulation.let_go import let_go
+from analytic.regulation.steady_cycle import SteadyCycle
+from analytic.regulation.turning_machine import TurningMachine
+from models.characteristics import Polynomial
+from models.files import load_scene
+from models.loads import Load
+from models.released import Released
+from models.scene import Driver, Scene
+from sim.run import run
+
+DELTA = 0.02
+WITHIN, WITHIN_DEG = 0.01, 0.5
+"""What a measured coefficient may be off, over itself, and the angles of extreme speed."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The coefficient of fluctuation of a cycle, and the driver's angles at its extremes [deg]."""
+
+    delta: float
+    fastest_deg: float
+    slowest_deg: float
+
+
+def wanted(scene: Scene) -> WantedFlywheel:
+    return wanted_flywheel(TurningMachine.of(scene), DELTA)
+
+
+def measured(scene: Scene, engine: str, cycle: SteadyCycle, steps: int) -> list[Measured]:
+    """The cycles of a scene that is let go in an engine, one after the other."""
+    period = scene.driver.law.period_s
+    state = solve(scene, np.zeros(1)).state()
+    logged = run(scene, state, engine, dt_s=period / steps, steps=steps, drive="free")
+    assert logged.status == "ok", logged.reason
+    link = logged.motion.links[scene.driver.link]
+    turned = np.abs(link.theta - link.theta[0])
+    whole, found = cycle.machine.cycle_rad, []
+    for k in range(math.floor(turned[-1] / whole)):
+        inside = (turned >= k * whole) & (turned <= (k + 1) * whole)
+        speed, theta = np.abs(link.omega[inside]), link.theta[inside]
+        high, low = float(speed.max()), float(speed.min())
+        ends = (math.degrees(theta[at]) for at in (np.argmax(speed), np.argmin(speed)))
+        found.append(Measured(2.0 * (high - low) / (high + low), *ends))
+    return found
+
+
+def holds(one: Measured, cycle: SteadyCycle) -> None:
+    """The coefficient, and the angles within the driver's cycle."""
+    assert one.delta == pytest.approx(DELTA, rel=WITHIN)
+    whole = math.degrees(cycle.machine.cycle_rad)
+    for angle, u in ((one.fastest_deg, cycle.fastest), (one.slowest_deg, cycle.slowest)):
+        off = math.remainder(angle - math.degrees(cycle.driver_rad(u)), whole)
+        assert abs(off) < WITHIN_DEG
+
+
+@pytest.mark.parametrize(
+    ("name", "engine"),
+    [
+        ("engine-four-stroke", "mujoco"),
+        pytest.param("compressor", "mujoco", marks=pytest.mark.slow),
+        pytest.param("toggle-press", "mujoco", marks=pytest.mark.slow),
+        pytest.param("compressor", "pymunk", marks=pytest.mark.slow),
+    ],
+)
+def test_an_engine_runs_the_cycle_that_the_flywheel_is_for(name: str, engine: str) -> None:
+    """The drive a constant torque, two cycles: nothing settles, so that the second is as the
+    first. Some 2 s each, as loads that hang on the angle are asked for at every stage of a step."""
+    cycle = wanted(load_scene(name)).cycle
+    found = measured(let_go(cycle, 2.05), engine, cycle, 2800)
+    assert len(found) == 2
+    for one in found:
+        holds(one, cycle)
+
+
+@pytest.mark.slow
+def test_an_engine_settles_in_the_cycle_of_a_motor() -> None:
+    """From 5 % above it: what is left of that falls to a seventh in every cycle."""
+    scene = load_scene("compressor")
+    motor = Load("motor", "crank", None, Polynomial((4500.0, -29.5)), "omega")
+    law = Released(0.0, 150.0, 1.0)
+    scene = replace(
+        scene, loads={**scene.loads, "motor": motor}, driver=Driver(scene.driver.link, law)
+    )
+    cycle = wanted(scene).cycle
+    assert 0.0 < cycle.settling < 0.2
+    started = let_go(cycle, 5.05)
+    faster = replace(law, speed_rad_s=1.05 * started.driver.law.at(np.zeros(1))[1][0],
+                     duration_s=started.driver.law.period_s)  # fmt: skip
+    started = replace(started, driver=replace(started.driver, law=faster))
+    first, *_, last = measured(started, "mujoco", cycle, 8000)
+    assert abs(first.delta / DELTA - 1.0) > 0.1
+    holds(last, cycle)
