@@ -287,3 +287,21 @@ def test_a_start_that_repeats_what_follows_is_let_go() -> None:
     at = release(fourbar(), 0.1).at(np.zeros(1))
     start = Start(angles_rad={"rocker": float(at.links["rocker"].theta[0]) + math.tau})
     assert release(replace(fourbar(), start=start), 0.1).until_s == 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b, c, d = rng.uniform(0.1, 0.5, 4).round(3).tolist()
+    start = {"start_deg": float(rng.uniform(-60.0, 60.0)), "speed_rad_s": 5.0}
+    for scene in (fourbar(a, b, c, d, **start), slider_crank(a, b, 0.01, **start)):  # type: ignore[arg-type]
+        try:
+            free = release(scene, 0.5)
+        except CrankcheckError as error:
+            assert "cannot close" in str(error) or "cannot be assembled" in str(error)
+            continue
+        energy = free.energy(np.linspace(0.0, 0.5, 101))
+        assert np.ptp(energy.balance) <= 1e-9 * energy.kinetic.max()
+        end = np.array([0.5])
+        growth = float(free.sensitivity(end)[0])
+        assert float(free.error_rad(end)[0]) < 1e-11 * max(1.0, growth / 100.0)
