@@ -8,7 +8,7 @@ import numpy as np
 
 from analytic.free.gauss import gauss, sums
 from analytic.free.machine import Machine
-from analytic.free.track import Track
+from analytic.free.track import MOST, Track
 from models.array import Array
 from models.scene import Scene
 
@@ -34,7 +34,7 @@ def energy(scene: Scene, track: Track, time_s: Array) -> Energy:
     window = track.windows_at(time_s)
     series, before = _work(scene, track)
     share = (time_s - track.starts_s[window]) / np.array([w.long_s for w in track.windows])[window]
-    work = before[window] + sums(series[window], np.clip(share, 0.0, 1.0))
+    work = before[window] + sums(series[window], np.clip(share, 0.0, MOST))
     kinetic, potential = np.empty_like(u), np.empty_like(u)
     for chart, first, last in track.legs():
         at = (window >= first) & (window < last)
@@ -59,5 +59,6 @@ def _work(scene: Scene, track: Track) -> tuple[Array, Array]:
         u, v, _ = track.at(numbers, share)
         power[first:last] = Machine(scene, chart).power(times.ravel(), u, v).reshape(-1, n)
     series = power @ rule.series.T @ rule.lift_once.T * long_s[:, None]
-    gained = series.sum(axis=1)
+    lasts_s = np.array([window.end_s for window in track.windows]) - track.starts_s
+    gained = sums(series, lasts_s / long_s)
     return series, np.concatenate([[0.0], np.cumsum(gained)[:-1]])

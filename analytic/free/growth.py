@@ -21,6 +21,9 @@ STEEP = 0.1
 """Nearer to a limit of the driver than where its angle changes by this per unit of the coordinate,
 a start is changed in the coordinate, as the angle is at its end there."""
 
+AT_REST = 1e-10
+"""Of the rates in a window: what is slower at its end has come to rest."""
+
 
 def growth(track: Track, omega: float) -> tuple[Array, Array]:
     """Times [s], and by how much a small change of the start has grown until then at most.
@@ -51,10 +54,11 @@ def _across(before: Window, after: Window) -> Array:
     """The derivative from the end of a window to the start of the next one."""
     matrix = np.eye(2)
     v = float(before.v.sum())
-    if before.bends:
-        a, b = float(before.a.sum()), float(after.a @ (-1.0) ** np.arange(len(after.a)))
-        reached = float(np.abs(before.v[1:]).sum())
-        if abs(v) > 1e-6 * reached:
+    if before.bends and before.chart is after.chart:
+        start = (-1.0) ** np.arange(max(len(after.v), len(after.a)))
+        a, b = float(before.a.sum()), float(after.a @ start[: len(after.a)])
+        v = float(after.v @ start[: len(after.v)])
+        if abs(v) > AT_REST * float(np.abs(before.v).sum() + np.abs(after.v).sum()):
             matrix[1, 0] = (b - a) / v
         elif a:
             matrix[1, 1] = b / a

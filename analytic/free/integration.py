@@ -16,7 +16,7 @@ import numpy as np
 from analytic.free.gauss import Gauss, sums
 from analytic.free.kinks import cells, heeds_direction, is_kinked, time_kinks
 from analytic.free.machine import Machine
-from analytic.free.track import Track, Window
+from analytic.free.track import MOST, Track, Window
 from analytic.free.window import Scale, Solved, solve_window
 from models.array import Array
 from models.errors import CrankcheckError
@@ -26,10 +26,8 @@ GROWTH, LEAST = 2.0, 0.15
 """By how much a window may be longer than the one before it, and shorter when tried again."""
 SHORTEST = 1e-12
 """A window, over the whole time, that is not to be had shorter."""
-LOOKS = 33
-"""Instants at which a change of formula is looked for, again and again between two of them."""
-AIMED = 1.02
-"""How far beyond the end of a window it is looked for where the window should end at it."""
+LOOKS, LOOKED = 257, 7
+"""Instants at which a change of formula is looked for, and how often between two of them."""
 MOST_WINDOWS = 50_000
 """A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
 FIRST_WINDOWS, FAR = 300, 4.0
@@ -38,8 +36,8 @@ TINY = 1e-150
 """A rate that only says which way the machine is about to move."""
 AIMS = 30
 """Windows that are tried so as to end at a change of formula."""
-LANDED = 4e-15
-"""How near to it they have to end, over the time."""
+SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
+"""They are solved to a little before it, and used up to it."""
 
 
 @dataclass
@@ -103,28 +101,30 @@ class Integration:
         long_s = min(self.long_s, left)
         if 0.5 * left < long_s < left:
             long_s = 0.5 * left  # two alike instead of a short one at the end
-        solved, edge = self._solved(long_s, way)
-        end_s = border_s if solved.long_s == left else self.now_s + solved.long_s
-        self._keep(solved, end_s, bends=edge)
+        solved, lasts_s, edge = self._solved(long_s, way)
+        end_s = border_s if lasts_s == left else self.now_s + lasts_s
+        self._keep(solved, lasts_s, end_s, bends=edge)
         if edge:
             self.edges_s.append(end_s)
             if heeds_direction(self.scene) and abs(self.v) <= 1e-9 * self.fastest:
                 self.v = 0.0
 
-    def _keep(self, solved: Solved, end_s: float, *, bends: bool) -> None:
+    def _keep(self, solved: Solved, lasts_s: float, end_s: float, *, bends: bool) -> None:
         chart, series = self.machine.chart, solved.series()
         window = Window(
-            chart, self.now_s, end_s, *series, *solved.changes(), wound=self.wound, bends=bends
-        )
+            chart, self.now_s, end_s, solved.long_s, *series, *solved.changes(),
+            wound=self.wound, bends=bends,
+        )  # fmt: skip
         self.windows.append(window)
-        self.now_s, (self.u, self.v) = end_s, solved.end
+        self.now_s, (self.u, self.v) = end_s, solved.at(lasts_s)
         self.fastest = max(self.fastest, abs(self.v), abs(float(series[1][0])))
         if self.wound:
             ends = self.machine.lengths(np.array([self.u]), self.wound)
             self.wound = {name: float(q[0]) for name, q in ends.items()}
 
-    def _solved(self, long_s: float, way: float) -> tuple[Solved, bool]:
-        """A window that is short enough, and whether it ends at a change of formula. Raises
+    def _solved(self, long_s: float, way: float) -> tuple[Solved, float, bool]:
+        """A window that is short enough, how long it lasts [s], and whether it ends at a change of
+        formula: that is a little beyond what was solved, for which one formula counts so. Raises
         CrankcheckError."""
         failed: CrankcheckError | None = None
         aimed = 0
@@ -136,16 +136,18 @@ class Integration:
             if solved is None:
                 long_s, aimed = 0.25 * long_s, 0
                 continue
-            end = self._change(solved, AIMED if aimed else 1.0) if self._kinked else None
-            landed = end is not None and abs(end - long_s) <= LANDED * max(end, self.now_s)
+            end = self._change(solved, beyond=aimed > 0) if self._kinked else None
+            landed = end is not None and long_s <= end <= BEYOND * long_s
             if end is not None and not (landed and solved.converged) and aimed < AIMS:
-                aimed, long_s = aimed + 1, min(end, self.until_s - self.now_s)
+                aimed, long_s = aimed + 1, end * SHORT_OF
                 continue
             excess = solved.excess(self._scale())
             share = 0.9 * max(excess, 1e-30) ** (-1.0 / self.rule.count)
             if solved.converged and excess <= 1.0 and (landed or end is None):
                 self.long_s = max(self.long_s, long_s) if aimed else long_s * min(GROWTH, share)
-                return solved, landed
+                if landed:
+                    return solved, self._change(solved, precisely=True) or long_s, True
+                return solved, long_s, False
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
             aimed = 0
         raise failed or CrankcheckError(
@@ -182,8 +184,11 @@ class Integration:
     def _driver_deg(self) -> float:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
-    def _change(self, solved: Solved, beyond: float) -> float | None:
-        """How long after the start of a window a formula first gives way to another [s]."""
+    def _change(
+        self, solved: Solved, *, beyond: bool = False, precisely: bool = False
+    ) -> float | None:
+        """How long after the start of a window, or a little beyond it, a formula first gives way to
+        another [s], None where none does."""
         u, v, _ = solved.series()
         h = solved.long_s
 
@@ -192,14 +197,17 @@ class Integration:
             ones = np.ones((len(share), 1))
             return cells(self.machine, sums(ones * u, share), sums(ones * v, share))
 
-        low, high = 0.0, beyond * h
+        end = (BEYOND if beyond or precisely else 1.0) * h
+        low, high = 0.0, end
         looks = np.concatenate([h * self.rule.places, [high]])
+        if self.windows and not self.windows[-1].bends:
+            looks = np.concatenate([[0.0], looks])  # else it starts between two formulas
         first = numbers(looks[:1])
         low = float(looks[0])
-        for _ in range(12):
+        for _ in range(LOOKED if precisely else 2):
             other = (numbers(looks) != first).any(axis=0)
             if not other.any():
-                return None if high == beyond * h else high
+                return None if high == end else high
             k = int(np.argmax(other))
             high, low = float(looks[k]), float(looks[k - 1]) if k else low
             if high - low <= 1e-17 * max(self.now_s, h):
@@ -217,8 +225,8 @@ class Integration:
     def _rest(self, border_s: float) -> None:
         """A window at rest, until something moves the machine, or to an instant."""
         low, high = self.now_s, border_s
-        for _ in range(9):
-            looks = np.linspace(low, high, 8 * LOOKS)
+        for _ in range(LOOKED):
+            looks = np.linspace(low, high, LOOKS)
             moved = np.flatnonzero(self._way(looks[1:]) != 0.0)
             if not moved.size:
                 break
@@ -226,7 +234,7 @@ class Integration:
             low, high = float(looks[k]), float(looks[k + 1])
         n = self.rule.count
         still = Window(
-            self.machine.chart, self.now_s, high,
+            self.machine.chart, self.now_s, high, high - self.now_s,
             np.array([self.u, 0.0]), np.zeros(1), np.zeros(1),
             np.diag([1.0, 0.0]), np.stack([np.ones(n), np.zeros(n)]), self.wound,
         )  # fmt: skip
@@ -240,4 +248,4 @@ class Integration:
         chart = self.machine.chart
         if chart.left(self.u) is not None:
             chart, self.u, self.v = chart.next(self.u, self.v)
-            self.machine = Machine.of(self.scene, chart)
+            self.machine = Machine(self.scene, chart)

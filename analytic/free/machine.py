@@ -24,6 +24,7 @@ from analytic.dyads.plane import STEADY, Real
 from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
 from analytic.forces.springs import spring_lengths
 from analytic.forces.virtual_power import torque_by_power
+from analytic.free.arc import Arc
 from analytic.free.chart import Chart
 from analytic.structure.mobility import analyse
 from models.array import Array
@@ -35,44 +36,55 @@ from models.springs import PinSpring, Spring
 
 Wound = Mapping[str, Real]
 """Of each spring in a pin an angle q that its own is within half a turn of [rad]."""
+UNWOUND: Wound = {}
 TAU = 2.0 * np.pi
 
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A scene with one freedom, reduced to a coordinate."""
+    """A scene with one freedom, reduced to a coordinate: the driver's angle, if no other is given.
+
+    Raises CrankcheckError for friction that follows from the reactions.
+    """
 
     scene: Scene
     chart: Chart
 
-    @staticmethod
-    def of(scene: Scene, chart: Chart) -> Machine:
-        """Raises CrankcheckError for friction that follows from the reactions."""
+    def __init__(self, scene: Scene, chart: Chart | None = None) -> None:
         if scene.coulomb_joints:
             raise CrankcheckError(
                 f"{scene.name}: friction.{scene.coulomb_joints[0]} follows from what the joint "
                 "bears, which free motion does not know before it is solved; give it a size "
                 "that is constant"
             )
-        return Machine(scene, chart)
+        object.__setattr__(self, "scene", scene)
+        object.__setattr__(self, "chart", chart or Chart(Arc(scene, None), None))
 
     def inertia(self, u: Array) -> tuple[Array, Array]:
         """J and J' at coordinates (T,)."""
         return inertia_and_slope(self.scene, self.chart.unit(u))
 
-    def acceleration(self, time_s: Array, u: Array, v: Array, wound: Wound) -> Array:
+    def push(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
+        """Q at times [s], coordinates and their rates, (T,)."""
+        push = self._push(time_s, u, v, self.chart.unit(u), wound)
+        return np.asarray(np.broadcast_to(push, u.shape))
+
+    def acceleration(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
         """u'' at times [s], coordinates and their rates, (T,)."""
         unit = self.chart.unit(u)
         inertia, slope = inertia_and_slope(self.scene, unit)
-        push = self._weights_and_loads(self.scene, time_s, u, v, unit)
-        push = push + self._springs(unit, v, wound) + self._friction(unit, v)
+        push = self._push(time_s, u, v, unit, wound)
         return np.asarray((push - 0.5 * slope * v**2) / inertia)
+
+    def _push(self, time_s: Array, u: Array, v: Array, unit: Chunk, wound: Wound) -> Real:
+        push = self._weights_and_loads(self.scene, time_s, u, v, unit)
+        return push + self._springs(unit, v, wound) + self._friction(unit, v)
 
     def kinetic(self, u: Array, v: Array) -> Array:
         """The kinetic energy [J]."""
         return np.asarray(0.5 * self.inertia(u)[0] * v**2)
 
-    def potential(self, u: Array, wound: Wound) -> Array:
+    def potential(self, u: Array, wound: Wound = UNWOUND) -> Array:
         """The energy of weights and springs [J], that of weights over the ground's origin."""
         scene, unit = self.scene, self.chart.unit(u)
         total = np.zeros_like(u)
@@ -92,7 +104,7 @@ class Machine:
             push = push - spring.damping * rate**2 * v
         return np.asarray((push + self._friction(unit, v)) * v)
 
-    def lengths(self, u: Array, wound: Wound) -> dict[str, Array]:
+    def lengths(self, u: Array, wound: Wound = UNWOUND) -> dict[str, Array]:
         """q of the springs in pins, whole turns counted [rad]."""
         found = self._lengths(self.chart.unit(u), wound)
         return {one.name: q for one, q, _ in found if isinstance(one, PinSpring)}

@@ -65,14 +65,14 @@ def period(scene: Scene) -> Period:
             "of weights and springs alone"
         )
     arc = Arc.of(scene, law.start_rad)
-    machine = Machine.of(scene, Chart(arc, None))
+    machine = Machine(scene, Chart(arc, None))
     start = np.array([law.start_rad])
     speed = np.array([law.speed_rad_s])
-    energy = float((machine.kinetic(start, speed) + machine.potential(start, {}))[0])
+    energy = float((machine.kinetic(start, speed) + machine.potential(start))[0])
 
     def left(phi: Array) -> Array:
         """What of the energy is left to move at driver angles."""
-        return np.asarray(energy - machine.potential(phi, {}))
+        return np.asarray(energy - machine.potential(phi))
 
     ends = _turning_points(arc, law, left, repeats_after(scene))
     if ends is None:

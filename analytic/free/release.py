@@ -18,7 +18,7 @@ from analytic.free.machine import Machine
 from analytic.free.start_check import check_start
 from analytic.free.track import Track, Window
 from analytic.structure.mobility import analyse
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, StructureError
 from models.released import LONGEST_S, Released
 from models.scene import KEPT, Same, Scene
 
@@ -64,12 +64,18 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     law = scene.driver.law
     if not isinstance(law, Released):
         raise CrankcheckError(f'{scene.name}: its driver follows a law; give it law = "free"')
-    analyse(scene)
+    try:
+        analyse(scene)
+    except StructureError as error:
+        raise StructureError(
+            f"{error} Free motion by closed forms is that of one freedom and of dyads; that of "
+            "others is for the equations of motion of all bodies"
+        ) from None
     chart = Chart.at(Arc.of(scene, law.start_rad), law.start_rad, {})
-    machine = Machine.of(scene, chart)
+    machine = Machine(scene, chart)
     u, v = chart.state(law.start_rad, law.speed_rad_s)
     check_start(scene, machine, u)
-    wound = machine.lengths(np.array([u]), {})
+    wound = machine.lengths(np.array([u]))
     start = {name: float(q[0]) for name, q in wound.items()}
     track, edges = _integrated(machine, until_s, NODES, (u, v), start)
     other, _ = _integrated(machine, until_s, OTHERS, (u, v), start)

@@ -13,11 +13,15 @@ from analytic.free.chart import Chart
 from analytic.free.gauss import sums
 from models.array import Array
 
+MOST = 1.001
+"""How far beyond what they were solved for polynomials are used."""
+
 
 @dataclass(frozen=True, eq=False)
 class Window:
     """From ``start_s`` to ``end_s`` the coefficients in Legendre's polynomials of u, u' and u''.
 
+    The polynomials are over ``long_s``, which is that time or hardly less of it.
     ``change`` (2, 2) is the derivative of u and u' at its end by those at its start; ``swing``
     (2, n) that of u within it. ``wound`` are angles of springs in pins at its start; ``bends``
     says that it ends where a load, a stroke or friction goes over to another formula by where the
@@ -27,6 +31,7 @@ class Window:
     chart: Chart
     start_s: float
     end_s: float
+    long_s: float
     u: Array
     v: Array
     a: Array
@@ -34,10 +39,6 @@ class Window:
     swing: Array
     wound: Mapping[str, float]
     bends: bool = False
-
-    @property
-    def long_s(self) -> float:
-        return self.end_s - self.start_s
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +70,7 @@ class Track:
         """u, u' and u'' at times [s], (T,), each in the chart of its window."""
         k = self.windows_at(time_s)
         start, long_ = self.starts_s[k], self._long_s[k]
-        share = np.clip((time_s - start) / long_, 0.0, 1.0)
+        share = np.clip((time_s - start) / long_, 0.0, MOST)
         return self.at(k, share)
 
     def at(self, windows: NDArray[np.intp], share: Array) -> tuple[Array, Array, Array]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.free.gauss import Gauss
+from analytic.free.gauss import Gauss, sums
 from models.array import Array
 
 Acceleration = Callable[[Array, Array, Array], Array]
@@ -44,6 +44,14 @@ class Solved:
     by_u: Array
     by_v: Array
     converged: bool
+
+    def at(self, after_s: float) -> tuple[float, float]:
+        """u and u' a while after the start [s]: at the end, or hardly beyond it."""
+        if after_s == self.long_s:
+            return self.end
+        share = np.array([after_s / self.long_s])
+        u, v, _ = (float(sums(each[None], share)[0]) for each in self.series())
+        return u, v
 
     def series(self) -> tuple[Array, Array, Array]:
         """The coefficients of u, u', u''."""

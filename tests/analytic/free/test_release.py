@@ -1,0 +1,289 @@
+"""Free motion against a second method, the equations of all bodies, and periods by quadrature."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from analytic.check.constraints import Constraints
+from analytic.free.free_motion import FreeMotion
+from analytic.free.machine import Machine
+from analytic.free.period import period
+from analytic.free.release import release
+from models.array import Array
+from models.characteristics import Constant, Tabulated
+from models.errors import CrankcheckError
+from models.friction import ConstantFriction, CoulombFriction
+from models.loads import Load
+from models.poses import centre_of, mass_of
+from models.scene import Scene
+from models.springs import LineSpring, PinSpring
+from models.staircase import Staircase
+from models.start import Start
+from models.waves import Pulse
+from tests.analytic.free.let_go import fourbar, past_limits, slider_crank, weightless
+
+
+def torque(characteristic: object, over: str = "time") -> dict[str, Load]:
+    return {"motor": Load("motor", "crank", None, characteristic, over)}  # type: ignore[arg-type]
+
+
+SPRINGS = {
+    "line": LineSpring("line", 200.0, 1.0, 0.1, ("A", "C")),
+    "pin": PinSpring("pin", 0.5, 0.01, 0.0, "A", ("ground", "crank")),
+}
+TABLE = Tabulated((0.0, 1.0, 2.5, 4.0), (0.1, 0.6, 0.3, 0.1), "linear", math.tau)
+KINKED = {
+    "pulse": (replace(fourbar(), loads=torque(Pulse(0.5, 0.1, 0.05))), 2),
+    "steps": (replace(fourbar(), loads=torque(Staircase((0.1, 0.2), (0.2, -0.4)))), 2),
+    "table over the angle": (replace(fourbar(), loads=torque(TABLE, "angle")), 1),
+}
+
+
+def second_method(scene: Scene, until_s: float) -> Array:
+    """The driver's angle and rate by a Runge-Kutta method of order 8, in steps that end nowhere in
+    particular: for what has no kinks over its places."""
+    machine, law = Machine(scene), scene.driver.law
+    edges = [0.0, *release(scene, until_s).edges_s, until_s]
+    state = np.array([float(x[0]) for x in law.at(np.zeros(1))[:2]])
+    for low, high in itertools.pairwise(edges):
+
+        def rates(t: float, y: Array, low: float = low, high: float = high) -> tuple[float, float]:
+            inside = min(max(t, low + 1e-12), high - 1e-12)  # on this side of a jump
+            one = machine.acceleration(np.array([inside]), y[:1], y[1:])
+            return float(y[1]), float(one[0])
+
+        done = solve_ivp(rates, (low, high), state, "DOP853", rtol=3e-14, atol=1e-14, max_step=4e-3)
+        state = done.y[:, -1]
+    return state
+
+
+@pytest.mark.parametrize(
+    ("scene", "until_s"),
+    [
+        (fourbar(), 0.25),
+        (slider_crank(speed_rad_s=15.0), 0.1),
+        (replace(fourbar(), springs={"line": SPRINGS["line"]}), 0.1),
+        *((scene, 0.25) for scene, _ in KINKED.values()),
+        pytest.param(fourbar(), 10.0, marks=pytest.mark.slow),
+    ],
+)
+def test_two_methods_agree(scene: Scene, until_s: float) -> None:
+    free, (theta, omega) = release(scene, until_s), second_method(scene, until_s)
+    end = np.array([until_s])
+    found = free.law.at(end)
+    allowed = (1e-11 if until_s <= 1.0 else 1e-9) * max(1.0, abs(theta))
+    assert abs(float(found[0][0]) - theta) <= allowed
+    assert abs(float(found[1][0]) - omega) <= allowed * max(1.0, free.peak_speed_rad_s)
+    assert float(free.error_rad(end)[0]) <= allowed
+
+
+@pytest.mark.parametrize("name", KINKED)
+def test_loads_with_kinks_are_integrated_from_kink_to_kink(name: str) -> None:
+    scene, least = KINKED[name]
+    free = release(scene, 0.4)
+    assert len(free.edges_s) >= least
+    assert {*free.edges_s} <= {window.end_s for window in free.track.windows}
+    if name == "table over the angle":
+        at = np.remainder(free.law.at(np.array(free.edges_s))[0], math.tau)
+        places = np.array(TABLE.places)
+        assert np.abs(at[:, None] - places).min(axis=1).max() < 1e-12
+
+
+def bodies_after(scene: Scene, until_s: float) -> Array:
+    """The coordinates of all bodies, from Newton's equations with a multiplier per constraint."""
+    system, state = Constraints(scene), release(scene, until_s).at(np.zeros(1)).state()
+    start = np.zeros(2 * system.size)
+    size = system.size
+    for name, link in scene.links.items():
+        i, (point, local) = system.at[name], next(iter(link.points.items()))
+        assert local == (0.0, 0.0)
+        start[i : i + 3] = *state.position[point], state.theta[name]
+        start[size + i : size + i + 3] = *state.velocity[point], state.omega[name]
+
+    def rates(_: float, y: Array) -> Array:
+        q, v = y[:size], y[size:]
+        mass, force = np.zeros((size, size)), np.zeros(size)
+        for name in scene.links:
+            i, (m, inertia) = system.at[name], mass_of(scene, name)
+            x, c, s = centre_of(scene, name)[0], math.cos(q[i + 2]), math.sin(q[i + 2])
+            carry = np.array([[1.0, 0.0, -x * s], [0.0, 1.0, x * c]])
+            mass[i : i + 3, i : i + 3] = m * carry.T @ carry
+            mass[i + 2, i + 2] += inertia
+            pull = np.array(scene.gravity_m_s2) + v[i + 2] ** 2 * x * np.array([c, s])
+            force[i : i + 3] = m * carry.T @ pull
+        phi_q = system.jacobian(q)[:-1]
+        whole = np.block([[mass, phi_q.T], [phi_q, np.zeros((len(phi_q), len(phi_q)))]])
+        right = np.concatenate([force, system.gamma(q, v, 0.0)[:-1]])
+        return np.concatenate([v, np.linalg.solve(whole, right)[:size]])
+
+    done = solve_ivp(rates, (0.0, until_s), start, "DOP853", rtol=1e-12, atol=1e-12)
+    return np.array([done.y[system.at[name] + 2, -1] for name in scene.links])
+
+
+def test_past_limits_the_motion_is_that_of_all_bodies() -> None:
+    """Through two limits, each of which puts the dyad into its other assembly."""
+    scene, until_s = past_limits(), 0.9
+    free = release(scene, until_s)
+    assert [passage.dyad for passage in free.passages] == ["C", "C"]
+    first, second = free.passages
+    cosine = (0.45**2 - 0.2**2 - 0.4**2) / (-2.0 * 0.2 * 0.4)
+    assert second.driver_rad == pytest.approx(math.acos(cosine), abs=1e-15)
+    assert first.driver_rad == pytest.approx(-math.acos(cosine), abs=1e-15)
+    motion = free.at(np.array([until_s]))
+    found = np.array([link.theta[0] for link in motion.links.values()])
+    assert np.abs(found - bodies_after(scene, until_s)).max() < 1e-10
+
+
+@pytest.mark.parametrize(
+    "scene", [past_limits(), past_limits(start_deg=20.0, speed_rad_s=15.0),
+              slider_crank(0.3, 0.2, 0.05, start_deg=20.0, speed_rad_s=8.0)],
+)  # fmt: skip
+def test_past_limits_everything_goes_on_smoothly_in_the_right_assembly(scene: Scene) -> None:
+    free = release(scene, 1.0)
+    assert len(free.passages) > 1
+    near = [p.time_s + x for p in free.passages for x in (-1e-4, -1e-7, 0.0, 1e-7, 1e-4)]
+    time_s = np.sort(np.concatenate([np.linspace(0.0, 1.0, 1501), np.clip(near, 0.0, 1.0)]))
+    motion, step = free.at(time_s), np.diff(time_s)
+    for link in motion.links.values():
+        steady = 0.5 * (link.omega[1:] + link.omega[:-1])
+        off = np.abs(np.diff(link.theta) - steady * step)
+        assert np.all(off <= 0.2 * np.abs(link.alpha).max() * step**2 + 1e-12)
+    beside = free.beside(motion)
+    for name, point in motion.points.items():
+        assert np.abs(beside.points[name].position - point.position).max() < 1e-12
+    for name, link in motion.links.items():
+        assert np.abs(beside.links[name].theta - link.theta).max() < 1e-7
+
+
+@pytest.mark.parametrize(
+    "scene", [fourbar(), past_limits(), replace(fourbar(), springs=SPRINGS),
+              replace(fourbar(), friction={"C": ConstantFriction("C", 0.02)}),
+              *(scene for scene, _ in KINKED.values())],
+)  # fmt: skip
+def test_energy_balances(scene: Scene) -> None:
+    energy = release(scene, 0.6).energy(np.linspace(0.0, 0.6, 301))
+    off = np.abs(energy.balance - energy.balance[0])
+    assert off.max() <= 1e-11 * energy.kinetic.max()
+
+
+def times_of(free: FreeMotion, level: float, until_s: float) -> list[float]:
+    """When the driver passes an angle upwards."""
+    time_s = np.linspace(0.0, until_s, 4001)
+    off = free.law.at(time_s)[0] - level
+
+    def after(t: float) -> float:
+        return float(free.law.at(np.array([t]))[0][0]) - level
+
+    found = np.flatnonzero((off[:-1] < 0.0) & (off[1:] >= 0.0))
+    return [float(brentq(after, time_s[k], time_s[k + 1], xtol=1e-16)) for k in found]
+
+
+@pytest.mark.parametrize(
+    "scene", [fourbar(), fourbar(start_deg=-85.0), fourbar(speed_rad_s=5.0), slider_crank()]
+)
+def test_swings_take_the_period_that_quadrature_has(scene: Scene) -> None:
+    one = period(scene)
+    assert one.swing_rad is not None
+    free = release(scene, 4.0)
+    times = times_of(free, 0.5 * sum(one.swing_rad), 4.0)
+    assert len(times) > 1
+    assert np.abs(np.diff(times) - one.time_s).max() < 1e-12
+
+
+def test_turns_take_the_period_that_quadrature_has() -> None:
+    scene = fourbar(speed_rad_s=40.0)
+    one = period(scene)
+    assert one.swing_rad is None
+    times = one.time_s * np.arange(5)
+    theta = release(scene, 1.0).law.at(times)[0]
+    assert np.abs(theta - theta[0] - math.tau * np.arange(5)).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        (replace(fourbar(), loads=torque(Constant(1.0))), "loads, dampers or friction"),
+        (past_limits(), "comes to its limit"),
+    ],
+)
+def test_a_period_is_refused_where_there_is_none(scene: Scene, said: str) -> None:
+    with pytest.raises(CrankcheckError, match=said):
+        period(scene)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("start_deg", "growth"), [(0.0, 82.3), (90.0, 365.0)])
+def test_the_sensitivity_is_what_a_nudge_grows_by(start_deg: float, growth: float) -> None:
+    scene, time_s = fourbar(start_deg=start_deg), np.linspace(0.0, 10.0, 20001)
+    free = release(scene, 10.0)
+    nudged = release(fourbar(start_deg=start_deg + math.degrees(1e-7)), 10.0)
+    grown = np.abs(nudged.law.at(time_s)[0] - free.law.at(time_s)[0]).max() / 1e-7
+    assert grown == pytest.approx(growth, rel=0.01)
+    assert free.sensitivity(time_s[-1:])[0] == pytest.approx(grown, rel=0.03)
+
+
+def test_friction_holds_a_mechanism_that_has_come_to_rest() -> None:
+    scene = replace(fourbar(), friction={"A": ConstantFriction("A", 0.05)})
+    free = release(scene, 3.0)
+    theta, omega, _ = free.law.at(np.array([2.0, 2.5, 3.0]))
+    assert omega.tolist() == [0.0, 0.0, 0.0]
+    assert theta.max() == theta.min()
+    push = Machine(replace(scene, friction={})).push(np.zeros(1), theta[:1], np.zeros(1))
+    assert abs(push[0]) <= 0.05
+    assert free.sensitivity(np.array([3.0]))[0] < 100.0
+
+
+def test_a_pin_spring_is_wound_up_by_whole_turns() -> None:
+    spring = PinSpring("pin", 0.02, 0.0, 0.0, "A", ("ground", "crank"))
+    scene = replace(weightless(fourbar(speed_rad_s=30.0)), springs={"pin": spring})
+    time_s = np.linspace(0.0, 1.0, 101)
+    free = release(scene, 1.0)
+    theta = free.law.at(time_s)[0]
+    assert theta.max() > 1.5 * math.tau
+    potential = free.energy(time_s).potential
+    assert np.abs(potential - 0.01 * theta**2).max() < 1e-12
+
+
+def test_times_may_come_in_any_order() -> None:
+    free, time_s = release(past_limits(), 0.9), np.linspace(0.0, 0.9, 50)
+    forth, back = free.at(time_s), free.at(time_s[::-1])
+    assert np.array_equal(forth.links["rocker"].theta, back.links["rocker"].theta[::-1])
+    assert np.array_equal(
+        forth.bound.points["C"].position,
+        back.bound.points["C"].position[::-1],  # type: ignore[union-attr]
+    )
+
+
+STILL = {
+    name: replace(one, mass_kg=0.0, inertia_kg_m2=0.0) for name, one in fourbar().links.items()
+}
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        (replace(fourbar(), start=Start(angles_rad={"rocker": 1.0})), "angles_deg.rocker: .* open"),
+        (replace(fourbar(), start=Start(rates_rad_s={"rocker": 1.0})), "rates_rad_s.rocker: "),
+        (replace(slider_crank(), start=Start(displacements_m={"C": 1.0})), "it is open by .* m;"),
+        (replace(fourbar(), links=STILL), "nothing that moves has a mass"),
+        (replace(fourbar(), friction={"A": CoulombFriction("A", 0.1, 0.01)}), "friction.A follows"),
+        (past_limits(start_deg=120.0), "cannot close at C"),
+        (fourbar(0.2, 0.3, 0.2, 0.3), "at rest in the change point of C"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_let_go_is_refused(scene: Scene, said: str) -> None:
+    with pytest.raises(CrankcheckError, match=said):
+        release(scene, 1.0)
+
+
+def test_a_start_that_repeats_what_follows_is_let_go() -> None:
+    at = release(fourbar(), 0.1).at(np.zeros(1))
+    start = Start(angles_rad={"rocker": float(at.links["rocker"].theta[0]) + math.tau})
+    assert release(replace(fourbar(), start=start), 0.1).until_s == 0.1
