@@ -45,6 +45,11 @@ class FreeBeside(Beside):
         """The sensitivity at the logged instants, (T,)."""
         return self.let_go.sensitivity(self.motion.time_s)
 
+    @property
+    def driver_speed(self) -> Array:
+        """The true angular velocity of the driver at the logged instants [rad/s], (T,)."""
+        return self.reference.links[self.scene.driver.link].omega
+
     def driver_at(self, time_s: Array, reference: Motion) -> Array:
         return reference.links[self.scene.driver.link].theta
 
