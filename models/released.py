@@ -13,6 +13,9 @@ from models.laws import Law
 if TYPE_CHECKING:
     from models.scene import Scene
 
+LONGEST_S = 1e6
+"""For which a mechanism may be left free [s]."""
+
 
 @dataclass(frozen=True)
 class Released(Law):

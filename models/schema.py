@@ -13,6 +13,8 @@ from pydantic import (
     model_validator,
 )
 
+from models.released import LONGEST_S
+
 NAME = r"[A-Za-z][A-Za-z0-9_-]{0,39}"
 """What a name is: nothing in it leaves a path, a tag or a cell."""
 Name = Annotated[str, StringConstraints(pattern=rf"^{NAME}$")]
@@ -25,6 +27,8 @@ LARGEST = 1e15
 """No number of a scene is larger, and no length or mass smaller than its inverse: squares of
 them, and products with rates, stay numbers."""
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-LARGEST, le=LARGEST)]
+Duration = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LONGEST_S)]
+"""Of free motion [s]."""
 Degrees = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-1e6, le=1e6)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=LARGEST)]
@@ -139,7 +143,7 @@ class FreeDriver(Table):
     law: Literal["free"]
     speed_rad_s: RateNumber = 0.0
     start_deg: Degrees = 0.0
-    duration_s: Positive = 10.0
+    duration_s: Duration = 10.0
 
 
 class SpringTable(Table):

@@ -28,6 +28,10 @@ SHORTEST = 1e-12
 """A window, over the whole time, that is not to be had shorter."""
 LOOKS, LOOKED = 257, 7
 """Instants at which a change of formula is looked for, and how often between two of them."""
+MOST_WINDOWS = 50_000
+"""A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
+FIRST_WINDOWS, FAR = 300, 4.0
+"""After so many it is told how many all take, and refused where they are so many times too many."""
 TINY = 1e-150
 """A rate that only says which way the machine is about to move."""
 AIMS = 30
@@ -78,6 +82,18 @@ class Integration:
                 way = math.copysign(1.0, self.v)
             self._step(border_s, way)
             self._hop()
+            self._check_count()
+
+    def _check_count(self) -> None:
+        """Raises CrankcheckError where the time takes more windows than can be worked out."""
+        made = len(self.windows)
+        ahead = made * self.until_s / self.now_s
+        if made >= MOST_WINDOWS or (made >= FIRST_WINDOWS and ahead > FAR * MOST_WINDOWS):
+            raise CrankcheckError(
+                f"{self.scene.name}: free for {self.until_s:g} s, of which {self.now_s:.3g} s took "
+                f"{made} windows of the integration; at most {MOST_WINDOWS} are made: give a time "
+                f"of {self.now_s * MOST_WINDOWS / made:.2g} s or less"
+            )
 
     def _step(self, border_s: float, way: float) -> None:
         """One window."""

@@ -3,7 +3,6 @@ integration with other nodes in other windows."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from functools import lru_cache
 
@@ -20,7 +19,7 @@ from analytic.free.start_check import check_start
 from analytic.free.track import Track, Window
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError
-from models.released import Released
+from models.released import LONGEST_S, Released
 from models.scene import KEPT, Same, Scene
 
 NODES, OTHERS = 20, 16
@@ -52,8 +51,10 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
         follows from the reactions; a position on the way that has no smooth motion through it; a
         time that is none.
     """
-    if not (math.isfinite(until_s) and until_s > 0.0):
-        raise CrankcheckError(f"{scene.name}: free for {until_s:g} s; give a time above 0")
+    if not 0.0 < until_s <= LONGEST_S:
+        raise CrankcheckError(
+            f"{scene.name}: free for {until_s:g} s; give a time above 0, of at most {LONGEST_S:g} s"
+        )
     return _released(Same(scene), float(until_s))
 
 

@@ -14,7 +14,10 @@ from models.errors import CrankcheckError, SceneError
 from models.motion import Motion
 from models.released import Released
 from models.scene import Scene
+from models.springs import LineSpring
 
+CLOSE = 1e-9
+"""Points that are not as far apart are at one place: over the longest link."""
 ROOM = 1e-6
 """By how much a start may be open that is written with some digits: [rad], and of the longest link
 [m]; rates, by that of those that it follows from."""
@@ -50,10 +53,21 @@ def check_start(scene: Scene, machine: Machine, u: float) -> None:
             what = f"nothing that moves has a mass at {scene.driver.link} {turned:.6g} deg"
         raise CrankcheckError(f"{scene.name}: {what}; free motion needs one: give the links masses")
     theta, omega = np.array([law.start_rad]), np.array([law.speed_rad_s])
-    if scene.start:
-        found = solve_driven(scene, theta, omega, np.zeros(1), bound=False)
-        if faults := [*_contradictions(scene, found)]:
-            raise SceneError(scene.name, faults)
+    found = solve_driven(scene, theta, omega, np.zeros(1), bound=False)
+    if faults := [*_contradictions(scene, found), *_without_direction(scene, found)]:
+        raise SceneError(scene.name, faults)
+
+
+def _without_direction(scene: Scene, at: Motion) -> Iterator[str]:
+    """Springs whose two points are at one place, in words."""
+    for spring in scene.springs.values():
+        if isinstance(spring, LineSpring):
+            a, b = (at.points[name].position[0] for name in spring.points)
+            if math.dist(a, b) <= CLOSE * scene.longest_m:
+                yield (
+                    f"springs.{spring.name}: {' and '.join(spring.points)} are at one place at the "
+                    "start, where a pull between them has no direction; let it go from elsewhere"
+                )
 
 
 def _contradictions(scene: Scene, at: Motion) -> Iterator[str]:

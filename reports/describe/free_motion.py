@@ -12,7 +12,6 @@ from models.array import Array
 from models.motion import Motion
 from reports.describe.tables import Columns, tables_over_time
 from reports.output.numbers import count, error_text
-from reports.plan.singular import continued_note
 
 ROUNDING = 1e-15
 """An energy that is less of the largest is 0."""
@@ -49,26 +48,24 @@ def free_tables(free: FreeMotion, motion: Motion, width: int) -> list[Table]:
     return tables_over_time(free.scene, motion, bodies, width)
 
 
-def free_notes(free: FreeMotion, motion: Motion) -> list[str]:
-    """How sure the motion is up to its last sample, and what it goes through until then, in
+def free_notes(free: FreeMotion, until_s: float) -> list[str]:
+    """How sure the motion is up to an instant [s], and what it goes through until then, in
     sentences."""
-    last = np.array([float(np.max(motion.time_s))])
+    last = np.array([until_s])
     off, growth = float(free.error_rad(last)[0]), float(free.sensitivity(last)[0])
     notes = [
         f"Integrated with high precision, no closed form: the angle of {free.scene.driver.link} is "
-        f"off by at most {error_text(off)} rad at {last[0]:g} s.",
+        f"off by at most {error_text(off)} rad at {until_s:g} s.",
         f"Sensitivity {growth:.3g}: what the start is changed by has grown so many times by then.",
     ]
-    passed = [one for one in free.passages if one.time_s <= last[0]]
+    passed = [one for one in free.passages if one.time_s <= until_s]
     limits = [
         f"{math.degrees(one.driver_rad):.6g} deg at {one.time_s:.6g} s ({one.dyad})"
         for one in passed
     ]
     if limits:
         notes.append(f"Limits in which {free.scene.driver.link} turns back: {_few(limits)}.")
-    if continued := continued_note(motion):
-        notes.append(f"{continued[0].upper()}{continued[1:]}.")
-    edges = [f"{time_s:.6g}" for time_s in free.edges_s if time_s <= last[0]]
+    edges = [f"{time_s:.6g}" for time_s in free.edges_s if time_s <= until_s]
     if edges:
         instants = count(len(edges), "instant")
         notes.append(f"What acts is not smooth at {instants}: {_few(edges)} s.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from rich.console import Console
 
 from analytic.free.free_motion import FreeMotion
@@ -11,6 +12,7 @@ from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_notes, free_tables
 from reports.describe.tables import motion_tables
 from reports.face.solution_text import heading
+from reports.plan.singular import continued_note
 
 
 def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
@@ -23,5 +25,6 @@ def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
         tables = [*free_tables(free, shown, console.width), *tables]
     for table in tables:
         console.print(table, "")
-    for note in free_notes(free, motion):
+    notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(motion)]
+    for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)

@@ -29,7 +29,7 @@ from models.files import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
 from tests.worlds.free_files import free_mechanisms
-from tests.worlds.fuzzing import COMMANDS, LET_GO, QUICK, VERIFY, Ended, attempt
+from tests.worlds.fuzzing import COMMANDS, LET_GO, QUICK, VERIFY, Ended, attempt, fitting
 from tests.worlds.mutation import mutant, retied, stretched
 from tests.worlds.scene_files import Tree, scene_files, toml
 
@@ -84,7 +84,8 @@ def bench() -> Iterator[Bench]:
 def try_changed(bench: Bench, first: int, count: int, commands: tuple[str, ...]) -> None:
     """Shipped files with something done to them."""
     for number in range(first, first + count):
-        command, raw = commands[number % len(commands)], mutant(number)
+        raw = mutant(number)
+        command = fitting(raw, commands[number % len(commands)])
         faults = bench.try_out(raw, command)
         assert not faults, f"{faults}: {command} of mutant({number}):\n{raw[:3000]!r}"
 
@@ -152,7 +153,7 @@ def test_each_name_and_each_number_in_place_of_another(
     bench: Bench,
 ) -> None:
     for done, raw in itertools.islice(changed(), part, None, 4):
-        for command in commands:
+        for command in dict.fromkeys(fitting(raw, each) for each in commands):
             faults = bench.try_out(raw, command)
             assert not faults, f"{faults}: {command} of {done}"
     assert bench.ends["exit 0"] > 30, bench.report()

@@ -13,6 +13,7 @@ from reports.describe.free_motion import free_notes
 from reports.drawing.moving import drawing
 from reports.page.sections.motion import scene_words
 from reports.page.sections.section import Section
+from reports.plan.singular import continued_note
 
 CAPTIONS: Mapping[str, str] = {
     "over-time": "The driver's angle and angular velocity.",
@@ -40,7 +41,7 @@ def build(free: FreeMotion, figures: Mapping[str, bytes]) -> Section:
         template="scene_free.html",
         words={
             "scene": scene_words(free.scene),
-            "notes": free_notes(free, motion),
+            "notes": [*filter(None, (*free_notes(free, free.until_s), continued_note(motion)))],
             "figures": [
                 (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
                 for name, svg in figures.items()

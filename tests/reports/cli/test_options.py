@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from reports.cli import app, changes, checking, measuring, showing
+from reports.cli import app, changes, checking, measuring, regulating, showing
 
 LEAST = {
     "verify": ("verify", checking.VerifyRequest()),
@@ -24,6 +24,8 @@ LEAST = {
     "advise --dt 1 --speed 2 --target 3": ("run_advise", measuring.AdviseRequest(1.0, 2.0, 3.0)),
     "stability": ("stability", measuring.StabilityRequest()),
     "solve a": ("run_solve", showing.SolveRequest("a")),
+    "cycle a": ("run_cycle", regulating.CycleRequest("a")),
+    "flywheel a --delta 1": ("run_flywheel", regulating.FlywheelRequest("a", 1.0)),
 }
 
 

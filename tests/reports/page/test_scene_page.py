@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
+from analytic.free.release import release
 from models.files import load_scene
-from reports.face.scene_report import page_of
+from reports.face.scene_report import free_page_of, page_of
 from tests.analytic.dyads.test_redundant import parallelogram, with_strut
 from tests.reports.page.conftest import Opened
 
@@ -39,6 +40,26 @@ def test_a_page_moves_with_its_forces_and_says_nothing_wrong(
     assert seen[0] != seen[1]
     assert all(len(arrows) >= 6 for arrows, _ in seen)
     assert "Driving torque here: 1.93 N m." in seen[0][1]
+
+
+def test_a_free_motion_moves_and_tells_the_time(browser: Browser, tmp_path: Path) -> None:
+    """As above: some 2 s."""
+    path = tmp_path / "swing.html"
+    path.write_text(free_page_of(release(load_scene("fourbar-swing"), 0.5)), encoding="utf-8")
+    context = browser.new_context(offline=True)
+    opened = Opened(context.new_page())
+    opened.watch()
+    opened.page.goto(path.as_uri())
+    seen = []
+    for at in (0, 60):
+        opened.page.evaluate(STEP, at)
+        links = opened.page.locator("#motion-picture .reference path").all()
+        shape = [each.get_attribute("d") for each in links]
+        seen.append((shape, opened.page.locator("#motion-angle").inner_text()))
+    context.close()
+    assert not opened.said
+    assert seen[0][0] != seen[1][0]
+    assert (seen[0][1], seen[1][1]) == ("0.00 s", "0.250 s")
 
 
 def test_a_page_without_forces_has_none() -> None:
