@@ -7,6 +7,7 @@ A block of ``console`` starts with ``$ command``; below it stands what the comma
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest

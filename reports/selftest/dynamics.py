@@ -78,12 +78,10 @@ FAULTS = (
     _fault(
         "torque-late",
         "a torque over time acts late",
-        rule="CC110",
         plant=in_free_scene(of_first_load(later(_STEP_S))),
         size=1.0,
         unit="steps",
         scenes=(PULSE,),
-        finer=True,
     ),
     _fault(
         "torque-reversed",

@@ -47,7 +47,7 @@ def _leaking(_: Scene, done: Run, share: float) -> Run:
 
 _fault = partial(Fault, "record", scenes=(SWING,))
 FAULTS = (
-    _fault("row-later", "every sample is a later one", "CC127", late, 10.0, "samples", whole=True),
+    _fault("row-later", "every sample is a later one", "CC127", late, 1.0, "sample", whole=True),
     _fault("rate-off", "a logged velocity is too large", "CC106", in_log(_quick), 0.1, "of it"),
     _fault("energy-leaks", "energy that is lost evenly", "CC129", in_log(_leaking), 1e-2, "T"),
     _fault("energy-missing", "no energy is in the log", "CC109", switched(_without_energy)),

@@ -99,9 +99,8 @@ class PymunkSpoiler:
         """Velocities lie half a step after positions: what they change in a step is all too new."""
         bodies = list(_model(session).bodies.values())
         now = np.array([[*body.velocity, body.angular_velocity] for body in bodies])
-        for body, (x, y, turn) in (
-            zip(bodies, by_s * (now - before), strict=True) if before is not None else ()
-        ):
+        off = np.zeros_like(now) if before is None else by_s * (now - before)
+        for body, (x, y, turn) in zip(bodies, off, strict=True):
             body.position -= (float(x), float(y))
             body.angle -= float(turn)
         return now

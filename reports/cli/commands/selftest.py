@@ -67,7 +67,7 @@ def _kind(request: SelftestRequest) -> RunKind:
     """What runs the faults are planted in, where none is named. Raises CrankcheckError."""
     if request.forces and request.free:
         raise CrankcheckError(
-            "--forces with --free: faults are planted in one of them; leave one out"
+            "--forces with --free: the faults of either have runs of their own; ask for one of them"
         )
     return "forces" if request.forces else "free" if request.free else "motion"
 
