@@ -50,7 +50,7 @@ GROUPS = {
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
     "force": "a right motion with wrong forces",
-    "dynamics": "let go, with other masses, loads or springs",
+    "dynamics": "let go, as another machine",
     "stepping": "let go, and spoilt inside the engine",
     "record": "let go, and wrong in the log",
 }
