@@ -62,6 +62,10 @@ class BodiesMotion:
         return self.bodies.edges_s
 
     @property
+    def freedoms(self) -> int:
+        return self.bodies.dynamics.assembly.size - self.bodies.dynamics.rank
+
+    @property
     def by_dyads(self) -> bool:
         return False
 
@@ -91,8 +95,8 @@ class BodiesMotion:
         return replace(motion, forces=self.bodies.at(motion.time_s).forces)
 
     def beside(self, logged: Motion) -> Motion:
-        assembly, dynamics = self.bodies.dynamics.assembly, self.bodies.dynamics
-        q = logged_places(assembly, logged, assembly.size - dynamics.rank)
+        assembly = self.bodies.dynamics.assembly
+        q = logged_places(assembly, logged, self.freedoms)
         return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
 
     def energy(self, time_s: Array) -> Energy:

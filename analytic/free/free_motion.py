@@ -27,8 +27,8 @@ class FreeMotion(Protocol):
     """What a scene does from time 0, when it is let go, to ``until_s``.
 
     ``passages`` are the limit positions on the way, ``edges_s`` the instants at which what acts is
-    not smooth. ``by_dyads`` says that it has one freedom and a closed form of its positions, so
-    that the driver's angle and the branch say where it is.
+    not smooth. ``freedoms`` is its mobility; ``by_dyads`` says that this is 1, and that there is
+    a closed form of its positions: then the driver's angle and the branch say where it is.
     """
 
     @property
@@ -42,6 +42,9 @@ class FreeMotion(Protocol):
 
     @property
     def edges_s(self) -> Sequence[float]: ...
+
+    @property
+    def freedoms(self) -> int: ...
 
     @property
     def by_dyads(self) -> bool: ...

@@ -38,6 +38,10 @@ class MachineMotion:
     edges_s: tuple[float, ...] = ()
 
     @property
+    def freedoms(self) -> int:
+        return 1
+
+    @property
     def by_dyads(self) -> bool:
         return True
 
