@@ -34,3 +34,5 @@ SECTIONS: dict[str, Callable[[PageReport], Section | None]] = {
     "fairness": fairness,
     "provenance": provenance,
 }
+OF_DRIVEN = ("recommendation", "precision", "convergence", "reading_forces", "motion")
+"""Those that speak of turns: of a store's driven cells alone."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from reports.output.numbers import count, duration, error_text, listed
-from reports.page.sections.section import Section
+from reports.page.sections.section import PageReport, Section
 from reports.results.lines import Line, named
 from reports.results.looks import Look
 from reports.results.overview import Report
@@ -49,9 +49,10 @@ class VerdictRow:
         return f"{told} on {len(self.floors)} of {count(self.lines, 'scene')}"
 
 
-def build(report: Report) -> Section:
+def build(report: PageReport) -> Section:
     """The section."""
     rows = [_row(look, lines) for look, lines in _by_look(report)]
+    chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
     return Section(
         anchor="verdict",
@@ -61,10 +62,11 @@ def build(report: Report) -> Section:
             "verdict": verdict(gated),
             "level": level(gated),
             "sentences": [
-                (engine, version, sentence(engine, rows, report.recommendations))
+                (engine, version, sentence(engine, rows, chosen))
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
+            "free": report.driven is not report,
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )
