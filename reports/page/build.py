@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from reports.drawing.packed import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text, readable
-from reports.page.sections import OF_DRIVEN, SECTIONS
+from reports.page.sections import SECTIONS
 from reports.page.sections.free import build as free
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
@@ -56,19 +56,15 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
         A store that can not be read, part by part.
     """
     report = PageReport(stored, matrix)
-    driven = report.driven
-    parts = {name: driven if name in OF_DRIVEN else report for name in SECTIONS}
-    sections = {
-        name: None if part is None else SECTIONS[name](part) for name, part in parts.items()
-    }
+    sections = {name: build(report) for name, build in SECTIONS.items()}
     text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
     if over > 0 and sections["free"] is not None:
         sections["free"] = free(report, max(BUDGET - over, 0))
         text = _rendered(report, sections)
         over = len(text.encode()) - MOST_BYTES
-    if over > 0 and driven is not None and sections["motion"] is not None:
-        sections["motion"] = motion(driven, BUDGET - over)
+    if over > 0 and report.driven is not None and sections["motion"] is not None:
+        sections["motion"] = motion(report.driven, BUDGET - over)
         text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
     if over > 0 and matrix is not None and sections["hard"] is not None:

@@ -49,13 +49,7 @@
   });
   const plot = crankcheck.chart(part("chart"), () => freeCourses.overTime(shown, course.value, runs()), cursor);
   const fits = () => own.fits[error.value].filter((fit) => fit.scene === scene.value);
-  const against = crankcheck.chart(part("convergence"), () => ({
-    data: fits().flatMap((fit) => freeCourses.against(fit, orders.on(fit.look))),
-    layout: {
-      xaxis: { ...crankcheck.logAxis("step [s]", false), ...crankcheck.ticks(fits().flatMap((fit) => fit.steps.map((n) => fit.lasts_s / n))) },
-      yaxis: crankcheck.logAxis(`error [${own.units[error.value]}]`, true),
-    },
-  }));
+  const against = crankcheck.chart(part("convergence"), () => freeCourses.convergence(fits(), own.units[error.value], orders.on));
 
   /** The curves over time, with what is said of them. */
   function curves() {

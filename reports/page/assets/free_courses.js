@@ -4,8 +4,8 @@
 crankcheck.freeCourses = (() => {
   const { colour, escaped, folded, short, unpacked } = crankcheck;
   const COURSES = {
-    phase_judged: { title: "error of phase / G [rad]", log: true, told: "What the driver's angle is off by at the same time, over the sensitivity of the motion: size alone." },
-    phase: { title: "error of phase [rad]", log: true, told: "What the driver's angle is off by at the same time: size alone." },
+    phase_judged: { title: "error of phase / G [rad]", log: true, told: "What the driver's angle is off by at the same time, over the sensitivity of the motion. Thin: its size at the moment; thick: the largest so far." },
+    phase: { title: "error of phase [rad]", log: true, told: "What the driver's angle is off by at the same time. Thin: its size at the moment; thick: the largest so far." },
     energy: { title: "change of energy [of largest kinetic energy]", told: "What the engine's energy has changed by since the start, less the work of loads and dampers. Thin: as it is; thick: means over windows, of which the last less the first is the drift." },
     speed: { title: "angular velocity of the driver [rad/s]", truth: 1, told: "Grey and wide: the truth." },
     angle: { title: "angle of the driver [turns]", truth: 0, told: "Grey and wide: the truth." },
@@ -16,6 +16,12 @@ crankcheck.freeCourses = (() => {
   function curvesOf(cell) {
     cell.curve ??= Object.fromEntries(unpacked(cell.curves).map((row, i) => [cell.names[i], [...row]]));
     return cell.curve;
+  }
+
+  /** The largest size of a series up to each of its samples; none where it is still 0. */
+  function largestSoFar(series) {
+    let largest = 0;
+    return series?.map((v) => (largest = Math.max(largest, Math.abs(v) || 0)) || null);
   }
 
   const line = (x, y, name, paint, width, dash = "solid") => ({
@@ -45,7 +51,10 @@ crankcheck.freeCourses = (() => {
       else if (course === "energy") {
         own(cell.time_s, curve.energy, 1, 0.55);
         own(cell.time_s, curve.energy_mean, 2.6);
-      } else own(cell.time_s, log ? curve[course]?.map((v) => (v ? Math.abs(v) : null)) : curve[course], 1.6);
+      } else if (log) {
+        own(cell.time_s, curve[course]?.map((v) => (v ? Math.abs(v) : null)), 1, 0.35);
+        own(cell.time_s, largestSoFar(curve[course]), 2.2);
+      } else own(cell.time_s, curve[course], 1.6);
     }
     return {
       data,
@@ -72,5 +81,18 @@ crankcheck.freeCourses = (() => {
     ];
   }
 
-  return { overTime, against, told: (course) => COURSES[course].told };
+  /** The figure of errors against steps of some fits; `on(look)` says which are shown. */
+  function convergence(fits, unit, on) {
+    const steps = [...new Set(fits.flatMap((fit) => fit.steps.map((n) => Number((fit.lasts_s / n).toPrecision(6)))))];
+    const ticks = steps.length < 9 ? { tickvals: steps, ticktext: steps.map(crankcheck.duration) } : crankcheck.ticks(steps);
+    return {
+      data: fits.flatMap((fit) => against(fit, on(fit.look))),
+      layout: {
+        xaxis: { ...crankcheck.logAxis(steps.length < 9 ? "step" : "step [s]", false), ...ticks },
+        yaxis: crankcheck.logAxis(`error [${unit}]`, true),
+      },
+    };
+  }
+
+  return { overTime, convergence, told: (course) => COURSES[course].told };
 })();

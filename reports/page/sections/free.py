@@ -29,12 +29,12 @@ ERRORS = {
 def build(report: Report, room: int = BUDGET) -> Section | None:
     """The section; None where everything was driven. ``room`` is that of its drawings and curves
     [characters]."""
-    let_go = [line for line in report.lines if line.drive == "free"]
+    let_go = report.free_lines
     if not let_go:
         return None
     names = list(dict.fromkeys(line.scene for line in let_go))
     sizes = sizes_of(report, let_go)
-    held = steps_held(sizes, tuple(let_go), room)
+    held = steps_held(sizes, let_go, room)
     fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
     return Section(
         anchor="free",

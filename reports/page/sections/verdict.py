@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from reports.output.numbers import count, duration, error_text, listed
-from reports.page.sections.section import PageReport, Section
+from reports.page.sections.section import Section
 from reports.results.lines import Line, named
 from reports.results.looks import Look
 from reports.results.overview import Report
@@ -49,7 +49,7 @@ class VerdictRow:
         return f"{told} on {len(self.floors)} of {count(self.lines, 'scene')}"
 
 
-def build(report: PageReport) -> Section:
+def build(report: Report) -> Section:
     """The section."""
     rows = [_row(look, lines) for look, lines in _by_look(report)]
     chosen = () if report.driven is None else report.driven.recommendations
