@@ -20,10 +20,10 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth
-from reports.compare.free.some_samples import each_at
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_series import SAMPLES as FREE_SAMPLES
 from reports.compare.free.free_series import free_series
+from reports.compare.free.some_samples import each_at
 from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run

@@ -86,8 +86,8 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
     if not figures:
         drives = {drive for name in names for drive in FIGURES[name].drives}
         raise CrankcheckError(
-            f"--only {', '.join(names)}: drawn of what was {' or '.join(sorted(drives))}, or over all "
-            "scenes; there is no such scene here: leave out --scene or --only"
+            f"--only {', '.join(names)}: drawn over all scenes, or of what was "
+            f"{' or '.join(sorted(drives))}, which is not chosen; leave out --scene or --only"
         )
     return figures
 

@@ -4,6 +4,8 @@ first is the drift."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,7 +18,8 @@ from reports.figures.style import INK, TINY, power_of_ten
 from reports.output.numbers import short
 from reports.results.overview import Report
 
-RAW, MEANS = {"linewidth": 0.5}, {"linewidth": 1.6}
+RAW: Mapping[str, Any] = {"linewidth": 0.5}
+MEANS: Mapping[str, Any] = {"linewidth": 1.6}
 
 
 def draw(report: Report, name: str) -> Figure | None:
@@ -45,8 +48,13 @@ def draw(report: Report, name: str) -> Figure | None:
         panel.set_ylim(low, high + 0.18 * (high - low))  # room for the words
         known = means[np.isfinite(means)]
         drift = f"drift {short(float(known[-1] - known[0]))}" if known.size else ""
-        paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-        words = {"va": "top", "size": TINY, "transform": panel.transAxes, "bbox": paper}
+        paper: Mapping[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+        words: Mapping[str, Any] = {
+            "va": "top",
+            "size": TINY,
+            "transform": panel.transAxes,
+            "bbox": paper,
+        }
         panel.text(0.03, 0.96, f"[{power_of_ten(scale)}]", ha="left", **words)
         panel.text(0.97, 0.96, drift, ha="right", **words)
     return figure

@@ -16,12 +16,13 @@ from reports.drawing.true_motion import true_motion
 from reports.figures.marks import Mark, marks
 from reports.output.numbers import duration
 from reports.results.lines import named
-from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 
 INSTANTS = 2401
 """At which the truth is drawn."""
+BETWEEN = 8
+"""Parts of the way from one sample to the next in a phase diagram."""
 TURNS = 4
 """From so many turns on, angles are told in turns."""
 
@@ -52,6 +53,18 @@ class FreeRun:
             return None
         largest = float(np.max(self.trace["kinetic"]))
         return self.trace["energy"] / largest if largest > 0.0 else None
+
+    def portrait(self) -> tuple[Array, Array]:
+        """Angle [rad] and angular velocity [rad/s] between the samples as well: cubics with the
+        logged angles and speeds at both of their ends (Hermite)."""
+        t, angle, omega = self.time_s, self.angle, self.trace["omega"]
+        h, share = np.diff(t)[:, None], np.linspace(0.0, 1.0, BETWEEN, endpoint=False)
+        a, v, w = angle[:-1, None], omega[:-1, None] * h, omega[1:, None] * h
+        rise = np.diff(angle)[:, None]
+        c, d = 3.0 * rise - 2.0 * v - w, v + w - 2.0 * rise
+        places = a + share * (v + share * (c + share * d))
+        speeds = (v + share * (2.0 * c + share * 3.0 * d)) / h
+        return np.append(places, angle[-1]), np.append(speeds, omega[-1])
 
     def energy_means(self, scene: Scene) -> Array:
         """The energy as means over the windows of its drift, NaN at both ends."""
@@ -92,11 +105,14 @@ def free_runs(report: Report, name: str) -> FreeRuns | None:
     runs = []
     for line in lines:
         done = line.cells[line.cells["status"] == "ok"]
-        traced = [(row.dt_s, report.stored.trace(str(row.key))) for row in done.itertuples()]
+        traced = [
+            (float(dt_s), report.stored.trace(str(key)))
+            for key, dt_s in done[["key", "dt_s"]].itertuples(index=False)
+        ]
         traced = [(dt, trace) for dt, trace in traced if "phase" in trace]
         if traced:
             dt_s, trace = traced[-1]
-            runs.append(FreeRun(_label(report, line), float(dt_s), mark_of[named(line)], trace))
+            runs.append(FreeRun(report.look(line).name, dt_s, mark_of[named(line)], trace))
     if scene is None or not runs:
         return None
     time_s = np.linspace(0.0, max(float(run.time_s[-1]) for run in runs), INSTANTS)
@@ -104,8 +120,3 @@ def free_runs(report: Report, name: str) -> FreeRuns | None:
     start = f"{scene.driver.link} {describe_law(scene)}."
     told = (start, *notes(report, lines))
     return FreeRuns(scene, tuple(runs), time_s, driver.theta, driver.omega, told)
-
-
-def _label(report: Report, line) -> str:
-    """A run as a legend calls it."""
-    return report.look(line).name

@@ -27,9 +27,12 @@ def draw(report: Report, name: str) -> Figure | None:
     labels = (f"angle of {shown.scene.driver.link} [{unit}]", "angular velocity [rad/s]")
     title = f"Phase diagram: {name}, step {shown.steps}"
     figure, axes = grid([run.name for run in runs], title, labels, entries, shown.notes)
+    for one in axes[1:]:
+        one.sharex(axes[0])
+        one.sharey(axes[0])
     for run, panel in zip(runs, axes, strict=True):
         panel.plot(shown.angle / size, shown.omega, **TRUTH)
-        panel.plot(run.angle / size, run.trace["omega"], color=run.mark.colour, linewidth=0.7)
+        angle, speed = run.portrait()
+        panel.plot(angle / size, speed, color=run.mark.colour, linewidth=0.7)
         panel.xaxis.set_major_locator(MaxNLocator(4))
-        panel.sharex(axes[0]) if panel is not axes[0] else None
     return figure

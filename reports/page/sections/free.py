@@ -56,7 +56,14 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "units": {name: ERRORS[name][1] for name in fits},
             "judged": sorted({report.look(x).number for x in let_go if x.cells["gated"].all()}),
         },
-        scripts=("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js"),
+        scripts=(
+            "legend.js",
+            "charts.js",
+            "mechanism.js",
+            "stage.js",
+            "free_courses.js",
+            "free.js",
+        ),
         plotly=True,
     )
 
@@ -79,7 +86,11 @@ def _horizon(time_s: float | None) -> str:
 
 def _words(name: str, scene: Scene | None) -> dict[str, str]:
     """A scene with its source."""
-    return {"name": name, "source": scene.source if scene else "", "note": scene.note if scene else ""}
+    return {
+        "name": name,
+        "source": scene.source if scene else "",
+        "note": scene.note if scene else "",
+    }
 
 
 def _fits(report: Report, quantity: str) -> list[dict[str, object]]:

@@ -92,7 +92,10 @@ class FreeCourses:
         """Angle [turns] and angular velocity of the driver, over time."""
         assert self.scene is not None
         driver = truth.links[self.scene.driver.link]
-        return {"time_s": time_s, "curves": packed(np.vstack([driver.theta / math.tau, driver.omega]))}
+        return {
+            "time_s": time_s,
+            "curves": packed(np.vstack([driver.theta / math.tau, driver.omega])),
+        }
 
     def _line(self, line: Line, time_s: Array, truth: Motion | None) -> dict[str, object]:
         cells = line.cells.set_index("key")
