@@ -27,7 +27,6 @@ from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.results.drawable import PLACE, PLACE_FREE, around, ends, fitted, measured
 from reports.results.lines import Line, Named, named
-from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 
@@ -43,7 +42,9 @@ def draw(report: Report, scene: str) -> Figure:
     own, mark_of = report.lines_of(scene), marks(report.lines)
     panels = Panels(top=0.27)
     title, under = f"Convergence: {scene}", notes(report, own)
-    figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, mark_of), under, columns=1)
+    figure, (axes,) = sheet(
+        COLUMN_IN, panels, title, _entries(report, own, mark_of), under, columns=1
+    )
     _limits([axes], own, 1.0)
     _panel(axes, own, mark_of, 1.0)
     strip = _strip(own)
@@ -63,7 +64,7 @@ def draw_all(report: Report) -> Figure:
     let go."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **mark.style), label(name)) for name, mark in mark_of.items()
+        (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()
     ]
     strip = _strip(lines)
     if strip:
@@ -175,12 +176,16 @@ def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
     )
 
 
-def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
+def _entries(
+    report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
+) -> list[tuple[Artist, str]]:
     """The legend: each variant with its fit, and how its other runs ended."""
     return [
         (
             Line2D([], [], **mark_of[named(line)].style),
-            ": ".join([label(named(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
+            ": ".join(
+                [report.look(line).name, ", ".join(filter(None, (fitted(line), ends(line))))]
+            ),
         )
         for line in lines
     ]

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 from reports.output.numbers import count, duration, listed
 from reports.results.lines import Line, named
-from reports.results.looks import label
 from reports.results.one_processor import machine
 from reports.results.overview import Report
 from reports.results.settings_text import OWN
@@ -70,7 +69,7 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
     """The settings of each variant, by its label (see `reports.results.settings_text`)."""
     shown = dict.fromkeys(named(line) for line in lines)
-    return {label(name): report.settings_told[name] for name in shown}
+    return {report.looks[name].name: report.settings_told[name] for name in shown}
 
 
 def facts_of(report: Report) -> Mapping[str, str]:

@@ -125,7 +125,7 @@ class DrivenReport(Report):
     whole: Report = field(kw_only=True)
 
     @property
-    def looks(self) -> Mapping[Named, Look]:  # type: ignore[override]  # there it is kept
+    def looks(self) -> Mapping[Named, Look]:
         shown = {named(line) for line in self.lines}
         return {name: look for name, look in self.whole.looks.items() if name in shown}
 

@@ -10,8 +10,8 @@ import numpy as np
 from models.array import Array
 from reports.compare.free.free_beside import FreeBeside
 
-SAMPLES = 480
-"""Over a whole run: some twenty in a swing of a mechanism that lasts ten seconds."""
+SAMPLES = 720
+"""Over a whole run: some fifty in a swing of a mechanism that lasts ten seconds."""
 
 
 def free_series(beside: FreeBeside) -> Mapping[str, Array]:

@@ -21,6 +21,12 @@ from reports.results.overview import Report
 RAW: Mapping[str, Any] = {"linewidth": 0.5}
 MEANS: Mapping[str, Any] = {"linewidth": 1.6}
 
+WORDS: Mapping[str, Any] = {
+    "va": "top",
+    "size": TINY,
+    "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5},  # over a tick behind
+}
+
 
 def draw(report: Report, name: str) -> Figure | None:
     """A panel for each run, with a scale of its own; None where no run has an energy."""

@@ -45,9 +45,12 @@ crankcheck.freeCourses = (() => {
     const data = truthOf(scene, course);
     for (const { look, cell } of runs) {
       const curve = curvesOf(cell);
-      const own = (x, y, width, opacity = 1) =>
-        y && x && data.push({ ...line(x, y, look.name, colour(`c${look.colour}`), width, look.dash), opacity });
-      if (course === "portrait") own(curve.angle, curve.speed, 1.2);
+      const own = (x, y, width, opacity = 1, shape = "linear") => {
+        if (!x || !y) return;
+        const drawn = line(x, y, look.name, colour(`c${look.colour}`), width, look.dash);
+        data.push({ ...drawn, opacity, line: { ...drawn.line, shape } });
+      };
+      if (course === "portrait") own(curve.angle, curve.speed, 1.2, 1, "spline");
       else if (course === "energy") {
         own(cell.time_s, curve.energy, 1, 0.55);
         own(cell.time_s, curve.energy_mean, 2.6);

@@ -16,6 +16,7 @@ SHOWN = (
     *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
 )
 """The columns of the table."""
+SCRIPTS = ("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js")
 ERRORS = {
     "phase_pure": ("phase, over the sensitivity", "rad"),
     "geometry_pure": ("geometry at the run's own angle", "rad, or of longest link"),

@@ -103,7 +103,7 @@ class FreeCourses:
         return {
             "look": self.report.look(line).number,
             "cells": [
-                {"dt": duration(cells.loc[key]["dt_s"]), "dt_s": cells.loc[key]["dt_s"]}
+                {"dt": duration(float(cells.loc[key]["dt_s"])), "dt_s": cells.loc[key]["dt_s"]}
                 | self._cell(key, time_s, truth)
                 for key in keys
             ],
