@@ -5,17 +5,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
 from analytic.regulation.angle_cells import AngleCells
 from analytic.regulation.turning_machine import TurningMachine
+from analytic.regulation.unsmooth import breaks
 from models.array import Array
 from models.errors import CrankcheckError
 
 SLOWEST, FASTEST, SPEEDS = 1e-3, 1e5, 81
 """Speeds that are looked at [rad/s]; a factor of 1.26 lies between two of them."""
 HALVINGS = 60
+
+
+@lru_cache(maxsize=16)
+def settled_speed(machine: TurningMachine) -> float:
+    """The speed at which the work of a cycle is 0, that a machine comes to from the speed of its
+    start [rad/s]. Raises CrankcheckError as `MeanBalance.settled`."""
+    start = abs(float(machine.scene.driver.law.at(np.zeros(1))[1][0]))
+    return MeanBalance(machine, AngleCells.of(machine.cycle_rad, breaks(machine))).settled(start)
 
 
 class MeanBalance:

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from analytic.regulation.angle_cells import AngleCells
-from analytic.regulation.mean_balance import MeanBalance, other_way
+from analytic.regulation.mean_balance import other_way, settled_speed
 from analytic.regulation.periodic_energy import Asked, Course, repeated
 from analytic.regulation.turning_machine import TurningMachine
 from analytic.regulation.unsmooth import breaks, rated_breaks
@@ -173,7 +173,7 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
     law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
     if scene.is_free and machine.is_rated:
         asked = Asked(None)
-        speed = MeanBalance(machine, cells).settled(law_speed)
+        speed = settled_speed(machine)
     elif law_speed == 0.0:
         raise CrankcheckError(
             f"{scene.name}: no load follows the speed, and it starts from rest: any speed would "

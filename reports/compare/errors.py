@@ -103,7 +103,8 @@ class Errors:
     change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
     may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
     that a driver which was let go turns through, weighed with the square of its speed over the
-    largest, 0 of one that is driven;
+    largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, both
+    0 of one that is driven;
     ``free`` is what else there is to
     know of a run that was let go, None of one that was driven.
     """
@@ -132,6 +133,7 @@ class Errors:
     load_slopes: Mapping[str, float] = field(default_factory=dict)
     inertia_share: float = 1.0
     travel_rad: float = 0.0
+    drifted_rad: float = 0.0
     free: FreeFacts | None = None
 
     def worst(

@@ -26,7 +26,9 @@ own (`in_passage`): what it takes to make good an error of place, within its lim
 What was let go is ever further off the longer it lasts, by ``lasting * travel * step^3 *
 curvature^1.5`` more: impulses and springs that close joints take energy at every step, which adds
 up to that. ``travel`` [rad] is what the driver turns through, each part of it weighed with the
-square of its speed over the largest: it is fast for a small part of a swing alone.
+square of its speed over the largest: it is fast for a small part of a swing alone. And a speed
+that is off by a share of step^2 makes a phase that is off by ``drifting`` of what the driver turns
+through, which counts where the sensitivity does not grow as fast: a motor that keeps the speed.
 
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
@@ -88,6 +90,7 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.closes:
         bend = max(bend, 2.0 * errors.worst_jolt)
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
+    budget += tolerance.drifting * errors.drifted_rad * step**tolerance.order
     lasted = errors.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
     budget += tolerance.lasting * lasted
     shaken = tolerance.share * curvature + tolerance.load_share * errors.loading

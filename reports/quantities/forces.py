@@ -51,6 +51,7 @@ FREE_FORCE = Tolerance(
     coefficient=6.0,
     power=2.0,
     lasting=1.8,
+    drifting=1.0,
     share=OPEN_SHARE,
     rate=2,
     parts=True,

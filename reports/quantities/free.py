@@ -50,9 +50,10 @@ PHASE = Quantity(
                 "Second order, for the longest while: a loss of energy makes an error of phase "
                 "that grows with the square of time, and the sensitivity with time alone.",
                 cap=0.1,  # IFToMM's class of low precision, whatever the step
-                coefficient=6.5,
+                coefficient=6.0,
                 power=1.0,
                 lasting=1.2,
+                drifting=0.7,
             ),
         ),
     ),

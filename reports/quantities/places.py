@@ -30,9 +30,10 @@ FREE_PLACE = Tolerance(
     "As the phase, which the mechanism passes on to its places as their rates say, and the arc of "
     "a step.",
     cap=0.1,
-    coefficient=10.0,
+    coefficient=9.0,
     power=1.0,
     lasting=1.8,
+    drifting=1.0,
 )
 
 

@@ -48,7 +48,8 @@ class Measure:
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
     the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
-    ``lasting`` is of free motion, which is ever further off the longer it lasts."""
+    ``lasting`` and ``drifting`` are of free motion, which is ever further off the longer it
+    lasts."""
 
     reason: str
     cap: float = math.inf
@@ -68,6 +69,7 @@ class Tolerance:
     parts: bool = False
     makes_up: bool = False
     lasting: float = 0.0
+    drifting: float = 0.0
 
 
 @dataclass(frozen=True)

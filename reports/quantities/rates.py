@@ -40,9 +40,10 @@ TWICE_DERIVED = Tolerance(
 FREE_RATE = Tolerance(
     "As the phase, which the mechanism passes on to its velocities as their rates say.",
     cap=0.2,
-    coefficient=15.0,
+    coefficient=14.0,
     power=1.5,
     lasting=1.8,
+    drifting=1.0,
     share=OPEN_SHARE,
     share_order=1,
     rate=1,

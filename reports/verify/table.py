@@ -140,8 +140,8 @@ def _table(
 
 def _free_table(profile: str, gated: bool, chosen: Sequence[Checked], width: int) -> Table:
     """The cells of one profile that were let go, those out of tolerance first."""
-    heads = tuple(FREE_NUMBERS)
-    heads = heads if width >= FREE_WIDE else heads[:1] if width < WIDE else (heads[0], *heads[2:4])
+    heads, stacked = tuple(FREE_NUMBERS), width < STACKED
+    heads = heads if width >= FREE_WIDE else (heads[0], heads[2], heads[5])[: 1 if stacked else 3]
     role = "gated" if gated else "shown, not gated"
     table = plain_table(f"free motion, profile {profile} ({role})")
     table.add_column("")

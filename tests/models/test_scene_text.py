@@ -55,3 +55,11 @@ def test_a_law_of_another_kind_is_refused() -> None:
     other = replace(scene, driver=replace(scene.driver, law=Own()))
     with pytest.raises(CrankcheckError, match="law Own: a scene file has no words for it"):
         scene_text(other)
+
+
+def test_a_flywheel_stands_by_itself_and_is_added_when_it_is_read() -> None:
+    scene = load_scene("compressor")
+    again = parse_scene(scene_text(scene, {"crank": 0.25}), "compressor")
+    own = scene.links["crank"].inertia_kg_m2
+    assert again.links["crank"].inertia_kg_m2 == pytest.approx(own + 0.25, rel=1e-15)
+    assert again.links["rod"] == scene.links["rod"]

@@ -11,6 +11,7 @@ from models.scene import Scene
 from reports.compare.errors import Error
 from reports.compare.free.free_beside import FreeBeside
 from reports.quantities.free import ENERGY
+from reports.quantities.quantity import Quantity
 
 SHARE = 0.1
 """The least part of a run that a mean is taken over, and half of it the most."""
@@ -29,10 +30,7 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
     if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
         return []
     time_s = run.velocity_time_s
-    energy = getattr(beside.let_go, "energy", None)
-    if energy is None:
-        return []
-    known = energy(np.maximum(time_s, 0.0))
+    known = beside.let_go.energy(np.maximum(time_s, 0.0))
     largest = float(np.max(known.kinetic))
     if not largest > 0.0:
         return []
@@ -40,25 +38,27 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
     change = drift(off, time_s, window_s(beside.scene, float(time_s[-1] - time_s[0])))
     worked = float(np.ptp(known.work)) > WORKED * largest
     size = abs(change) / (beside.pure_growth if worked else 1.0)
-    measure = ENERGY.of("mechanism")
-    return [
-        Error(
-            quantity=ENERGY.name,
-            body_kind="mechanism",
-            body="mechanism",
-            source="reported",
-            kind="total",
-            unit=measure.unit,
-            scale=largest,
-            maximum=size,
-            rms=size,
-            final=size,
-            time_of_maximum_s=float(time_s[-1]),
-            driver_at_maximum_rad=float(beside.driver_rad[-1]),
-            bound=0.0,
-            samples=int(time_s.size),
-        )
-    ]
+    return [drift_row(beside, ENERGY, size, largest)]
+
+
+def drift_row(beside: FreeBeside, quantity: Quantity, size: float, largest: float) -> Error:
+    """The drift of what a whole mechanism keeps, over the largest of it."""
+    return Error(
+        quantity=quantity.name,
+        body_kind="mechanism",
+        body=beside.scene.name,
+        source="reported",
+        kind="total",
+        unit=quantity.of("mechanism").unit,
+        scale=largest,
+        maximum=size,
+        rms=size,
+        final=size,
+        time_of_maximum_s=float(beside.motion.time_s[-1]),
+        driver_at_maximum_rad=float(beside.driver_rad[-1]),
+        bound=0.0,
+        samples=int(beside.motion.time_s.size),
+    )
 
 
 def window_s(scene: Scene, lasts_s: float) -> float:
@@ -74,3 +74,14 @@ def drift(series: Array, time_s: Array, over_s: float) -> float:
     first = series[time_s <= time_s[0] + over_s]
     last = series[time_s >= time_s[-1] - over_s]
     return float(np.mean(last) - np.mean(first))
+
+
+def window_means(scene: Scene, time_s: Array, series: Array) -> Array:
+    """The mean of a series over the window around each instant, (T,); NaN where it does not fit."""
+    over_s = window_s(scene, float(time_s[-1] - time_s[0]))
+    sums = np.concatenate([[0.0], np.cumsum(series)])
+    first = np.searchsorted(time_s, time_s - 0.5 * over_s)
+    after = np.searchsorted(time_s, time_s + 0.5 * over_s, side="right")
+    means = (sums[after] - sums[first]) / (after - first)
+    whole = (time_s - 0.5 * over_s >= time_s[0]) & (time_s + 0.5 * over_s <= time_s[-1])
+    return np.where(whole, means, np.nan)

@@ -45,6 +45,11 @@ class FreeBeside(Beside):
         """The sensitivity at the logged instants, (T,)."""
         return self.let_go.sensitivity(self.motion.time_s)
 
+    @property
+    def driver_speed(self) -> Array:
+        """The true angular velocity of the driver at the logged instants [rad/s], (T,)."""
+        return self.reference.links[self.scene.driver.link].omega
+
     def driver_at(self, time_s: Array, reference: Motion) -> Array:
         return reference.links[self.scene.driver.link].theta
 
@@ -55,6 +60,10 @@ class FreeBeside(Beside):
         growth = self.let_go.sensitivity(time_s)
         over = growth[:, None] if track.error.ndim == 2 else growth
         return replace(track, error=track.error / over, bound=track.bound / growth)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        return super().missing if self.run.energy else (*super().missing, "energy")
 
     @property
     def incomplete(self) -> str:

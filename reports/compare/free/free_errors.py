@@ -11,6 +11,7 @@ import numpy as np
 from analytic.forces.jolts import jolts
 from models.array import Array
 from models.errors import CrankcheckError
+from models.joints import has_loops
 from models.poses import mass_ratio
 from reports.compare.change_points import conditioning
 from reports.compare.curvature import curvature
@@ -21,6 +22,7 @@ from reports.compare.free.energy_drift import energy_rows
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_branch import free_departure
 from reports.compare.free.free_facts import FreeFacts
+from reports.compare.free.momentum_drift import momentum_rows
 from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
 from reports.compare.series import length
 from reports.compare.tracks import Track
@@ -45,7 +47,8 @@ def free_errors(beside: FreeBeside) -> Errors:
     reported, not_reported = reported_rows(beside)
     borne = force_rows(beside)
     jolt = jolts(scene, beside.whole)
-    far = uneven(scene, reference, at.driver_rad)
+    # In an open chain joint coordinates are as good as their integrator: nothing is too near.
+    far = uneven(scene, reference, at.driver_rad) if has_loops(scene) else {}
     facts = _facts(beside, same_time)
     return Errors(
         rows=(
@@ -55,6 +58,7 @@ def free_errors(beside: FreeBeside) -> Errors:
             *reported,
             *differenced_rows(beside, at),
             *energy_rows(beside),
+            *momentum_rows(beside),
             *borne.rows,
         ),
         not_reported=(*not_reported, *borne.not_reported),
@@ -80,6 +84,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         start_load=borne.start_load,
         inertia_share=borne.inertia_share,
         travel_rad=_travel(beside),
+        drifted_rad=_drifted(beside),
         free=facts,
     )
 
@@ -120,9 +125,16 @@ def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str,
 
 def _travel(beside: FreeBeside) -> float:
     """The angle that the driver turns through, weighed as `Errors.travel_rad` says."""
-    speed = np.abs(beside.reference.links[beside.scene.driver.link].omega)
+    speed = np.abs(beside.driver_speed)
     peak = beside.scene.driver.law.peak_speed_rad_s
     return float(np.trapezoid(peak * (speed / peak) ** 3, beside.motion.time_s))
+
+
+def _drifted(beside: FreeBeside) -> float:
+    """The largest angle that the driver has turned through, over the sensitivity of then [rad]."""
+    speed, time_s = np.abs(beside.driver_speed), beside.motion.time_s
+    turned = np.cumsum(np.diff(time_s, prepend=time_s[0]) * speed)
+    return float(np.max(turned / beside.growth))
 
 
 def _summed(at: Instants, steps: int) -> float:

@@ -16,6 +16,7 @@ from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.period import period
 from analytic.free.release import release
+from analytic.kinematics import reach
 from models.array import Array
 from models.characteristics import Constant, Tabulated
 from models.errors import CrankcheckError
@@ -287,3 +288,22 @@ def test_a_start_that_repeats_what_follows_is_let_go() -> None:
     at = release(fourbar(), 0.1).at(np.zeros(1))
     start = Start(angles_rad={"rocker": float(at.links["rocker"].theta[0]) + math.tau})
     assert release(replace(fourbar(), start=start), 0.1).until_s == 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_slider_cranks_and_fourbars_keep_their_energy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b, c, d = rng.uniform(0.1, 0.5, 4).round(3).tolist()
+    start = {"start_deg": float(rng.uniform(-60.0, 60.0)), "speed_rad_s": 5.0}
+    four = fourbar(a, b, c, d, **start)  # type: ignore[arg-type]
+    slider = slider_crank(a, b, 0.01, **start)
+    for scene in (four, slider):
+        theta = math.remainder(math.radians(start["start_deg"]), math.tau)
+        if not any(low <= theta <= high for low, high in reach(scene)):
+            continue
+        free = release(scene, 0.5)
+        energy = free.energy(np.linspace(0.0, 0.5, 101))
+        assert np.ptp(energy.balance) <= 1e-9 * energy.kinetic.max()
+        end = np.array([0.5])
+        growth = float(free.sensitivity(end)[0])
+        assert float(free.error_rad(end)[0]) < 1e-11 * max(1.0, growth / 100.0)

@@ -15,6 +15,7 @@ RUNS = (
     "tune FILE --engine mujoco --target 1e-4 --budget 1",
 )
 COMMANDS = (*RUNS, "solve FILE", "run FILE --engine mujoco", "export FILE", "view FILE -o OUT.png",
+            "cycle FILE -o OUT.csv", "flywheel FILE --delta 0.02 --write OUT.toml",
             "advise FILE --dt 1e-3 --speed 6.0 --target 1e-4")  # fmt: skip
 FAULTS = {
     "no such point": (

@@ -64,6 +64,11 @@ CASES: dict[str, tuple[Sequence[str], str]] = {
         "-o out/verify.csv: that is out/verify.csv, which is read",
     ),
     "scene by solve": (["solve", "mine.csv", "-o", "mine.csv"], "-o mine.csv: .* is read"),
+    "scene by cycle": (["cycle", "mine.csv", "-o", "mine.csv"], "-o mine.csv: .* is read"),
+    "scene by flywheel": (
+        ["flywheel", "mine.toml", "--delta", "0.02", "--write", "sub/../mine.toml"],
+        "--write .*: that is mine.toml, which is read",
+    ),
     "scene by export": (["export", "mine.xml", "-o", "sub/../mine.xml"], "-o .*: that is mine.xml"),
     "scene by view": (["view", "mine.gif", "-o", "mine.gif"], "-o mine.gif: .* is read"),
     "scene by view without -o": (["view", "fourbar-lecture-1.gif"], "view four.*gif: .* is read"),

@@ -23,6 +23,9 @@ COMMANDS = {
     "solve fourbar-lecture-1 -o out.csv": 2,
     "export fourbar-lecture-1 -o out.xml": 2,
     "view fourbar-lecture-1 -o out.png": 2,
+    "cycle shaper -o out.csv": 2,
+    "cycle shaper --figures out": 0,
+    "flywheel shaper --delta 0.02 -o out.json --write out.toml": 2,
     "selftest --engine pymunk --fault nan-at-end -o out": 0,
     "tune fourbar-lecture-1 --engine pymunk --target 1e-2 --budget 1 --no-timing -o out.db": 2,
 }

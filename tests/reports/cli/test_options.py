@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from reports.cli import app, changes, checking, measuring, showing
+from reports.cli import app, changes, checking, measuring, regulating, showing
 
 LEAST = {
     "verify": ("verify", checking.VerifyRequest()),
@@ -24,6 +24,8 @@ LEAST = {
     "advise --dt 1 --speed 2 --target 3": ("run_advise", measuring.AdviseRequest(1.0, 2.0, 3.0)),
     "stability": ("stability", measuring.StabilityRequest()),
     "solve a": ("run_solve", showing.SolveRequest("a")),
+    "cycle a": ("run_cycle", regulating.CycleRequest("a")),
+    "flywheel a --delta 1": ("run_flywheel", regulating.FlywheelRequest("a", 1.0)),
 }
 
 
@@ -79,11 +81,11 @@ def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None
     line = (
         "verify a b --engine c --engine d --profile e --dt 0.1 --steps-per-turn 2 --turns 3 "
         "--tol angle=1 --drive servo --no-convergence --jobs 4 --junit f --csv g --json h -o i "
-        "--baseline j --factor 5 --forces"
+        "--baseline j --factor 5 --forces --free --duration 6"
     )
     request = checking.VerifyRequest(
         ["a", "b"], ["c", "d"], ["e"], 0.1, 2.0, 3.0, ["angle=1"], "servo", False, 4, Path("f"),
-        Path("g"), Path("h"), Path("i"), Path("j"), 5.0, True,
+        Path("g"), Path("h"), Path("i"), Path("j"), 5.0, True, True, 6.0,
     )  # fmt: skip
     of_models = (
         "verify --mjcf a --speed 1 --key b --start 2 --branch c=1 --write-scene d --limit-s 3 "

@@ -196,10 +196,10 @@ def same(text: dict[str, str], values: object) -> bool:
     ("engine", "name"), [(engine, name) for engine in BARE for name in PROFILES[engine].settings]
 )
 def test_no_setting_is_left_out(engine: str, name: str) -> None:
-    """Another value of any setting makes another snippet, with one drive or the other."""
+    """Another value of any setting makes another snippet, with one drive or another."""
     default = {n: setting.value for n, setting in PROFILES[engine].settings.items()}
     changed = default | {name: other(name, default[name])}
-    drives: tuple[Drive, ...] = ("prescribed", "servo")
+    drives: tuple[Drive, ...] = ("prescribed", "servo", "free")
     assert any(
         snippet(engine, default, 90, drive=drive) != snippet(engine, changed, 90, drive=drive)
         for drive in drives
