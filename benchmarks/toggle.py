@@ -91,7 +91,7 @@ def main(count: int = COUNT) -> int:
 
 
 def throws(count: int) -> Iterator[Throw]:
-    """So many throws: the same ones for the same number, and those of fewer are the first of more."""
+    """So many throws; those of fewer are the first of more."""
     draw = np.random.default_rng(SEED)
     done = 0
     while done < count:

@@ -2,9 +2,9 @@
 
 ::
 
-    V |        _                 u > 0: the assembly that it starts in; u = 0: coupler and rocker in
-      |      /   \\               line; u < 0: the other assembly. Gravity points to where the weights
-      |    /       \\             neither rise nor fall in u = 0, and are highest there.
+    V |        _              u > 0: the assembly that it starts in; u = 0: coupler and rocker in
+      |      /   \\            line; u < 0: the other assembly. Gravity points to where the
+      |    /       \\          weights neither rise nor fall in u = 0, and are highest there.
       +--|-----|-----|-- -u
         start  toggle
 
@@ -26,7 +26,7 @@ from analytic.free.machine import Machine
 from analytic.kinematics import solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
-from models.motion import Motion, State
+from models.motion import State
 from models.released import Released
 from models.scene import Scene
 
@@ -102,16 +102,17 @@ class ToggleBarrier:
         _, omega, _ = self._driver(margin)
         law = self.scene.driver.law
         assert isinstance(law, Released)
-        return _started(self.scene, replace(law, speed_rad_s=omega, duration_s=self.lasts_s(margin)))
+        return _started(
+            self.scene, replace(law, speed_rad_s=omega, duration_s=self.lasts_s(margin))
+        )
 
     def start(self, margin: float) -> State:
         """The state at time 0, with the accelerations that the weights give."""
-        each = (np.array([one]) for one in self._driver(margin))
-        motion: Motion = solve_driven(self.scene, *each, np.zeros(1), bound=False)
-        return motion.state()
+        theta, omega, alpha = (np.array([one]) for one in self._driver(margin))
+        return solve_driven(self.scene, theta, omega, alpha, np.zeros(1), bound=False).state()
 
     def lasts_s(self, margin: float) -> float:
-        """A time by which it has been decided, twice over [s]: up and down at the rate of the top."""
+        """By when it has been decided, twice over [s]: up and down at the rate of the top."""
         return (2.0 * math.log(4.0 / abs(margin)) + 8.0) / self.growth_per_s
 
     def is_toggle(self, passage: LimitPassage) -> bool:

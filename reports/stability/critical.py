@@ -96,7 +96,9 @@ def _words(case: Case, holds: Graded | None, fails: Graded | None, good: list[Gr
         if holds.outcome not in ("ok", "locked"):
             return holds.outcome
         worst = max(run.error for run in good)
-        return f"holds all, error up to {worst:.0e}" if len(good) > 1 else "holds"
+        if len(good) == 1:
+            return "holds"
+        return f"holds all, error up to {worst:.0e}" if worst else "holds all"
     if holds is None:
         if good:
             number = sum(run.grid for run in good)

@@ -15,7 +15,7 @@ from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_branch import free_departure
 from reports.compare.free.free_truth import FreeTruth, free_truth
 from reports.compare.series import length
-from reports.compare.tracks import Track
+from reports.compare.tracks import Track, tracks
 from reports.quantities.free import GEOMETRY, PHASE
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest, worst_of
@@ -77,9 +77,9 @@ def _truth(trial: Trial) -> FreeTruth:
 
 def _same_time(known: FreeBeside) -> Array:
     """The worst error of phase and place at the same time over the sensitivity (T,)."""
-    tracks = (*known.tracks((PHASE.name,), known.reference), *known.places)
+    places = (*known.tracks((PHASE.name,), known.reference), *known.places)
     time_s = known.motion.time_s
-    return widest([_pure(known.judged(track, time_s)) for track in tracks], time_s)
+    return widest([_pure(known.judged(track, time_s)) for track in places], time_s)
 
 
 def _geometry(whole: FreeBeside) -> Array:
@@ -89,10 +89,12 @@ def _geometry(whole: FreeBeside) -> Array:
     if not np.isfinite(whole.crank).all():
         return np.full_like(none, np.inf)
     try:
-        tracks = whole.tracks((GEOMETRY.name,), whole.at_crank)
+        beside = whole.at_crank
     except CrankcheckError:
         return none
-    return widest([_pure(track) for track in tracks], none)
+    # Not those of `whole`: they ask for the truth at the same time, which is followed less far.
+    places = tracks(whole.scene, whole.run, beside, (GEOMETRY.name,))
+    return widest([_pure(track) for track in places], none)
 
 
 def _energy(whole: FreeBeside) -> Array:

@@ -124,8 +124,10 @@ def _legend(matrix: Matrix) -> str:
     )
     return (
         "Numbers: the worst error of place (rad, or over the longest link; of a limit that of the "
-        "crank, of a free chain that of its first pin and of its energy); easy to hard from left "
-        f"to right; held is what stays within {classes}. {letters}.\n{forces}"
+        "crank, of a free chain that of its first pin and of its energy; let go, that at the same "
+        "time over the sensitivity, that at the run's own angle, and the drift of the energy; of a "
+        "throw the angle that it is short of being over); easy to hard from left to right; held is "
+        f"what stays within {classes}. {letters}.\n{forces}"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )
 

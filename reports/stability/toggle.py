@@ -17,7 +17,8 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
     """A run beside what its energy lets it do.
 
     One that gets over and should not has left its branch. For one that should and does not, the
-    error of place is the angle that coupler and rocker are short of where it would be over [rad].
+    error of place is the angle that coupler and rocker were short of where it would have been over,
+    at the nearest [rad].
     No crank is told where to be.
     """
     motion, throw = run.motion, _throw(trial)
@@ -31,8 +32,8 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
         at = passage.index
         left = Departure(other, float(motion.time_s[at]), float(crank[at]))
     elif passage.outcome == "undecided" or (passage.outcome == "back" and over):
-        short = passage.open_rad[passage.index :] - OVER * abs(throw.barrier.open_rad)
-        place[passage.index :] = np.abs(short)
+        short = passage.nearest_rad - OVER * abs(throw.barrier.open_rad)
+        place[passage.index :] = short
     gaps = [np.abs(gap) / trial.scene.longest_m for gap in run.gaps.values()]
     decided = np.arange(crank.size) <= passage.index
     return ErrorSeries(

@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from analytic.forces.springs import spring_lengths
-from analytic.free.chart import Chart
 from analytic.free.machine import Machine
 from models.files import load_scene
 from models.hard import fourbar
