@@ -54,9 +54,16 @@ FAULTS = (
     _fault(
         "gravity-scaled",
         "gravity is too strong",
-        rule="CC110",
         plant=in_free_scene(stronger_gravity),
         size=1e-3,
+        unit="of it",
+    ),
+    _fault(
+        "gravity-hardly",
+        "the same, within this step's limit",
+        rule="CC110",
+        plant=in_free_scene(stronger_gravity),
+        size=1e-4,
         unit="of it",
         finer=True,
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 SWING, PULSE = "fourbar-swing", "fourbar-pulse"
 SPRING, PRESS = "slider-crank-spring", "press-motor"
 FREE_RUNS: dict[str, tuple[float, int]] = {
-    SWING: (5e-4, 2000),
+    SWING: (4e-4, 2500),
     PULSE: (1e-3, 1500),
     SPRING: (5e-4, 2000),
     PRESS: (1e-3, 500),

@@ -14,7 +14,6 @@ from reports.selftest.fault import Fault, in_log, switched
 from reports.selftest.free_runs import SPRING, SWING
 from reports.selftest.logs import last, moved, output, with_link
 from sim.engine import Energy, Run
-from sim.registry import engine
 
 
 def _copied(scene: Scene, done: Run) -> Run:
@@ -57,6 +56,5 @@ FAULTS = (
         "CC111",
         switched(_copied),
         scenes=(SWING, SPRING),
-        needs=lambda name: engine(name).reports_accelerations,
     ),
 )

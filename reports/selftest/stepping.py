@@ -108,10 +108,9 @@ FAULTS = (
     _fault(
         "semi-implicit",
         "semi-implicit Euler for RK4",
-        "CC110",
+        "CC127",
         in_settings("semi-implicit"),
         needs=can_set("semi-implicit"),
-        finer=True,
     ),
     _fault(
         "bias-left-on",

@@ -129,7 +129,7 @@ def test_faults_of_dynamics_are_seen_in_every_engine_that_can_have_them() -> Non
     names = [name for name, fault in FAULTS.items() if fault.kind == "free"]
     assert len(names) >= 12
     everywhere = {n for n in names if set(ENGINES) <= {p.engine for p in planted(n).places}}
-    assert set(names) - everywhere == {"semi-implicit", "bias-left-on", "free-copied"}
+    assert set(names) - everywhere == {"semi-implicit", "bias-left-on"}
 
 
 def test_what_need_not_be_seen_of_free_motion_is_not_seen() -> None:
