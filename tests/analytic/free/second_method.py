@@ -8,8 +8,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from analytic.free.chart import Chart
-from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
+from analytic.free.machine_motion import MachineMotion
 from models.array import Array
 
 STEP_RAD = 0.06
@@ -20,7 +20,7 @@ ASIDE_S = 1e-12
 jump."""
 
 
-def driver_by_steps(free: FreeMotion, time_s: Array) -> Array:
+def driver_by_steps(free: MachineMotion, time_s: Array) -> Array:
     """The driver's angle and rate at times [s] in rising order, (2, T).
 
     By `scipy`'s DOP853 in the charts of ``free``, which may not have chosen them wrong without
@@ -44,7 +44,7 @@ def driver_by_steps(free: FreeMotion, time_s: Array) -> Array:
     return found
 
 
-def _stretch(free: FreeMotion, chart: Chart, now: float, end: float, state: Array) -> Array:
+def _stretch(free: MachineMotion, chart: Chart, now: float, end: float, state: Array) -> Array:
     """The coordinate and its rate at the end of a stretch without kinks inside."""
     machine, aside = Machine(free.scene, chart), ASIDE_S * (end - now)
     wound = dict(free.track.windows[int(free.track.windows_at(np.array([now]))[0])].wound)
