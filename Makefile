@@ -5,7 +5,7 @@
 #   make report       run the shipped study into out/, with its page, figures and summary
 #   make hard         hard cases, graded, into out/hard
 #   make slow         the long checks that `make test` leaves out
-#   make benchmarks   speed of the reference and of logging, as ratios
+#   make benchmarks   speed of the reference, of logging and of free motion, as ratios
 #   make models       write the MJCF files in models/canonical/ anew
 #   make format       format the code
 
@@ -59,6 +59,7 @@ benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/forces.py
 	$(BIN)/python benchmarks/logging.py
 	$(BIN)/python benchmarks/window_chain.py
+	$(BIN)/python benchmarks/free.py
 
 models: $(VENV)/crankcheck
 	for scene in fourbar-lecture-1 slider-crank-central; do \

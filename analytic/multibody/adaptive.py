@@ -234,8 +234,9 @@ class Adaptive:
             at_s, begin, end = float(solver.t_old), beyond(solver.t_old), beyond(solver.t)
             if begin * end < 0.0:
                 at_s = float(brentq(beyond, solver.t_old, solver.t, xtol=1e-15, rtol=1e-15))
-            elif not switch.turning:  # from the kink on, whose side was rounding
-                cells[number] = arrived[number]
-                continue
+            if not switch.turning and not (begin * end < 0.0 and at_s > solver.t_old):
+                # From the kink on, or by rounding from beside it, which is as good.
+                cells[number] = after[number]
+                return self._crossing(own, cells, solver)
             found.append(_Crossing(at_s, after, switch.load.name, str(switch.load.slider)))
         return min(found, key=lambda one: one.at_s, default=None)

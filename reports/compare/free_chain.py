@@ -23,16 +23,17 @@ from sim.run import run
 class ChainErrors:
     """How an engine held a chain, at the logged samples, shape (T,).
 
-    ``place_m`` is the distance of B0 from where it should be [m]; ``energy_j`` the energy, at the
-    instants of the velocities, less that of the start in the closed form [J]; ``lean_rad`` the
-    largest angle between two rockers, or of a coupler to the ground line [rad], all 0 in truth;
-    ``gap_m`` the largest gap of a pin [m].
+    ``place_m`` is the distance of B0 from where it should be [m], ``speed_m_s`` that of its
+    velocity, and ``energy_j`` the energy less that of the start in the closed form [J], both at the
+    instants of the velocities; ``lean_rad`` the largest angle between two rockers, or of a coupler
+    to the ground line [rad], all 0 in truth; ``gap_m`` the largest gap of a pin [m].
     """
 
     chain: Chain
     run: Run
     time_s: Array
     place_m: Array
+    speed_m_s: Array
     energy_j: Array
     lean_rad: Array
     gap_m: Array
@@ -113,6 +114,7 @@ def compared(chain: Chain, done: Run) -> ChainErrors:
             done,
             motion.time_s,
             np.hypot(*(motion.points["B0"].position - arm).T),
+            _velocity_error(turning, done),
             done.energy.total_j - _start_j(turning),
             _lean(chain, motion),
             np.max(list(done.gaps.values()), axis=0),
@@ -123,6 +125,16 @@ def _start_j(turning: ChainMotion) -> float:
     """The energy of the start [J]."""
     theta, omega, _ = turning.at(np.array([0.0]))
     return float(turning.energy(theta, omega)[0])
+
+
+def _velocity_error(turning: ChainMotion, done: Run) -> Array:
+    """How far the velocity of B0 is from what it should be [m/s], (T,)."""
+    assert done.motion is not None
+    time_s = done.motion.time_s if done.velocity_time_s is None else done.velocity_time_s
+    theta, omega, _ = turning.at(time_s)
+    speed = turning.chain.length_m * omega[:, None]
+    true = speed * np.stack([-np.sin(theta), np.cos(theta)], axis=-1)
+    return np.asarray(np.hypot(*(done.motion.points["B0"].velocity - true).T))
 
 
 def _leaning(chain: Chain, motion: Motion, index: int) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -29,6 +28,7 @@ from models.staircase import Staircase
 from models.start import Start
 from models.waves import Pulse
 from tests.analytic.free.let_go import fourbar, past_limits, slider_crank, weightless
+from tests.analytic.free.second_method import driver_by_steps
 
 
 def torque(characteristic: object, over: str = "time") -> dict[str, Load]:
@@ -47,24 +47,6 @@ KINKED = {
 }
 
 
-def second_method(scene: Scene, until_s: float) -> Array:
-    """The driver's angle and rate by a Runge-Kutta method of order 8, in steps that end nowhere in
-    particular: for what has no kinks over its places."""
-    machine, law = Machine(scene), scene.driver.law
-    edges = [0.0, *release(scene, until_s).edges_s, until_s]
-    state = np.array([float(x[0]) for x in law.at(np.zeros(1))[:2]])
-    for low, high in itertools.pairwise(edges):
-
-        def rates(t: float, y: Array, low: float = low, high: float = high) -> tuple[float, float]:
-            inside = min(max(t, low + 1e-12), high - 1e-12)  # on this side of a jump
-            one = machine.acceleration(np.array([inside]), y[:1], y[1:])
-            return float(y[1]), float(one[0])
-
-        done = solve_ivp(rates, (low, high), state, "DOP853", rtol=3e-14, atol=1e-14, max_step=4e-3)
-        state = done.y[:, -1]
-    return state
-
-
 @pytest.mark.parametrize(
     ("scene", "until_s"),
     [
@@ -76,8 +58,8 @@ def second_method(scene: Scene, until_s: float) -> Array:
     ],
 )
 def test_two_methods_agree(scene: Scene, until_s: float) -> None:
-    free, (theta, omega) = release(scene, until_s), second_method(scene, until_s)
-    end = np.array([until_s])
+    free, end = release(scene, until_s), np.array([until_s])
+    theta, omega = (float(row[0]) for row in driver_by_steps(free, end))
     found = free.law.at(end)
     allowed = (1e-11 if until_s <= 1.0 else 1e-9) * max(1.0, abs(theta))
     assert abs(float(found[0][0]) - theta) <= allowed

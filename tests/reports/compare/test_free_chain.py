@@ -96,6 +96,8 @@ def test_energy_that_is_lost_is_measured_over_what_a_turn_exchanges(
     lost = (1.0 - 0.99**2) * kinetic.max()
     assert found.energy_drift == pytest.approx(lost / turning.exchanged_j, rel=1e-9)
     assert found.energy_j[-1] < 0.0
+    wanted = 0.01 * CHAIN.length_m * np.abs(turning.at(found.time_s)[1])
+    assert found.speed_m_s == pytest.approx(wanted, rel=1e-9)
 
 
 def test_the_error_of_b0_is_the_largest_so_far_and_none_after_the_end(
