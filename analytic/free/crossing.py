@@ -33,7 +33,7 @@ class Crossing:
 
 
 def first_crossing(formulas: Formulas, looks: Array) -> Crossing | None:
-    """The first one at some looks [s], (T,), None where they are all of the formulas of the first."""
+    """The first one at looks [s], (T,); None where all are of the formulas of the first."""
     rows = formulas(looks)
     pieces = np.array([row.pieces for row in rows])
     changed = pieces != pieces[:, :1]

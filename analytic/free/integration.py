@@ -177,7 +177,7 @@ class Integration:
         return float(start[0])
 
     def _tried(self, long_s: float, start: float, rough: Solved | None) -> Solved | None:
-        """A window, begun from a ``rough`` one that was longer, or the acceleration at ``start``."""
+        """A window, begun from a ``rough`` one that was longer, or the acceleration ``start``."""
         if rough is not None and rough.long_s >= long_s:
             ones = np.ones((self.rule.count, 1))
             first = sums(ones * rough.series()[2], self.rule.places * (long_s / rough.long_s))

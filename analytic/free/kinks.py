@@ -1,8 +1,8 @@
 """Where what acts on a machine is not smooth: over time, and over where and how fast it moves.
 
 Between two kinks every load follows one formula. Those over time are known beforehand; all others
-are told apart by the number of their piece, which changes where a load, a stroke or friction goes over
-to another formula (`Kinked`).
+are told apart by the number of their piece, which changes where a load, a stroke or friction goes
+over to another formula (`Kinked`).
 """
 
 from __future__ import annotations
