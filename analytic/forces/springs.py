@@ -6,6 +6,7 @@ first link in the order of the scene, else a block.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -27,14 +28,21 @@ Stretch = tuple[Bounded, Bounded]
 """The q of a spring [m or rad] and its rate q' [m/s or rad/s]."""
 
 
-def spring_lengths(scene: Scene, chunk: Chunk) -> Iterator[tuple[Spring, Array, Array]]:
-    """Every spring of a scene with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each."""
+def spring_lengths(
+    scene: Scene, chunk: Chunk, *, counted: bool = False
+) -> Iterator[tuple[Spring, Array, Array]]:
+    """Every spring of a scene with its q [m or rad] and its rate q' [m/s or rad/s], (T,) each.
+
+    Of a spring in a pin q is in (-pi, pi] of its free angle, or ``counted`` on from the start.
+    """
     like = np.zeros_like(chunk.theta)
     for spring in scene.springs.values():
         if isinstance(spring, LineSpring):
             q, rate = _line_stretch(*_way(scene, chunk, spring))
         elif isinstance(spring, PinSpring):
-            q, rate = _pin_stretch(chunk, spring)
+            first, second = (chunk.bodies[name] for name in spring.bodies)
+            rate = Bounded(second.omega - first.omega, None)
+            q = _pin_stretch(chunk, spring)[0] if counted else _within_half_a_turn(chunk, spring)
         else:
             q, rate = _slide_stretch(chunk, spring)
         yield spring, like + q.value, like + rate.value
@@ -118,6 +126,14 @@ def _pin_stretch(chunk: Chunk, spring: PinSpring) -> Stretch:
         Bounded(q, first.error.theta + second.error.theta + rounded),
         Bounded(rate, first.error.omega + second.error.omega + EPS * np.abs(rate)),
     )
+
+
+def _within_half_a_turn(chunk: Chunk, spring: PinSpring) -> Bounded:
+    """The angle between two bodies, within half a turn of the free one."""
+    first, second = (chunk.bodies[name] for name in spring.bodies)
+    x, y = first.turn.dot(second.turn), first.turn.cross(second.turn)
+    c, s = math.cos(spring.free), math.sin(spring.free)
+    return Bounded(spring.free + np.arctan2(c * y - s * x, c * x + s * y), None)
 
 
 def _angle(chunk: Chunk, body: str) -> Array:

@@ -93,7 +93,7 @@ def _check_springs(scene: Scene, whole_rad: float) -> None:
     """Refuse springs that are wound up cycle by cycle."""
     start = float(scene.driver.law.at(np.zeros(1))[0][0])
     chunk = unit_chunk(scene, start + np.array([0.0, whole_rad]), bound=False)
-    for spring, q, _ in spring_lengths(scene, chunk):
+    for spring, q, _ in spring_lengths(scene, chunk, counted=True):
         if spring.rate and abs(q[1] - q[0]) > 1.0:  # a turn or more: lengths come back
             raise CrankcheckError(
                 f"{scene.name}: springs.{spring.name} is wound up by "

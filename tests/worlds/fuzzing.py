@@ -64,7 +64,7 @@ LET_GO = (
     "view FILE -o OUT.png",
 )
 """What files of mechanisms that are let go for a moment are tried with."""
-MOST_WINDOWS = 400
+MOST_WINDOWS = 200
 """Of an integration: as many as a user may wait for take minutes."""
 MOMENT = "solve FILE --duration 0.01 --steps 4"
 QUICK = (

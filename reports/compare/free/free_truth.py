@@ -15,9 +15,9 @@ from models.motion import Motion, State
 from models.released import Released
 from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.free.first_samples import first_samples
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.motion_parts import one_after_another
+from reports.compare.free.some_samples import first_samples
 from reports.quantities.free import PHASE
 from sim.engine import Run
 

@@ -67,7 +67,7 @@ def test_bounds_hold_where_a_stiff_spring_is_all_but_slack(rate: float, damping:
         scene = sprung(loaded_mechanism(number)[0], random.Random(number))
         time_s = np.array([3.1e4 * scene.driver.law.period_s])
         _, chunk = next(iter(chunks(scene, time_s, bound=False)))
-        for spring, q, speed in spring_lengths(scene, chunk):
+        for spring, q, speed in spring_lengths(scene, chunk, counted=True):
             free = float(q[0]) + damping / rate * float(speed[0])
             slack = replace(spring, rate=rate, damping=damping, free=free)
             rows = beside(replace(scene, springs={spring.name: slack}), time_s)
@@ -129,7 +129,7 @@ def test_a_spring_in_a_pin_is_wound_up_turn_by_turn() -> None:
     period = scene.driver.law.period_s
     instants = np.array([0.0, 1.0, 3.0]) * period
     for _, chunk in chunks(scene, instants, bound=False):
-        (_, q, _), (_, other, _) = spring_lengths(scene, chunk)
+        (_, q, _), (_, other, _) = spring_lengths(scene, chunk, counted=True)
     assert abs(q[0] - crank.free) <= math.pi
     assert q - q[0] == pytest.approx([0.0, math.tau, 3.0 * math.tau])
     assert abs(other[0] - coupler.free) <= math.pi

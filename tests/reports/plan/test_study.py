@@ -272,3 +272,43 @@ def test_only_loads_and_friction_make_other_names_than_before_engines_took_them(
     rubbing = replace(plain, friction={"A": ConstantFriction("A", 0.25)})
     both = replace(loaded, friction=rubbing.friction)
     assert len({named(each) for each in (plain, loaded, rubbing, both)}) == 4
+
+
+FREE = """
+scenes = ["fourbar-swing"]
+free = true
+dt_s = [2e-3, 1e-3]
+duration_s = 0.5
+[[variants]]
+engine = "pymunk"
+profile = "tuned"
+"""
+
+
+def test_a_study_of_free_motion_lays_out_steps_in_seconds(tmp_path: Path) -> None:
+    tasks = grid(load_study(written(tmp_path, "free.toml", FREE))).tasks
+    assert [(task.cell.drive, task.cell.dt_s, task.cell.steps) for task in tasks] == [
+        ("free", 2e-3, 250),
+        ("free", 1e-3, 500),
+    ]
+    assert len({task.line for task in tasks}) == 1
+    longer = grid(load_study(written(tmp_path, "free.toml", FREE.replace("0.5", "0.6")))).tasks
+    assert longer[0].line != tasks[0].line
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "part"),
+    [
+        ("dt_s = [2e-3, 1e-3]", "", "dt_s: missing; add it"),
+        ("free = true", "", "steps_per_turn: missing; add it"),
+        ("free = true", "steps_per_turn = [90]", "dt_s: found it with free = false"),
+        ("dt_s =", "steps_per_turn = [90]\ndt_s =", "steps_per_turn: found it with free = true"),
+        ("free = true", 'free = true\ndrive = "servo"', "drive: found 'servo' with free = true"),
+    ],
+)
+def test_a_study_says_steps_of_what_is_driven_or_of_what_is_let_go(
+    tmp_path: Path, old: str, new: str, part: str
+) -> None:
+    with pytest.raises(CrankcheckError) as caught:
+        load_study(written(tmp_path, "free.toml", FREE.replace(old, new)))
+    assert part in str(caught.value)

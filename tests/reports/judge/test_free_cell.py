@@ -1,0 +1,136 @@
+"""The verdict of a cell that was let go: what is caught, what is not graded, and its class."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.files import load_scene
+from models.scene import Scene
+from reports.judge.cell import Cell, Checked, check, examined
+from reports.judge.precision import precision
+from reports.judge.rows import cell_row
+from reports.judge.three_steps import convergence
+from reports.judge.tolerance import FREE, numbers_for
+from sim.engine import Run
+from sim.run import run
+
+
+def cell(engine: str = "pymunk", seconds: float = 0.3, **changed: object) -> Cell:
+    scene = load_scene("fourbar-swing")
+    plain = Cell(scene, engine, "tuned", 1e-3, round(seconds / 1e-3), drive="free", converge=False)
+    return replace(plain, **changed)
+
+
+def with_fault(change: object, **options: object) -> Checked:
+    """What is said of a run in which something is not as it should be."""
+
+    def runner(scene: Scene, state: object, *names: str, **asked: object) -> Run:
+        return change(scene, state, names, asked)  # type: ignore[operator]
+
+    return examined(cell(**options), runner)[0]
+
+
+def rules(checked: Checked) -> set[str]:
+    return {finding.rule for finding in checked.failures}
+
+
+def test_engines_are_told_apart_by_the_class_that_they_reach() -> None:
+    coarse, fine = (check(cell(engine)) for engine in ("pymunk", "mujoco"))
+    assert (coarse.verdict, fine.verdict) == ("within", "within")
+    assert precision(coarse).startswith("common")
+    assert precision(fine) == "fine, 1e-3"
+    row = cell_row(fine)
+    assert row["precision"] == "fine, 1e-3"
+    assert row["judged_until_s"] == pytest.approx(0.3)
+    assert row["energy_pure"] is not None
+    assert "drive_pure" not in row
+
+
+def test_the_truth_in_the_place_of_an_engine_is_caught() -> None:
+    truth = cell().truth
+
+    def taken(scene: Scene, state: object, names: tuple[str, str], asked: dict[str, object]) -> Run:
+        done = run(scene, state, *names, **asked)  # type: ignore[arg-type]
+        motion = truth.at(done.motion.time_s)  # type: ignore[union-attr]
+        return replace(done, motion=replace(motion, bound=None), velocity_time_s=motion.time_s)
+
+    assert "CC111" in rules(with_fault(taken))
+
+
+def test_a_mass_that_is_off_shows_in_the_phase_and_not_in_the_geometry() -> None:
+    def heavy(scene: Scene, state: object, names: tuple[str, str], asked: dict[str, object]) -> Run:
+        rod = scene.links["rocker"]
+        more = replace(rod, mass_kg=1.2 * rod.mass_kg)
+        other = replace(scene, links={**scene.links, "rocker": more})
+        return run(other, state, *names, **asked)  # type: ignore[arg-type]
+
+    found = rules(with_fault(heavy, seconds=0.5))
+    assert "CC127" in found
+    assert not found & {"CC128", "CC105"}
+
+
+def test_energy_that_is_fed_in_is_a_drift() -> None:
+    def fed(scene: Scene, state: object, names: tuple[str, str], asked: dict[str, object]) -> Run:
+        done = run(scene, state, *names, **asked)  # type: ignore[arg-type]
+        assert done.energy is not None
+        assert done.motion is not None
+        more = 1.0 + 0.02 * done.motion.time_s
+        return replace(done, energy=replace(done.energy, kinetic_j=more * done.energy.kinetic_j))
+
+    assert rules(with_fault(fed, seconds=1.0)) == {"CC129"}
+
+
+def test_limits_at_a_time_grow_with_what_lasts_and_drifts() -> None:
+    errors = check(cell()).errors
+    assert errors
+    assert numbers_for(errors) is FREE
+    assert {"phase", "geometry", "energy", "momentum", "angle", "gap", "velocity"} <= set(FREE)
+    assert "drive" not in FREE
+    longer = replace(errors, travel_rad=100.0 * errors.travel_rad)
+    kept = replace(errors, drifted_rad=100.0)
+    from reports.judge.tolerance import default
+
+    for each in (longer, kept):
+        assert default(FREE["phase"], each) > default(FREE["phase"], errors)
+        assert default(FREE["geometry"], each) == default(FREE["geometry"], errors)
+
+
+def test_an_order_is_not_graded_where_the_start_grows_a_thousandfold(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from reports.judge import halving
+
+    assert check(cell(converge=True)).convergence is not None
+    monkeypatch.setattr(halving, "MOST_GROWTH", 0.5)
+    assert check(cell(converge=True)).convergence is None
+
+
+def test_errors_that_cancel_at_one_step_make_no_floor() -> None:
+    error = (5.8e-4, 5.4e-5, 1.5e-5)
+    steps = (1e-3, 5e-4, 2.5e-4)
+    assert convergence(steps, error, "rad").trend == "levels off"
+    assert convergence(steps, error, "rad", cancels=True).trend == "shrinks"
+    stays = (5.8e-4, 5.4e-5, 5.0e-5)
+    assert convergence(steps, stays, "rad", cancels=True).trend == "levels off"
+
+
+def test_limits_that_the_truth_passes_are_no_departure() -> None:
+    """Through limits of the driver, which takes a longer truth: only there assemblies change."""
+    scene = load_scene("fourbar-double-rocker-swing")
+    checked = check(Cell(scene, "mujoco", "tuned", 1e-3, 1300, drive="free", converge=False))
+    assert checked.errors
+    assert checked.errors.free
+    assert checked.errors.free.passages >= 1
+    assert (checked.status, checked.verdict) == ("ok", "within")
+    assert any("limits of its angle" in note for note in checked.errors.notes)
+
+
+def test_forces_are_judged_where_they_are_asked_for() -> None:
+    checked = check(cell("mujoco", with_forces=True))
+    assert checked.verdict == "within"
+    row = cell_row(checked)
+    assert row["reaction_pure"] < row["reaction_limit_pure"]  # type: ignore[operator]
+    assert np.isfinite(row["reaction_limit_pure"])  # type: ignore[arg-type]
