@@ -1,4 +1,4 @@
-"""Free motion of several freedoms: positions beside a run, what leads to the start, its own error."""
+"""Free motion of several freedoms: positions beside a run, what leads to the start, its error."""
 
 from __future__ import annotations
 
@@ -59,7 +59,8 @@ def test_beside_nothing_there_is_nothing(pendulum: FreeMotion) -> None:
     run = pendulum.at(np.linspace(0.0, END_S, 3))
     run.links["lower"].theta[1] = math.nan
     found = pendulum.beside(run).points["C"].position
-    assert np.isnan(found[1]).all() and np.isfinite(found[[0, 2]]).all()
+    assert np.isnan(found[1]).all()
+    assert np.isfinite(found[[0, 2]]).all()
 
 
 def test_what_leads_to_the_start_goes_on_through_it(pendulum: FreeMotion) -> None:
