@@ -100,8 +100,11 @@ def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def has_loops(scene: Scene) -> bool:
-    """Whether some joint closes a loop: there are more pairs than bodies. In an open chain the
-    coordinates of the joints say where all is, and an engine that has these solves no constraint."""
+    """Whether some joint closes a loop: there are more pairs than bodies.
+
+    In an open chain the coordinates of the joints say where all is, and an engine that has these
+    solves no constraint.
+    """
     pairs = sum(len(names) - 1 for names in joined_at(scene).values()) + len(scene.sliders)
     count = len(scene.links) + sum(slider.link is None for slider in scene.sliders.values())
     return pairs > count

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.dyads.plane import EPS
 from analytic.free.energy import Energy
@@ -155,7 +156,7 @@ def _room(own: Array, other: Array) -> Array:
     return np.asarray(SAFETY * np.maximum.accumulate(apart) + 4.0 * EPS * (size + size.max()))
 
 
-def _some(bodies: Mapping[str, BodyMotion], index: Array) -> dict[str, BodyMotion]:
+def _some(bodies: Mapping[str, BodyMotion], index: NDArray[np.intp]) -> dict[str, BodyMotion]:
     return {
         name: type(body)(*(series[index] for series in vars(body).values()))
         for name, body in bodies.items()

@@ -13,8 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
+from analytic.free.crossing import Crossing, Formulas, first_crossing, precisely
 from analytic.free.gauss import Gauss, sums
-from analytic.free.kinks import cells, heeds_direction, is_kinked, time_kinks
+from analytic.free.kinks import Kinked, heeds_direction, is_kinked, kinked, time_kinks
 from analytic.free.machine import Machine
 from analytic.free.track import MOST, Track, Window
 from analytic.free.window import Scale, Solved, solve_window
@@ -27,7 +28,7 @@ GROWTH, LEAST = 2.0, 0.15
 SHORTEST = 1e-12
 """A window, over the whole time, that is not to be had shorter."""
 LOOKS, LOOKED = 257, 7
-"""Instants at which a change of formula is looked for, and how often between two of them."""
+"""Instants at which an end of rest is looked for, and how often between two of them."""
 MOST_WINDOWS = 50_000
 """A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
 FIRST_WINDOWS, FAR = 300, 4.0
@@ -36,6 +37,11 @@ TINY = 1e-150
 """A rate that only says which way the machine is about to move."""
 AIMS = 30
 """Windows that are tried so as to end at a change of formula."""
+LEAST_AHEAD = 0.02
+"""The share of a window from which on a change of formula is foretold before it is solved."""
+PRECISELY = 4e-14
+"""To what share of a window a change of formula is found: to rounding of what its formula goes
+over, some hundred times that of the time."""
 SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
 """They are solved to a little before it, and used up to it."""
 
@@ -127,42 +133,56 @@ class Integration:
         formula: that is a little beyond what was solved, for which one formula counts so. Raises
         CrankcheckError."""
         failed: CrankcheckError | None = None
-        aimed = 0
+        rough: Solved | None = None
+        aimed, start = 0, self._start(long_s, way)
+        if self._kinked and (ahead := self._kink_ahead(long_s, start)):
+            aimed, long_s = 1, ahead * SHORT_OF
         while long_s > SHORTEST * self.until_s or 0 < aimed < AIMS:
             try:
-                solved = self._tried(long_s, way)
+                solved = self._tried(long_s, start, rough)
             except CrankcheckError as error:
                 solved, failed = None, error
             if solved is None:
-                long_s, aimed = 0.25 * long_s, 0
+                long_s, aimed, rough = 0.25 * long_s, 0, None
+                start = self._start(long_s, way)
                 continue
-            end = self._change(solved, beyond=aimed > 0) if self._kinked else None
+            crossing = self._crossing(solved, beyond=aimed > 0) if self._kinked else None
+            end = None if crossing is None else crossing.at_s
             landed = end is not None and long_s <= end <= BEYOND * long_s
             if end is not None and not (landed and solved.converged) and aimed < AIMS:
-                aimed, long_s = aimed + 1, end * SHORT_OF
+                aimed, long_s, rough = aimed + 1, end * SHORT_OF, solved
                 continue
             excess = solved.excess(self._scale())
             share = 0.9 * max(excess, 1e-30) ** (-1.0 / self.rule.count)
             if solved.converged and excess <= 1.0 and (landed or end is None):
                 self.long_s = max(self.long_s, long_s) if aimed else long_s * min(GROWTH, share)
-                if landed:
-                    return solved, self._change(solved, precisely=True) or long_s, True
+                if crossing is not None and landed:
+                    return solved, self._landing(solved, crossing), True
                 return solved, long_s, False
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
-            aimed = 0
+            aimed, rough = 0, None
         raise failed or CrankcheckError(
             f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
             f"{self.scene.driver.link} at {self._driver_deg():.6g} deg: what acts, or what moves, "
             "is not smooth there, or has no mass"
         )
 
-    def _tried(self, long_s: float, way: float) -> Solved | None:
+    def _start(self, long_s: float, way: float) -> float:
+        """The acceleration with which a window starts."""
         start = self._acceleration(
             np.array([self.now_s + 1e-3 * long_s]),
             np.array([self.u]),
             np.array([self.v or way * TINY]),
         )
-        first = np.full(self.rule.count, float(start[0]))
+        return float(start[0])
+
+    def _tried(self, long_s: float, start: float, rough: Solved | None) -> Solved | None:
+        """A window, begun from a ``rough`` one that was longer, or the acceleration ``start``."""
+        if rough is not None and rough.long_s >= long_s:
+            ones = np.ones((self.rule.count, 1))
+            first = sums(ones * rough.series()[2], self.rule.places * (long_s / rough.long_s))
+        else:
+            first = np.full(self.rule.count, start)
         if not np.isfinite(first).all():
             return None
         state = (self.now_s, self.u, self.v)
@@ -184,36 +204,46 @@ class Integration:
     def _driver_deg(self) -> float:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
-    def _change(
-        self, solved: Solved, *, beyond: bool = False, precisely: bool = False
-    ) -> float | None:
-        """How long after the start of a window, or a little beyond it, a formula first gives way to
-        another [s], None where none does."""
-        u, v, _ = solved.series()
+    def _kink_ahead(self, long_s: float, a: float) -> float | None:
+        """When a formula first gives way, as far as the acceleration at the start tells [s]."""
+        if not math.isfinite(a):
+            return None
+
+        def formulas(after_s: Array) -> list[Kinked]:
+            u = self.u + after_s * (self.v + 0.5 * a * after_s)
+            return kinked(self.machine, u, self.v + a * after_s)
+
+        crossing = first_crossing(formulas, self._looks(long_s, long_s))
+        return crossing.at_s if crossing and crossing.at_s > LEAST_AHEAD * long_s else None
+
+    def _crossing(self, solved: Solved, *, beyond: bool = False) -> Crossing | None:
+        """Where in a window, or a little beyond it, a formula first gives way to another."""
         h = solved.long_s
+        return first_crossing(self._along(solved), self._looks(h, BEYOND * h if beyond else h))
 
-        def numbers(after_s: Array) -> Array:
-            share = after_s / h
-            ones = np.ones((len(share), 1))
-            return cells(self.machine, sums(ones * u, share), sums(ones * v, share))
+    def _landing(self, solved: Solved, crossing: Crossing) -> float:
+        """How long after the start of a window a formula has just given way [s]."""
+        h = solved.long_s
+        first = float(self._looks(h, h)[0])
+        return precisely(self._along(solved), crossing, first, PRECISELY * h)
 
-        end = (BEYOND if beyond or precisely else 1.0) * h
-        low, high = 0.0, end
-        looks = np.concatenate([h * self.rule.places, [high]])
+    def _looks(self, long_s: float, end_s: float) -> Array:
+        """The times after the start of a window at which formulas are looked at [s]."""
+        looks = np.append(long_s * self.rule.places, end_s)
         if self.windows and not self.windows[-1].bends:
-            looks = np.concatenate([[0.0], looks])  # else it starts between two formulas
-        first = numbers(looks[:1])
-        low = float(looks[0])
-        for _ in range(LOOKED if precisely else 2):
-            other = (numbers(looks) != first).any(axis=0)
-            if not other.any():
-                return None if high == end else high
-            k = int(np.argmax(other))
-            high, low = float(looks[k]), float(looks[k - 1]) if k else low
-            if high - low <= 1e-17 * max(self.now_s, h):
-                break
-            looks = np.linspace(low, high, LOOKS)[1:]
-        return high
+            return np.concatenate([[0.0], looks])
+        return looks  # it starts between two formulas
+
+    def _along(self, solved: Solved) -> Formulas:
+        """The formulas along a window."""
+        u, v, _ = solved.series()
+
+        def formulas(after_s: Array) -> list[Kinked]:
+            share = after_s / solved.long_s
+            ones = np.ones((len(share), 1))
+            return kinked(self.machine, sums(ones * u, share), sums(ones * v, share))
+
+        return formulas
 
     def _way(self, time_s: Array) -> Array:
         """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,)."""

@@ -1,21 +1,21 @@
 """Where what acts on a machine is not smooth: over time, and over where and how fast it moves.
 
 Between two kinks every load follows one formula. Those over time are known beforehand; all others
-are told apart by `cells`: numbers that change where a load, a stroke or friction goes over to
-another formula.
+are told apart by the number of their piece, which changes where a load, a stroke or friction goes
+over to another formula (`Kinked`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from analytic.free.machine import Machine
 from models.array import Array
 from models.characteristics import Characteristic, Tabulated
-from models.loads import Load
 from models.scene import Scene
 
 MOST = 100_000
@@ -63,17 +63,57 @@ def is_kinked(scene: Scene) -> bool:
     )
 
 
-def cells(machine: Machine, u: Array, v: Array) -> Array:
-    """For each kinked formula of the scene the number of its piece at coordinates and rates (T,),
-    as rows (K, T)."""
+@dataclass(frozen=True)
+class Kinked:
+    """What a formula of the scene goes over, ``x`` (T,), with its kinks there; a ``sign`` alone has
+    one, at 0, and is a piece of its own in it."""
+
+    x: Array
+    kinks: Array
+    period: float | None = None
+    sign: bool = False
+
+    @property
+    def pieces(self) -> Array:
+        """The number of its piece at each sample."""
+        if self.sign:
+            return np.sign(self.x)
+        kinks, period, x = self.kinks, self.period, self.x
+        if period is None:
+            return np.searchsorted(kinks, x, side="right").astype(np.float64)
+        turns = np.floor((x - kinks[0]) / period)
+        within = np.searchsorted(kinks, x - turns * period, side="right")
+        closes = kinks[-1] - kinks[0] > period * (1.0 - 1e-9)  # the last row is the next first one
+        return np.asarray(turns * len(kinks) + np.minimum(within, len(kinks) - closes))
+
+    def border(self, k: int) -> float:
+        """The kink that is passed on the way from the sample before ``k``: the nearest to that."""
+        before, after, kinks = float(self.x[k - 1]), float(self.x[k]), self.kinks
+        if self.period is not None:
+            turn = math.floor((before - kinks[0]) / self.period)
+            kinks = np.concatenate([kinks + (turn + n) * self.period for n in (-1, 0, 1)])
+        low, high = min(before, after), max(before, after)
+        passed = kinks[(low <= kinks) & (kinks <= high)]
+        if not passed.size:
+            return 0.5 * (before + after)
+        return float(passed.min() if after > before else passed.max())
+
+
+def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
+    """All formulas of the scene that have kinks, at coordinates and rates (T,)."""
     unit = machine.chart.unit(u)
     chunk = machine.moving(u, v, unit)
-    rows = [np.sign(v)] if heeds_direction(machine.scene) else []
-    rows += [np.sign(rate) for _, rate in machine.rubbing(unit)]
+    zero = np.zeros(1)
+
+    def whole(x: object) -> Array:
+        return np.broadcast_to(np.asarray(x, dtype=np.float64), u.shape)
+
+    rows = [Kinked(v, zero, sign=True)] if heeds_direction(machine.scene) else []
+    rows += [Kinked(whole(rate), zero, sign=True) for _, rate in machine.rubbing(unit)]
     for load in machine.scene.loads.values():
         sliding = None if load.slider is None else chunk.sliders[load.slider]
         if load.stroke != "both" and sliding is not None:
-            rows.append(np.sign(sliding.speed))
+            rows.append(Kinked(whole(sliding.speed), zero, sign=True))
         if load.over == "time" or not load.characteristic.kinks:
             continue
         if load.over == "angle":
@@ -83,16 +123,6 @@ def cells(machine: Machine, u: Array, v: Array) -> Array:
         else:
             assert sliding is not None
             x = sliding.s if load.over == "displacement" else sliding.speed
-        rows.append(_piece(load, np.broadcast_to(np.asarray(x, dtype=np.float64), u.shape)))
-    return np.array([np.broadcast_to(row, u.shape) for row in rows]).reshape(len(rows), len(u))
-
-
-def _piece(load: Load, x: Array) -> Array:
-    """The number of the piece of a load's characteristic at ``x``."""
-    kinks, period = np.array(load.characteristic.kinks), _period(load.characteristic)
-    if period is None:
-        return np.searchsorted(kinks, x, side="right").astype(np.float64)
-    turns = np.floor((x - kinks[0]) / period)
-    within = np.searchsorted(kinks, x - turns * period, side="right")
-    closes = kinks[-1] - kinks[0] > period * (1.0 - 1e-9)  # the last row is the next first one
-    return np.asarray(turns * len(kinks) + np.minimum(within, len(kinks) - closes))
+        kinks = np.array(load.characteristic.kinks)
+        rows.append(Kinked(whole(x), kinks, _period(load.characteristic)))
+    return rows

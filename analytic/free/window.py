@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -124,7 +125,9 @@ def solve_window(
         change = float(np.abs(step).max())
         size = max(float(np.abs(a).max()), float(np.abs(v).max()) / h, SLOW * scale.u / h**2)
         stalled = change <= STALLED * size and change > 0.25 * before
-        if converged := change <= 1e-15 * size or stalled:
+        # What is left shrinks at least as it did in this round: no other one confirms it.
+        left = change * min(change / before, 1.0) if math.isfinite(before) else change
+        if converged := change <= 1e-15 * size or left <= 1e-17 * size or stalled:
             break
         before = change
     end_v = v0 + h * float(rule.end_once @ a)
