@@ -41,9 +41,8 @@ def study(lines: Sequence[Line]) -> str:
     if all(line.drive == "free" for line in lines):
         dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
         lasts = listed([duration(s) for s in sorted({line.period_s for line in lines})])
-        return (
-            f"Study: {where}, {variants}, let go for {lasts}, dt {listed(list(map(duration, dts)))}"
-        )
+        each = listed([duration(dt) for dt in dts])
+        return f"Study: {where}, {variants}, let go for {lasts}, dt {each}"
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
     long = ", ".join(f"{n:g}" for n in turns) + (" turn" if turns == [1.0] else " turns")
     return f"Study: {where}, {variants}, {to} steps per turn, {long}"

@@ -17,6 +17,7 @@ from reports.compare.compare import compare
 from reports.compare.errors import Errors
 from sim.engine import Poses, Run
 from sim.run import run
+from tests.worlds import free_store as of_free
 from tests.worlds.small_store import filled
 
 STEPS = 720
@@ -26,6 +27,12 @@ STEPS = 720
 def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder that is a store of two scenes, four variants and four steps, with made-up times."""
     return filled(tmp_path_factory.mktemp("small") / "store")
+
+
+@pytest.fixture(scope="session")
+def free_store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that is a store of a scene that was let go (3 s: runs of two engines)."""
+    return of_free.filled(tmp_path_factory.mktemp("free") / "store")
 
 
 @pytest.fixture(scope="session")

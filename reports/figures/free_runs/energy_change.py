@@ -54,13 +54,7 @@ def draw(report: Report, name: str) -> Figure | None:
         panel.set_ylim(low, high + 0.18 * (high - low))  # room for the words
         known = means[np.isfinite(means)]
         drift = f"drift {short(float(known[-1] - known[0]))}" if known.size else ""
-        paper: Mapping[str, Any] = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-        words: Mapping[str, Any] = {
-            "va": "top",
-            "size": TINY,
-            "transform": panel.transAxes,
-            "bbox": paper,
-        }
+        words: Mapping[str, Any] = {**WORDS, "transform": panel.transAxes}
         panel.text(0.03, 0.96, f"[{power_of_ten(scale)}]", ha="left", **words)
         panel.text(0.97, 0.96, drift, ha="right", **words)
     return figure

@@ -57,14 +57,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "units": {name: ERRORS[name][1] for name in fits},
             "judged": sorted({report.look(x).number for x in let_go if x.cells["gated"].all()}),
         },
-        scripts=(
-            "legend.js",
-            "charts.js",
-            "mechanism.js",
-            "stage.js",
-            "free_courses.js",
-            "free.js",
-        ),
+        scripts=SCRIPTS,
         plotly=True,
     )
 

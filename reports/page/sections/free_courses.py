@@ -98,14 +98,12 @@ class FreeCourses:
         }
 
     def _line(self, line: Line, time_s: Array, truth: Motion | None) -> dict[str, object]:
-        cells = line.cells.set_index("key")
-        keys = chosen(line, dict(self.sizes), self.held)
+        steps = dict(zip(line.cells["key"], map(float, line.cells["dt_s"]), strict=True))
         return {
             "look": self.report.look(line).number,
             "cells": [
-                {"dt": duration(float(cells.loc[key]["dt_s"])), "dt_s": cells.loc[key]["dt_s"]}
-                | self._cell(key, time_s, truth)
-                for key in keys
+                {"dt": duration(steps[key]), "dt_s": steps[key]} | self._cell(key, time_s, truth)
+                for key in chosen(line, dict(self.sizes), self.held)
             ],
         }
 

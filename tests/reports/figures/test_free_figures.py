@@ -1,0 +1,62 @@
+"""The figures of a store of free runs: the truth, the runs over it, and no turns."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from models.errors import CrankcheckError
+from reports.cli.commands.figures import run_figures
+from reports.figures.free_runs.free_run import free_runs
+from reports.results.overview import Report
+from reports.store.reader import read_store
+from tests.reports.figures.test_files import texts
+from tests.worlds.free_store import SCENE
+
+EACH = ("convergence", "mechanism", "let-go", "energy", "phase")
+LABELS = {
+    "let-go": ("angle of crank [deg]", "speed [rad/s]", "error of angle / G [rad]", "time [s]"),
+    "energy": ("change of energy / largest kinetic energy", "drift", "means over windows"),
+    "phase": ("angular velocity [rad/s]", "truth, integrated", "pymunk as-shipped"),
+    "convergence": ("time step [s]", "largest error / sensitivity"),
+    "mechanism": ("integrated", "x [m]"),
+}
+
+
+@pytest.fixture(scope="module")
+def drawn(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("drawn") / "figs"
+    assert run_figures(free_store, folder, Console(file=io.StringIO())) == 0
+    return folder
+
+
+def test_what_was_let_go_has_its_own_figures_and_none_over_turns(drawn: Path) -> None:
+    assert {path.stem for path in drawn.glob("*.svg")} == {f"{n}-{SCENE}" for n in EACH}
+
+
+@pytest.mark.parametrize("name", LABELS)
+def test_a_free_figure_says_what_it_shows(drawn: Path, name: str) -> None:
+    found = texts(drawn / f"{name}-{SCENE}.svg").replace("\n", " ")
+    for label in (*LABELS[name], "mujoco"):
+        assert label in found or (name, label) == ("mechanism", "mujoco")
+    assert "steps per turn" not in found
+
+
+def test_a_figure_of_free_runs_is_refused_of_a_driven_store(store: Path, tmp_path: Path) -> None:
+    with pytest.raises(CrankcheckError, match="of what was let go"):
+        run_figures(store, tmp_path / "out", Console(file=io.StringIO()), only=("let-go",))
+
+
+def test_a_portrait_goes_through_its_samples_and_smoothly_between(free_store: Path) -> None:
+    shown = free_runs(Report(read_store(free_store)), SCENE)
+    assert shown is not None
+    run = shown.runs[0]
+    angle, speed = run.portrait()
+    np.testing.assert_allclose(angle[::8], run.angle, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(speed[::8], run.trace["omega"], rtol=0, atol=1e-9)
+    near = np.interp(np.linspace(0, shown.time_s[-1], angle.size), shown.time_s, shown.angle)
+    assert np.max(np.abs(angle - near)) < 1e-2

@@ -1,0 +1,118 @@
+"""The page of a store that holds what was let go, alone and beside what was driven."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from reports.page.build import page
+from reports.page.sections import SECTIONS
+from reports.page.sections.section import PageReport
+from reports.store.manifest import Manifest
+from reports.store.reader import Stored, read_store
+from tests.reports.page.conftest import Opened
+from tests.worlds.free_store import SCENE
+
+Open = Callable[..., Opened]
+FREE = ["verdict", "free", "stability", "fairness", "provenance"]
+
+
+@pytest.fixture(scope="module")
+def free(free_store: Path) -> Stored:
+    return read_store(free_store)
+
+
+@pytest.fixture(scope="module")
+def path(free: Stored, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "free.html"
+    path.write_text(page(free), encoding="utf-8")
+    return path
+
+
+def sections(text: str) -> list[str]:
+    return re.findall(r'<section[^>]* id="([^"]+)"', text)
+
+
+def embedded(report: PageReport, name: str) -> dict[str, object]:
+    section = SECTIONS[name](report)
+    assert section is not None
+    return json.loads(json.dumps(section.embedded, default=list))
+
+
+def test_a_page_of_free_runs_has_no_section_that_speaks_of_turns(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert sections(text) == FREE
+    told = text[: text.index('id="provenance"')]
+    assert "free drive" not in told  # where all were let go it needs no word
+
+
+def test_what_was_driven_keeps_its_sections_beside_what_was_let_go(
+    small: Stored, free: Stored
+) -> None:
+    cells = pd.concat([small.cells, free.cells], ignore_index=True)
+    scenes = {**small.manifest.scenes, **free.manifest.scenes}
+    both = replace(small, manifest=Manifest(scenes, small.manifest.runs), cells=cells)
+    vars(both)["_traces"] = {**small._traces, **free._traces}
+    report = PageReport(both)
+    assert report.driven is not None
+    assert SCENE not in report.driven.scenes
+    assert {x.number for x in report.driven.looks.values()} <= {
+        x.number for x in report.looks.values()
+    }
+    assert [each["name"] for each in embedded(report, "free")["scenes"]] == [SCENE]
+    for line in report.driven.lines:
+        assert report.driven.look(line) == report.look(line)
+
+
+def test_without_anything_let_go_the_driven_part_is_the_whole(small: Stored) -> None:
+    report = PageReport(small)
+    assert report.driven is report
+    assert SECTIONS["free"](report) is None
+
+
+def test_every_free_run_moves_with_its_courses(free: Stored) -> None:
+    shown = embedded(PageReport(free), "free")["scenes"][0]
+    assert len(shown["lines"]) == 4
+    for line in shown["lines"]:
+        assert [cell["dt"] for cell in line["cells"]] == ["4.00 ms", "2.00 ms"]
+        for cell in line["cells"]:
+            assert cell["off"] is not None
+            assert {"phase", "phase_judged", "angle", "speed", "energy"} <= set(cell["names"])
+
+
+def test_columns_of_stability_stand_under_their_engines(free: Stored) -> None:
+    section = SECTIONS["stability"](PageReport(free))
+    assert section is not None
+    assert dict(section.words["engines"]) == {"mujoco": 2, "pymunk": 2}
+    assert [look.engine for look in section.words["looks"]] == ["mujoco"] * 2 + ["pymunk"] * 2
+
+
+def test_a_free_run_is_drawn_and_every_choice_has_curves(open_page: Open, path: Path) -> None:
+    opened = open_page(path)
+    opened.show("free")
+    seen = opened.page
+    for course in ("phase_judged", "phase", "energy", "speed", "angle", "portrait"):
+        seen.select_option("#free-course", course)
+        seen.wait_for_function(
+            "() => document.getElementById('free-chart').data.some(each => each.x.length > 50)"
+        )
+        titles = seen.evaluate(
+            "() => document.getElementById('free-chart').layout.yaxis.title.text"
+        )
+        assert titles
+    place = seen.locator("#free-picture .overlays path").first
+    before = place.get_attribute("d")
+    seen.evaluate(
+        "() => { const s = document.getElementById('free-slider'); s.value = 300;"
+        " s.dispatchEvent(new Event('input')); }"
+    )
+    assert place.get_attribute("d") != before
+    assert "0.417 s" in seen.locator("#free-angle").inner_text()
+    assert opened.said == []
+    assert opened.asked == [path.as_uri()] or all(x.startswith("file") for x in opened.asked)

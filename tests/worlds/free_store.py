@@ -1,0 +1,31 @@
+"""A real store of a scene that was let go for a while, in two engines with two profiles."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+from rich.console import Console
+
+from reports.cli.commands import sweep as command
+from reports.cli.measuring import SweepRequest
+
+SCENE = "fourbar-swing"
+LASTS_S = 1.0
+
+
+def filled(folder: Path) -> Path:
+    """The store in a folder; the variants go from profile to profile, and not by engine."""
+    nowhere = Console(file=StringIO())
+    asked = SweepRequest(
+        folder,
+        scenes=(SCENE,),
+        engines=("mujoco", "pymunk"),
+        profiles=("tuned", "as-shipped"),
+        timing=False,
+        free=True,
+        dt_s="4e-3,2e-3",
+        duration_s=LASTS_S,
+    )
+    command.sweep(asked, nowhere, nowhere)
+    return folder
