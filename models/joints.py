@@ -99,6 +99,14 @@ def joined_at(scene: Scene) -> dict[str, tuple[str, ...]]:
     return {point: tuple(names) for point, names in names_by_point.items() if len(names) > 1}
 
 
+def has_loops(scene: Scene) -> bool:
+    """Whether some joint closes a loop: there are more pairs than bodies. In an open chain the
+    coordinates of the joints say where all is, and an engine that has these solves no constraint."""
+    pairs = sum(len(names) - 1 for names in joined_at(scene).values()) + len(scene.sliders)
+    count = len(scene.links) + sum(slider.link is None for slider in scene.sliders.values())
+    return pairs > count
+
+
 def joints(scene: Scene) -> Joints:
     """The joints of the scene; a slot has no bodies where none but its guide carries the point."""
     return _joints(Same(scene))

@@ -85,6 +85,27 @@ class Spoiler(Protocol):
         """Round all positions and velocities, see `rounded`."""
         ...
 
+    def damp(self, session: Session, per_s: float) -> None:
+        """Take this part [1/s] of the speeds of all joints, or bodies, from now on."""
+        ...
+
+    def slow(self, session: Session, share: float) -> None:
+        """Let the last joint, or body, be slower to turn by a share of its inertia."""
+        ...
+
+    def spin(self, session: Session, by_rad_s: float) -> None:
+        """Add to the angular velocity of the last joint, or body, alone."""
+        ...
+
+    def quicken(self, session: Session, share: float) -> None:
+        """Make all velocities larger by a share: they still fit the joints, not the energy."""
+        ...
+
+    def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
+        """Take back of all positions what velocities that are newer by ``by_s`` have made of them
+        since they were as ``before``; returns those of now."""
+        ...
+
     def lose(self, session: Session) -> None:
         """Make the velocity of the last body NaN."""
         ...

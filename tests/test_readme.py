@@ -7,6 +7,7 @@ A block of ``console`` starts with ``$ command``; below it stands what the comma
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -60,10 +61,12 @@ def test_every_command_of_the_readme_is_tried_once() -> None:
 
 
 def test_the_readme_counts_all_faults_that_are_planted() -> None:
-    motions = sum(not fault.of_forces for fault in FAULTS.values())
+    of = Counter(fault.kind for fault in FAULTS.values())
+    motions = of["motion"]
     assert f"plants {motions} faults" in README
     assert f"\n{motions} of {motions} faults caught by the named rule\n" in README
-    assert f"plants {len(FAULTS) - motions} faults of force" in " ".join(README.split())
+    assert f"plants {of['forces']} faults of force" in " ".join(README.split())
+    assert f"plants {of['free']} faults of dynamics" in " ".join(README.split())
 
 
 def test_what_uses_a_file_comes_after_what_writes_it() -> None:

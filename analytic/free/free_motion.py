@@ -1,23 +1,15 @@
-"""The motion of a mechanism that was let go: a high-precision integration, and no closed form."""
+"""What is asked of the motion of a mechanism that was let go, whatever integrated it."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Protocol
 
-import numpy as np
-
-from analytic.free.beside import beside
-from analytic.free.doubt import Doubt
-from analytic.free.energy import Energy, energy
-from analytic.free.growth import growth
+from analytic.free.energy import Energy
 from analytic.free.integrated_law import IntegratedLaw
-from analytic.free.places import motion_along
-from analytic.free.track import Track
 from models.array import Array
-from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import samples
 from models.scene import Scene
 
 
@@ -31,102 +23,64 @@ class LimitPassage:
     driver_rad: float
 
 
-@dataclass(frozen=True, eq=False)
-class FreeMotion:
+class FreeMotion(Protocol):
     """What a scene does from time 0, when it is let go, to ``until_s``.
 
     ``passages`` are the limit positions on the way, ``edges_s`` the instants at which what acts is
-    not smooth. ``track`` is the integration and ``doubt`` what it may be off by.
+    not smooth. ``freedoms`` is its mobility; ``by_dyads`` says that this is 1, and that there is
+    a closed form of its positions: then the driver's angle and the branch say where it is.
     """
 
-    scene: Scene
-    until_s: float
-    track: Track
-    doubt: Doubt
-    passages: tuple[LimitPassage, ...] = ()
-    edges_s: tuple[float, ...] = ()
+    @property
+    def scene(self) -> Scene: ...
+
+    @property
+    def until_s(self) -> float: ...
+
+    @property
+    def passages(self) -> Sequence[LimitPassage]: ...
+
+    @property
+    def edges_s(self) -> Sequence[float]: ...
+
+    @property
+    def freedoms(self) -> int: ...
+
+    @property
+    def by_dyads(self) -> bool: ...
 
     @property
     def peak_speed_rad_s(self) -> float:
-        """The largest angular velocity of the driver."""
-        return float(np.abs(self._looks[1]).max())
+        """The largest angular velocity of the driver; with several freedoms of any link."""
 
     @property
     def range_rad(self) -> float:
         """How far the driver goes, from its smallest angle to its largest."""
-        return float(np.ptp(self._looks[0]))
 
-    @cached_property
+    @property
     def law(self) -> IntegratedLaw:
         """The driver's motion as a law."""
-        return IntegratedLaw(self._driver, 0.0, self.until_s, self.peak_speed_rad_s)
 
     def at(self, time_s: Array, *, bound: bool = True) -> Motion:
         """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
         may be off by as well. Raises CrankcheckError for times beyond."""
-        instants = samples(time_s, "time_s")
-        self._check_within(instants)
-        return motion_along(self.scene, self.track, self.doubt if bound else None, instants)
+
+    def before(self, time_s: Array, *, bound: bool = True) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,): within a step of it,
+        where some engines have the velocities of their first sample."""
+
+    def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
+        """A motion of `at`, with the forces in its joints; there are none (NaN) in dead points."""
 
     def beside(self, logged: Motion) -> Motion:
-        """The reference, without rates and bounds, in the position that a run of this scene has at
-        each of its instants, in the assembly that it is in: at the driver's angle that it logged,
-        and near a limit of that at the angle or the displacement of what goes on through it."""
-        return beside(self.scene, self.track, logged)
+        """The positions, without rates and bounds, that the mechanism has where a run of this scene
+        is at each of its instants, whatever time the true motion has them at."""
 
     def energy(self, time_s: Array) -> Energy:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
-        instants = samples(time_s, "time_s")
-        self._check_within(instants)
-        return energy(self.scene, self.track, instants)
 
     def sensitivity(self, time_s: Array) -> Array:
-        """G (T,): by how much a small change of the start has grown by then at most, at least 1.
-
-        In the driver's angle: for a start that is off by an angle, per rad; or in its speed, per
-        peak speed over the range that the driver goes through (a turn at most): changes that are
-        the same part of the motion.
-        """
-        return np.interp(time_s, *self._growth)
+        """G (T,): by how much a small change of the start has grown by then at most, at least 1."""
 
     def error_rad(self, time_s: Array) -> Array:
-        """What the driver's angle may be off by [rad], (T,)."""
-        instants = samples(time_s, "time_s")
-        u, off = self.track.state(instants)[0], self.doubt.at(instants)[0]
-        error, window = np.zeros_like(u), self.track.windows_at(instants)
-        for chart, first, last in self.track.legs():
-            at = (window >= first) & (window < last)
-            _, slope, bend = chart.driver(u[at])
-            error[at] = (np.abs(slope) + 0.5 * np.abs(bend) * off[at]) * off[at]
-        return error
-
-    def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
-        """Angle, rate and acceleration of the driver."""
-        u, v, a = self.track.state(time_s)
-        theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
-        window = self.track.windows_at(time_s)
-        for chart, first, last in self.track.legs():
-            at = (window >= first) & (window < last)
-            phi, slope, bend = chart.driver(u[at])
-            theta[at], omega[at] = phi, slope * v[at]
-            alpha[at] = bend * v[at] ** 2 + slope * a[at]
-        return theta, omega, alpha
-
-    @cached_property
-    def _looks(self) -> tuple[Array, Array, Array]:
-        """The driver at instants that are close."""
-        ends = np.append(self.track.starts_s, self.track.end_s)
-        share = np.linspace(0.0, 1.0, 17)
-        return self._driver((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel())
-
-    @cached_property
-    def _growth(self) -> tuple[Array, Array]:
-        reach = min(2.0 * np.pi, self.range_rad)
-        return growth(self.track, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
-
-    def _check_within(self, time_s: Array) -> None:
-        if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):
-            raise CrankcheckError(
-                f"{self.scene.name}: times from {time_s.min():g} to {time_s.max():g} s; it was let "
-                f"go at 0, and integrated up to {self.until_s:g} s"
-            )
+        """What the driver's angle may be off by [rad], (T,); with several freedoms, of any link."""

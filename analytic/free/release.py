@@ -1,5 +1,5 @@
-"""Let a mechanism of one freedom go: its equation, integrated to rounding and held to a second
-integration with other nodes in other windows."""
+"""Let a mechanism go. With one freedom, by its own equation, integrated to rounding and held to a
+second integration with other nodes in other windows; else by those of all its bodies."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ import numpy as np
 from analytic.free.arc import Arc
 from analytic.free.chart import Chart
 from analytic.free.doubt import Doubt
+from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.gauss import gauss, sums
 from analytic.free.integration import Integration
 from analytic.free.machine import Machine
+from analytic.free.machine_motion import MachineMotion
 from analytic.free.start_check import check_start
 from analytic.free.track import Track, Window
+from analytic.multibody.release import release_multibody
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError
 from models.released import LONGEST_S, Released
@@ -32,20 +35,22 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
     Parameters
     ----------
     scene : Scene
-        A mechanism of mobility 1 whose driver is let go (`models.released`), with its masses.
+        A mechanism whose driver is let go (`models.released`), with its masses. With another
+        mobility than 1, or a group without a closed form, the start names the links' angles.
     until_s : float
         For how long [s].
 
     Returns
     -------
     FreeMotion
-        To a few roundings of the driver's angle per turn times its `sensitivity`; what it may be
-        off by is `error_rad`.
+        With one freedom and dyads to a few roundings of the driver's angle per turn times its
+        `sensitivity`, else to about 1e-11 times that; what it may be off by is `error_rad`.
 
     Raises
     ------
     StructureError
-        Another mobility than 1, or a group without a closed form.
+        No freedom; or a start that does not say where all links are, or in a change point, where
+        the mobility is not 1, or a group has no closed form.
     CrankcheckError
         A driver that is driven; a start that contradicts itself; no mass that moves; friction that
         follows from the reactions; a position on the way that has no smooth motion through it; a
@@ -60,6 +65,7 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
 
 @lru_cache(maxsize=KEPT)
 def _released(same: Same, until_s: float) -> FreeMotion:
+    """The motion of a scene, kept with what was worked out of it."""
     scene = same.scene
     law = scene.driver.law
     if not isinstance(law, Released):
@@ -67,10 +73,23 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     try:
         analyse(scene)
     except StructureError as error:
+        return _of_all_bodies(scene, until_s, error)
+    return _of_one_freedom(scene, law, until_s)
+
+
+def _of_all_bodies(scene: Scene, until_s: float, reason: StructureError) -> BodiesMotion:
+    """The motion by the equations of all bodies, as there is no other for the ``reason``."""
+    try:
+        return BodiesMotion(release_multibody(scene, until_s))
+    except CrankcheckError as error:
         raise StructureError(
-            f"{error} Free motion by closed forms is that of one freedom and of dyads; that of "
-            "others is for the equations of motion of all bodies"
+            f"{reason} As a mechanism of other freedoms, by the equations of motion of all bodies, "
+            f"it is not let go either: {error}"
         ) from None
+
+
+def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotion:
+    """The motion by the equation of the machine."""
     chart = Chart.at(Arc.of(scene, law.start_rad), law.start_rad, {})
     machine = Machine(scene, chart)
     u, v = chart.state(law.start_rad, law.speed_rad_s)
@@ -80,7 +99,7 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     track, edges = _integrated(machine, until_s, NODES, (u, v), start)
     other, _ = _integrated(machine, until_s, OTHERS, (u, v), start)
     doubt = Doubt.between(track, other)
-    return FreeMotion(scene, until_s, track, doubt, tuple(_passages(track)), tuple(edges))
+    return MachineMotion(scene, until_s, track, doubt, tuple(_passages(track)), tuple(edges))
 
 
 def _integrated(

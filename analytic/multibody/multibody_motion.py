@@ -17,6 +17,7 @@ from analytic.multibody.fixed_steps import FixedSteps
 from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.outset import Outset
 from analytic.multibody.passage import Passage
+from analytic.multibody.switches import edges
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Motion
@@ -106,6 +107,25 @@ class MultibodyMotion:
             )  # fmt: skip
             parts.append(replace(motion, forces=forces))
         return _joined(parts)
+
+    def before(self, time_s: Array) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,): within a step of it. The
+        third derivatives of the coordinates are taken as constant."""
+        h, t = -float(time_s.min()), time_s[:, None]
+        _, now, _ = next(self._configurations(np.array([0.0, h, 2.0 * h])))
+        seconds, _ = self._solved(np.array([0.0, h, 2.0 * h]), now)
+        thirds = (4.0 * seconds[1] - 3.0 * seconds[0] - seconds[2]) / (2.0 * h)
+        q = now.q[0] + t * (now.rates[0] + t * (seconds[0] / 2.0 + t * thirds / 6.0))
+        rates = now.rates[0] + t * (seconds[0] + t * thirds / 2.0)
+        for i in range(len(q)):
+            q[i], rates[i] = self.dynamics.closed(q[i], rates[i])
+        assembly = self.dynamics.assembly
+        return as_motion(assembly, time_s, assembly.at_rates(q, rates), seconds[0] + t * thirds)
+
+    @property
+    def edges_s(self) -> tuple[float, ...]:
+        """The instants at which loads over time are not smooth [s]."""
+        return tuple(edges(self.dynamics.pushes, self.until_s)[1:-1])
 
     @property
     def change_points_s(self) -> tuple[float, ...]:

@@ -192,6 +192,9 @@ class SelftestRequest:
     forces: Annotated[
         bool, typer.Option("--forces", help="Plant faults of reactions and torques instead.")
     ] = False
+    free: Annotated[
+        bool, typer.Option("--free", help="Plant faults of dynamics in free motion instead.")
+    ] = False
 
 
 @command

@@ -204,6 +204,9 @@ class StabilityRequest:
     memory_gb: Annotated[float, typer.Option(help="Most memory for a run, in GB.")] = 4.0
     jobs: Jobs = 0
     forces: Forces = False
+    free: Annotated[
+        bool, typer.Option("--free", help="The cases of free motion, which are not among all.")
+    ] = False
 
 
 @command

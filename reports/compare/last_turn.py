@@ -1,18 +1,18 @@
-"""The last turn of a run at a few instants: how it moved, and what it was off by, with sign.
+"""The last turn of a run at a few instants: how it moved, and what it was off by, with sign; of a
+run that was let go, which has no turns, the whole.
 
 What a drawing and a curve of error over crank angle need, at a hundredth of the whole log. Series
 by name: ``time_s``, ``driver_rad`` (commanded), ``drive`` [rad], ``gap`` (the largest of all pins
 and sliders) [m]; per link ``theta.LINK``, ``angle.LINK`` and ``geometric.angle.LINK`` [rad]; per
 slider ``displacement.NAME`` and ``geometric.displacement.NAME`` [m]; per point ``x.P``, ``y.P``
 [m]. Names with ``geometric.`` are against the reference at the logged crank angle, the others
-against it at the commanded time.
+against it at the commanded time. What was let go has those of `free_series` as well.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
 from reports.compare.beside import Truth
+from reports.compare.free.free_beside import FreeBeside
+from reports.compare.free.free_series import SAMPLES as FREE_SAMPLES
+from reports.compare.free.free_series import free_series
+from reports.compare.free.some_samples import each_at
 from reports.compare.tracks import Track
 from reports.quantities import named
 from sim.engine import Run
@@ -36,16 +40,13 @@ def trace(truth: Truth, run: Run) -> Trace:
     if run.motion is None or run.motion.time_s.size < 2:
         return {}
     kept = _instants(scene, run)
-    gaps = {name: gap[kept] for name, gap in run.gaps.items()}
-    motion = run.motion.each_series(lambda series: series[kept])
-    turn = replace(run, motion=replace(motion, time_s=motion.time_s[kept]), gaps=gaps)
-    beside = truth.beside(turn)
+    beside = truth.beside(each_at(run, lambda series: series[kept]))
     assert beside is not None
     series = {
         "time_s": beside.motion.time_s,
         "driver_rad": beside.driver_rad,
         "drive": beside.drive,
-        "gap": np.max([np.abs(gap) for gap in gaps.values()], axis=0, initial=0.0),
+        "gap": np.max([np.abs(gap) for gap in beside.run.gaps.values()], axis=0, initial=0.0),
     }
     series |= _errors(beside.places, "")
     # Where the logged crank left its range, or is not finite, the total error says it.
@@ -55,6 +56,8 @@ def trace(truth: Truth, run: Run) -> Trace:
         series[f"theta.{name}"] = link.theta
     for name, point in beside.motion.points.items():
         series[f"x.{name}"], series[f"y.{name}"] = point.position.T
+    if isinstance(beside, FreeBeside):
+        series |= free_series(beside)
     return {name: np.ascontiguousarray(each) for name, each in series.items()}
 
 
@@ -65,7 +68,8 @@ def _instants(scene: Scene, run: Run) -> np.ndarray:
     step_s = run.dt_s * run.every
     per_turn = scene.driver.law.period_s / step_s
     span = min(round(per_turn), times.size - 1)
-    parts = min(max(round(SAMPLES_PER_TURN * span / per_turn), 1), span)
+    wanted = FREE_SAMPLES if scene.is_free else SAMPLES_PER_TURN
+    parts = min(max(round(wanted * span / per_turn), 1), span)
     return np.round(times.size - 1 - span + np.linspace(0, span, parts + 1)).astype(np.intp)
 
 

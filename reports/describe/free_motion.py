@@ -53,9 +53,10 @@ def free_notes(free: FreeMotion, until_s: float) -> list[str]:
     sentences."""
     last = np.array([until_s])
     off, growth = float(free.error_rad(last)[0]), float(free.sensitivity(last)[0])
+    angle = f"the angle of {free.scene.driver.link}" if free.by_dyads else "every link's angle"
     notes = [
-        f"Integrated with high precision, no closed form: the angle of {free.scene.driver.link} is "
-        f"off by at most {error_text(off)} rad at {until_s:g} s.",
+        f"Integrated with high precision, no closed form: {angle} is off by at most "
+        f"{error_text(off)} rad at {until_s:g} s.",
         f"Sensitivity {growth:.3g}: what the start is changed by has grown so many times by then.",
     ]
     passed = [one for one in free.passages if one.time_s <= until_s]

@@ -10,6 +10,7 @@ from analytic.structure.mobility import analyse
 from models.motion import Motion
 from reports.describe.frame import cleaned
 from reports.describe.free_motion import free_notes, free_tables
+from reports.describe.law import describe_law
 from reports.describe.tables import motion_tables
 from reports.face.solution_text import heading
 from reports.plan.singular import continued_note
@@ -18,7 +19,8 @@ from reports.plan.singular import continued_note
 def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
     """Print the mechanism, every sample of its motion, and the notes."""
     scene = free.scene
-    console.print(heading(scene, analyse(scene)), highlight=False, markup=False)
+    told = heading(scene, analyse(scene)) if free.by_dyads else _without_dyads(free)
+    console.print(told, highlight=False, markup=False)
     shown = cleaned(motion)
     tables = motion_tables(scene, shown, console.width)
     if scene.driver.link in motion.links:
@@ -28,3 +30,12 @@ def show_free(console: Console, free: FreeMotion, motion: Motion) -> None:
     notes = [*free_notes(free, float(np.max(motion.time_s))), continued_note(motion)]
     for note in filter(None, notes):
         console.print(note, style="yellow", highlight=False, markup=False)
+
+
+def _without_dyads(free: FreeMotion) -> str:
+    """What a mechanism of other freedoms than one, or of other groups than dyads, is."""
+    scene = free.scene
+    return (
+        f"{scene.name}: {scene.source}\nmobility {free.freedoms}; driver {scene.driver.link}, "
+        f"{describe_law(scene)}; by the equations of motion of all bodies\n"
+    )

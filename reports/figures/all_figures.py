@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from matplotlib.figure import Figure
 
 from reports.figures import convergence, mechanism, profile, work_precision
 from reports.figures import error_parts as split
+from reports.figures.free_runs import courses, energy_change, phase_diagrams
 from reports.results.overview import Report
 
 
@@ -17,16 +19,22 @@ class Drawing:
     """What a figure shows, of one scene and over all of them; None where it has no such form.
 
     Each gives None where a store has nothing to draw. Files are called ``name-scene`` and ``name``.
+    ``drives`` says whether it shows what was driven, or what was let go, or both.
     """
 
     of: Callable[[Report, str], Figure | None] | None = None
     over_all: Callable[[Report], Figure | None] | None = None
+    drives: tuple[Literal["driven", "let go"], ...] = ("driven",)
 
 
+BOTH: tuple[Literal["driven", "let go"], ...] = ("driven", "let go")
 FIGURES: Mapping[str, Drawing] = {
     "work-precision": Drawing(work_precision.draw, work_precision.draw_all),
-    "convergence": Drawing(convergence.draw, convergence.draw_all),
+    "convergence": Drawing(convergence.draw, convergence.draw_all, BOTH),
     "split": Drawing(split.draw),
-    "mechanism": Drawing(mechanism.draw),
+    "mechanism": Drawing(mechanism.draw, drives=BOTH),
     "profile": Drawing(None, profile.draw_all),
+    "let-go": Drawing(courses.draw, drives=("let go",)),
+    "energy": Drawing(energy_change.draw, drives=("let go",)),
+    "phase": Drawing(phase_diagrams.draw, drives=("let go",)),
 }

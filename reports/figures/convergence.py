@@ -25,9 +25,8 @@ from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
-from reports.results.drawable import PLACE, around, ends, fitted, measured
+from reports.results.drawable import PLACE, PLACE_FREE, around, ends, fitted, measured
 from reports.results.lines import Line, Named, named
-from reports.results.looks import label
 from reports.results.origin import notes
 from reports.results.overview import Report
 
@@ -43,7 +42,9 @@ def draw(report: Report, scene: str) -> Figure:
     own, mark_of = report.lines_of(scene), marks(report.lines)
     panels = Panels(top=0.27)
     title, under = f"Convergence: {scene}", notes(report, own)
-    figure, (axes,) = sheet(COLUMN_IN, panels, title, _entries(own, mark_of), under, columns=1)
+    figure, (axes,) = sheet(
+        COLUMN_IN, panels, title, _entries(report, own, mark_of), under, columns=1
+    )
     _limits([axes], own, 1.0)
     _panel(axes, own, mark_of, 1.0)
     strip = _strip(own)
@@ -52,30 +53,40 @@ def draw(report: Report, scene: str) -> Figure:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
     axes.set_xlabel(STEP)
-    axes.set_ylabel(PLACE)
-    _upper(axes, own)
+    axes.set_ylabel(PLACE_FREE if _let_go(own) else PLACE)
+    if not _let_go(own):
+        _upper(axes, own)
     return figure
 
 
 def draw_all(report: Report) -> Figure:
-    """The plots of all scenes side by side, over steps per turn."""
+    """The plots of all scenes side by side, over steps per turn; over steps of time where all were
+    let go."""
     lines, scenes, mark_of = report.lines, list(report.scenes), marks(report.lines)
     entries: list[tuple[Artist, str]] = [
-        (Line2D([], [], **mark.style), label(name)) for name, mark in mark_of.items()
+        (Line2D([], [], **mark.style), report.looks[name].name) for name, mark in mark_of.items()
     ]
     strip = _strip(lines)
     if strip:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
-    labels = (PER_TURN, PLACE)
+    let_go = _let_go(lines)
+    labels = (STEP, PLACE_FREE) if let_go else (PER_TURN, PLACE)
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
-    _limits(axes, lines, 0.0)
+    _limits(axes, lines, 1.0 if let_go else 0.0)
     for scene, one in zip(scenes, axes, strict=True):
         own = report.lines_of(scene)
-        _panel(one, own, mark_of, own[0].period_s)
-        _failed(one, own, mark_of, own[0].period_s, strip)
-        _count(one, own)
+        unit_s = 1.0 if let_go else own[0].period_s
+        _panel(one, own, mark_of, unit_s)
+        _failed(one, own, mark_of, unit_s, strip)
+        if not let_go:
+            _count(one, own)
     return figure
+
+
+def _let_go(lines: Sequence[Line]) -> bool:
+    """Whether lines have no turns, and errors over the sensitivity of their motion."""
+    return all(line.drive == "free" for line in lines)
 
 
 def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:
@@ -165,12 +176,16 @@ def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
     )
 
 
-def _entries(lines: Sequence[Line], mark_of: Mapping[Named, Mark]) -> list[tuple[Artist, str]]:
+def _entries(
+    report: Report, lines: Sequence[Line], mark_of: Mapping[Named, Mark]
+) -> list[tuple[Artist, str]]:
     """The legend: each variant with its fit, and how its other runs ended."""
     return [
         (
             Line2D([], [], **mark_of[named(line)].style),
-            ": ".join([label(named(line)), ", ".join(filter(None, (fitted(line), ends(line))))]),
+            ": ".join(
+                [report.look(line).name, ", ".join(filter(None, (fitted(line), ends(line))))]
+            ),
         )
         for line in lines
     ]

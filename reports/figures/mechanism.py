@@ -25,6 +25,8 @@ from reports.figures.style import COLUMN_IN, POINTS, SIZE, SMALL, width_in
 from reports.results.origin import facts_of
 from reports.results.overview import Report
 
+FREE_SAMPLES = 2401
+"""Of the paths of what was let go, which are gone along many times."""
 NUMBER_IN = 0.38
 """Room for a number of the horizontal axis [inch]."""
 
@@ -34,7 +36,7 @@ def draw(report: Report, name: str) -> Figure | None:
     scene = report.scenes[name]
     if scene is None:
         return None
-    path = turn_of(scene, PATH_SAMPLES)
+    path = turn_of(scene, FREE_SAMPLES if scene.is_free else PATH_SAMPLES)
     low, high = box_of(path)
     panels = Panels(top=0.05, right=0.1)
     wide = COLUMN_IN - panels.left - panels.right
@@ -79,4 +81,5 @@ def _origin(report: Report, scene: Scene) -> str:
     """Where the drawing comes from: it is the closed form's, and no engine's."""
     own = facts_of(report).get("crankcheck", "")
     longest = f"longest link L = {scene.longest_m:g} m"
-    return f"crankcheck {own}, closed form; driver {describe_law(scene)}; {longest}."
+    truth = "integrated" if scene.is_free else "closed form"
+    return f"crankcheck {own}, {truth}; driver {describe_law(scene)}; {longest}."

@@ -14,6 +14,7 @@ from markupsafe import Markup
 from reports.drawing.packed import embedded, policy
 from reports.output.numbers import NONE, count, duration, error_text, readable
 from reports.page.sections import SECTIONS
+from reports.page.sections.free import build as free
 from reports.page.sections.hard import hard, lighter
 from reports.page.sections.motion import build as motion
 from reports.page.sections.section import PageReport, Section
@@ -58,8 +59,12 @@ def page(stored: Stored, matrix: Matrix | None = None) -> str:
     sections = {name: build(report) for name, build in SECTIONS.items()}
     text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
-    if over > 0 and sections["motion"] is not None:
-        sections["motion"] = motion(report, BUDGET - over)
+    if over > 0 and sections["free"] is not None:
+        sections["free"] = free(report, max(BUDGET - over, 0))
+        text = _rendered(report, sections)
+        over = len(text.encode()) - MOST_BYTES
+    if over > 0 and report.driven is not None and sections["motion"] is not None:
+        sections["motion"] = motion(report.driven, BUDGET - over)
         text = _rendered(report, sections)
     over = len(text.encode()) - MOST_BYTES
     if over > 0 and matrix is not None and sections["hard"] is not None:

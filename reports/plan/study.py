@@ -124,6 +124,8 @@ def load_study(path: Path | None) -> Study:
         study = Study.model_validate(raw)
     except ValidationError as error:
         faults = list(dict.fromkeys(_fault(fault) for fault in error.errors()))
+        if isinstance(raw, dict) and not {"steps_per_turn", "free"} & set(raw):
+            faults.append("steps_per_turn: missing; add it")
         raise CrankcheckError(listed(f"study {path}", faults)) from None
     if faults := list(_unsaid(study)):
         raise CrankcheckError(listed(f"study {path}", faults))

@@ -12,6 +12,8 @@ from reports.results.lines import Line
 
 PLACE = "largest error: angle [rad], place / L [-]"
 """The error that all diagrams speak of; L is the longest link."""
+PLACE_FREE = "largest error / sensitivity: angle [rad], place / L [-]"
+"""That of what was let go."""
 WORDS = {
     "grows": "grows as the step shrinks",
     "irregular": "no order",

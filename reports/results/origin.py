@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from reports.output.numbers import count
+from reports.output.numbers import count, duration, listed
 from reports.results.lines import Line, named
-from reports.results.looks import label
 from reports.results.one_processor import machine
 from reports.results.overview import Report
 from reports.results.settings_text import OWN
@@ -39,6 +38,12 @@ def study(lines: Sequence[Line]) -> str:
     variants = count(len({named(line) for line in lines}), "variant")
     steps = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
+    if all(line.drive == "free" for line in lines):
+        dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
+        lasts = listed([duration(s) for s in sorted({line.period_s for line in lines})])
+        return (
+            f"Study: {where}, {variants}, let go for {lasts}, dt {listed(list(map(duration, dts)))}"
+        )
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")
     long = ", ".join(f"{n:g}" for n in turns) + (" turn" if turns == [1.0] else " turns")
     return f"Study: {where}, {variants}, {to} steps per turn, {long}"
@@ -64,7 +69,7 @@ def settings(report: Report, lines: Sequence[Line]) -> list[str]:
 def settings_of(report: Report, lines: Sequence[Line]) -> Mapping[str, str]:
     """The settings of each variant, by its label (see `reports.results.settings_text`)."""
     shown = dict.fromkeys(named(line) for line in lines)
-    return {label(name): report.settings_told[name] for name in shown}
+    return {report.looks[name].name: report.settings_told[name] for name in shown}
 
 
 def facts_of(report: Report) -> Mapping[str, str]:

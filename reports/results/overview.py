@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import pandas as pd
@@ -88,6 +88,22 @@ class Report:
         """Whether there is a cost to speak of."""
         return bool(self.cells["s_per_turn"].notna().any())
 
+    @cached_property
+    def driven(self) -> Report | None:
+        """What was driven alone, which has turns; None where everything was let go."""
+        free = self.stored.cells["drive"] == "free"
+        if not free.any():
+            return self
+        if free.all():
+            return None
+        cells = self.stored.cells[~free].reset_index(drop=True)
+        return DrivenReport(replace(self.stored, cells=cells), whole=self)
+
+    @cached_property
+    def free_lines(self) -> tuple[Line, ...]:
+        """The lines that were let go."""
+        return tuple(line for line in self.lines if line.drive == "free")
+
     def look(self, line: Line) -> Look:
         """How a line is drawn."""
         return self.looks[named(line)]
@@ -100,6 +116,18 @@ class Report:
     def settings_told(self) -> Mapping[Named, str]:
         """The settings of each variant, as what differs from the engine as shipped."""
         return settings_told(self.lines)
+
+
+@dataclass(frozen=True)
+class DrivenReport(Report):
+    """The driven part of a report; its engines look as they do in the ``whole``."""
+
+    whole: Report = field(kw_only=True)
+
+    @property
+    def looks(self) -> Mapping[Named, Look]:
+        shown = {named(line) for line in self.lines}
+        return {name: look for name, look in self.whole.looks.items() if name in shown}
 
 
 def _parsed(text: str | None, name: str) -> Scene | None:

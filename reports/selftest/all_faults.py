@@ -7,16 +7,19 @@ from collections.abc import Iterable, Sequence
 from models.errors import CrankcheckError, suggestion
 from reports.selftest import (
     clock,
+    dynamics,
     engines,
     forces,
     handed_back,
     mechanism,
     misplaced,
     missing,
+    record,
     requests,
+    stepping,
     values,
 )
-from reports.selftest.fault import Fault
+from reports.selftest.fault import Fault, RunKind
 
 FAULTS: dict[str, Fault] = {
     fault.name: fault
@@ -30,6 +33,9 @@ FAULTS: dict[str, Fault] = {
         misplaced,
         missing,
         forces,
+        dynamics,
+        stepping,
+        record,
     )
     for fault in module.FAULTS
 }
@@ -44,14 +50,17 @@ GROUPS = {
     "misplaced": "numbers of the log in a wrong place",
     "missing": "something missing from the log",
     "force": "a right motion with wrong forces",
+    "dynamics": "let go, as another machine",
+    "stepping": "let go, and spoilt inside the engine",
+    "record": "let go, and wrong in the log",
 }
 
 
 def chosen_faults(
-    names: Sequence[str], engines: Iterable[str], *, of_forces: bool = False
+    names: Sequence[str], engines: Iterable[str], kind: RunKind = "motion"
 ) -> list[Fault]:
-    """The named faults, each once, or all, of motions or of forces; of them those that one of the
-    engines can have.
+    """The named faults, each once, or all that are planted in runs of a kind; of them those that
+    one of the engines can have.
 
     Raises
     ------
@@ -69,6 +78,6 @@ def chosen_faults(
                 f"--fault {name}: it can be planted in {able} only; "
                 f"found --engine {', '.join(sorted(chosen))}"
             )
-    every = [name for name, fault in FAULTS.items() if fault.of_forces == of_forces]
+    every = [name for name, fault in FAULTS.items() if fault.kind == kind]
     order = dict.fromkeys(names or every)
     return [FAULTS[name] for name in order if any(map(FAULTS[name].possible, chosen))]

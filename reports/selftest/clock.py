@@ -18,7 +18,7 @@ from sim.run import run
 from sim.spoil import rounded
 
 
-def _late(size: float) -> CellRunner:
+def late(size: float) -> CellRunner:
     """Every sample is that of so many samples later."""
     samples = round(size)
 
@@ -104,7 +104,7 @@ def _only_one(_: Scene, done: Run) -> Run:
 
 _fault = partial(Fault, "clock")
 FAULTS = (
-    _fault("clock-late", "every sample is a later one", "CC102", _late, 1.0, "sample", whole=True),
+    _fault("clock-late", "every sample is a later one", "CC102", late, 1.0, "sample", whole=True),
     _fault(
         "velocity-late",
         "velocities belong elsewhere",

@@ -26,26 +26,26 @@ TIMES = 36
 Act = Callable[[Spoiler, Session, float], None]
 
 
-def _done(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plant:
+def done_to(act: Act, at: Callable[[int], Iterable[int]] = lambda _: (0,)) -> Plant:
     """What is done to a session before the first step, or after others of so many."""
     return in_engine(at, lambda tools, session, _o, size, _: act(tools, session, size))
 
 
 def after_a_third(act: Act) -> Plant:
     """What is done to a session in mid-run."""
-    return _done(act, lambda steps: (steps // 3,))
+    return done_to(act, lambda steps: (steps // 3,))
 
 
 def _dropped(turns: float) -> CellRunner:
     """The loop opens so many turns before the end of one turn."""
-    plant = _done(
+    plant = done_to(
         lambda tools, session, _: tools.open_loop(session),
         lambda steps: (steps - round(turns * steps),) if turns else (),
     )
     return plant(turns)
 
 
-def _soften(tools: Spoiler, session: Session, opening: Opening, share: float, over: float) -> None:
+def soften(tools: Spoiler, session: Session, opening: Opening, share: float, over: float) -> None:
     tools.soften(session, opening, share * over)
 
 
@@ -107,7 +107,7 @@ FAULTS = (
         "joint-softens",
         "joints give way, more with time",
         "CC105",
-        in_engine(lambda steps: range(0, steps, max(steps // TIMES, 1)), _soften),
+        in_engine(lambda steps: range(0, steps, max(steps // TIMES, 1)), soften),
         0.98,
         "of it",
     ),
@@ -124,7 +124,7 @@ FAULTS = (
         "gravity-left-on",
         "gravity, of which the scene has none",
         "CC101",
-        _done(lambda tools, session, size: tools.pull(session, size)),
+        done_to(lambda tools, session, size: tools.pull(session, size)),
         9.81,
         "m/s^2",
         says=(REFUSED, "gravity"),
@@ -133,7 +133,7 @@ FAULTS = (
         "mass-off",
         "a body is too heavy",
         "CC101",
-        _done(lambda tools, session, size: tools.load(session, size)),
+        done_to(lambda tools, session, size: tools.load(session, size)),
         1e-3,
         "of it",
         says=(REFUSED, "mass_kg"),
@@ -142,7 +142,7 @@ FAULTS = (
         "starts-askew",
         "a body starts turned",
         "CC101",
-        _done(lambda tools, session, size: tools.turn(session, size)),
+        done_to(lambda tools, session, size: tools.turn(session, size)),
         1e-6,
         "rad",
         says=(REFUSED,),
@@ -176,7 +176,9 @@ FAULTS = (
         "float32-arithmetic",
         "the state is kept in float32",
         "CC102",
-        _done(lambda tools, session, size: tools.round_state(session, size), lambda n: range(1, n)),
+        done_to(
+            lambda tools, session, size: tools.round_state(session, size), lambda n: range(1, n)
+        ),
         2.0**-24,
         "of it",
         scenes=(FOURBAR,),  # each of its runs is cut into 360 stretches

@@ -6,7 +6,7 @@ in it. A size of 0 goes the same way and changes nothing, which must not be noti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
@@ -16,6 +16,7 @@ import numpy as np
 from analytic.kinematics import solve
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
+from reports.compare.free.free_truth import free_truth
 from reports.judge.cell import CellRunner
 from sim.engine import Run, Session, Settings
 from sim.registry import available, engine, offering
@@ -31,8 +32,31 @@ REFUSED = "the engine does not hold"
 Plant = Callable[[float], CellRunner]
 Items = tuple[tuple[str, Any], ...]
 FaultGroup = Literal[
-    "request", "reference", "scene", "engine", "clock", "log", "misplaced", "missing", "force"
+    "request",
+    "reference",
+    "scene",
+    "engine",
+    "clock",
+    "log",
+    "misplaced",
+    "missing",
+    "force",
+    "dynamics",
+    "stepping",
+    "record",
 ]
+RunKind = Literal["motion", "forces", "free"]
+"""What the runs are that faults are planted in: driven ones, the same with their forces, or of a
+mechanism that was let go."""
+INSIDE = ("engine", "stepping")
+"""The groups of what goes wrong inside an engine."""
+KINDS: Mapping[str, RunKind] = {
+    "force": "forces",
+    "dynamics": "free",
+    "stepping": "free",
+    "record": "free",
+}
+"""By group, where it is not motion."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +86,9 @@ class Fault:
     shown: Callable[[float], str] | None = None
 
     @property
-    def of_forces(self) -> bool:
-        """Whether it is the forces that are wrong, which its runs are asked for."""
-        return self.group == "force"
+    def kind(self) -> RunKind:
+        """What its runs are."""
+        return KINDS.get(self.group, "motion")
 
     @property
     def planted(self) -> float:
@@ -73,7 +97,7 @@ class Fault:
 
     def possible(self, name: str) -> bool:
         """Whether an engine can have it; what goes wrong inside one needs its spoiler."""
-        return (self.group != "engine" or name in offering("spoiler")) and self.needs(name)
+        return (self.group not in INSIDE or name in offering("spoiler")) and self.needs(name)
 
     @property
     def engines(self) -> tuple[str, ...]:
@@ -183,8 +207,11 @@ def in_log(change: Callable[[Scene, Run, float], Run]) -> Plant:
 def _healthy(same: Same, name: str, profile: str, settings: Items, options: Items) -> Run:
     """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
     quarter."""
-    start = truth_of(same).start  # the cell that is run has asked for it
-    return run(same.scene, start, name, profile, settings=dict(settings), **dict(options))
+    given = dict(options)
+    let_go = given.get("drive") == "free"
+    truth = free_truth(same.scene, given["steps"], given["dt_s"]) if let_go else truth_of(same)
+    start = truth.start  # the cell that is run has asked for it
+    return run(same.scene, start, name, profile, settings=dict(settings), **given)
 
 
 def switched(change: Callable[[Scene, Run], Run]) -> Plant:

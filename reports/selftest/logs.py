@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion
 from models.scene import Scene
-from sim.engine import Run
+from sim.engine import Energy, Run
 
 Rows = slice | Array | NDArray[np.intp]
 SEED = 20240229
@@ -87,4 +87,6 @@ def with_times(done: Run, change: Callable[[Array], Array]) -> Run:
 
 def rows(done: Run, keep: Rows, stamps: Rows) -> Run:
     """The samples ``keep`` with the time stamps ``stamps``."""
-    return with_times(every_series(done, lambda series: series[keep]), lambda t: t[stamps])
+    energy = done.energy and Energy(done.energy.kinetic_j[keep], done.energy.potential_j[keep])
+    kept = replace(every_series(done, lambda series: series[keep]), energy=energy)
+    return with_times(kept, lambda t: t[stamps])

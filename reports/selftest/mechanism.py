@@ -11,7 +11,7 @@ from models.scene import Link, Scene
 from reports.selftest.fault import FOURBAR, SLIDER, Fault, in_scene
 
 
-def _long(scene: Scene, share: float) -> Scene:
+def long_coupler(scene: Scene, share: float) -> Scene:
     """The link that is pinned to the driver."""
     name = list(scene.links)[1]
     return _with_link(scene, _scaled(scene.links[name], 1.0 + share))
@@ -90,7 +90,7 @@ def other_branch(scene: Scene, swap: float) -> Scene:
 
 _fault = partial(Fault, "scene")
 FAULTS = (
-    _fault("link-too-long", "a link is too long", "CC103", in_scene(_long), 1e-3, "of it"),
+    _fault("link-too-long", "a link is too long", "CC103", in_scene(long_coupler), 1e-3, "of it"),
     _fault(
         "pin-moved",
         "a pin or a slider's line is elsewhere",

@@ -14,6 +14,7 @@ from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
 from reports.selftest.fault import PROFILE, Fault
+from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
 
 WIDE = 96
@@ -172,10 +173,23 @@ def _footer(verdicts: Sequence[Verdict], facts: Mapping[str, str]) -> str:
         "From on: the smallest size that its rule still sees in every scene, to 10 % (any: down to "
         "1e-12 of the planted size; yes: there or not; -: can not be planted there). With a size "
         "of 0 nothing may be found.",
-        f"Profile {PROFILE}, {STEPS} steps a turn, 1 turn. L longest link, w driver's speed.",
+        f"Profile {PROFILE}, {_spans(verdicts)}. L longest link, w driver's speed.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     return escape("\n".join(lines))
+
+
+def _spans(verdicts: Sequence[Verdict]) -> str:
+    """How long the runs are, and at which step."""
+    kinds = {one.fault.kind for one in verdicts}
+    scenes = dict.fromkeys(scene for one in verdicts for scene in one.fault.scenes)
+    let_go = [
+        f"{scene} {1e3 * dt_s:g} ms, {dt_s * steps:g} s"
+        for scene, (dt_s, steps) in FREE_RUNS.items()
+        if scene in scenes
+    ]
+    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free"} else []
+    return "; ".join([*turn, *([f"let go: {', '.join(let_go)}"] if let_go else [])])
 
 
 def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:

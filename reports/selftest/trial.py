@@ -1,7 +1,8 @@
 """Plant a fault, see which rules fail, and find the size from which on its own rule does.
 
-The runs are short: one turn, profile tuned. A fault is caught where the rule that it names fails
-at the size planted, while the same run without it, and with it at size 0, passes every rule.
+The runs are short: one turn, or a second of free motion; profile tuned. A fault is caught where the
+rule that it names fails at the size planted, while the same run without it, and with it at size 0,
+passes every rule.
 """
 
 from __future__ import annotations
@@ -13,13 +14,14 @@ from functools import cache, partial
 
 from models.errors import EngineError
 from models.files import load_scene
-from models.scene import Same, Scene
-from reports.compare.beside import truth_of
+from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.fault import FOURBAR, PROFILE, Fault
+from reports.selftest.fault import FOURBAR, PROFILE, Fault, RunKind
+from reports.selftest.free_runs import FREE_RUNS, SWING
 from reports.selftest.unseen import UNSEEN, Unseen
+from reports.selftest.unseen_free import UNSEEN_FREE
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
 from sim.registry import ENGINES, engine
@@ -85,26 +87,25 @@ class Verdict:
 
 
 @cache
-def healthy(scene: str, engine: str, steps: int = STEPS, *, forces: bool = False) -> Checked:
-    """A run without any fault, with its forces or without."""
-    return check(_cell(load_scene(scene), engine, steps, converge=True, forces=forces))
+def healthy(scene: str, engine: str, steps: int = STEPS, kind: RunKind = "motion") -> Checked:
+    """A run of a kind without any fault."""
+    return check(_cell(load_scene(scene), engine, steps, converge=True, kind=kind))
 
 
 def sites(faults: Sequence[Fault], engines: Sequence[str]) -> list[tuple[str, str]]:
     """The scenes and engines that the faults are planted in."""
     there = [name for name in dict.fromkeys((*ENGINES, *engines)) if name in engines]
-    pairs = {(s, e): None for f in faults for s in f.scenes for e in there if f.possible(e)}
-    return [(scene, name) for scene, name in pairs if held(scene, name)]
+    pairs = {(s, e): f.kind for f in faults for s in f.scenes for e in there if f.possible(e)}
+    return [(scene, name) for (scene, name), kind in pairs.items() if held(scene, name, kind)]
 
 
 @cache
-def held(scene: str, name: str) -> bool:
+def held(scene: str, name: str, kind: RunKind = "motion") -> bool:
     """Whether an engine can hold a scene; not every engine of a user's own has every joint."""
-    adapter, mechanism = engine(name), load_scene(scene)
+    adapter, cell = engine(name), _cell(load_scene(scene), name, STEPS, converge=False, kind=kind)
     settings = resolved(profile_of(adapter, PROFILE), None)
-    dt_s = mechanism.driver.law.period_s / STEPS
     try:
-        adapter.open(mechanism, truth_of(Same(mechanism)).start, settings, dt_s, "prescribed")
+        adapter.open(cell.scene, cell.truth.start, settings, cell.dt_s, cell.drive)
     except EngineError:
         return False
     return True
@@ -114,9 +115,7 @@ def tried(name: str, engines: Sequence[str], steps: int = STEPS, search: bool = 
     """Plant the fault of that name in all its places; ``search`` for the smallest sizes too."""
     fault = FAULTS[name]
     pairs = sites([fault], engines)
-    sound = all(
-        passes(healthy(scene, engine, steps, forces=fault.of_forces)) for scene, engine in pairs
-    )
+    sound = all(passes(healthy(scene, engine, steps, fault.kind)) for scene, engine in pairs)
     places = [_place(fault, load_scene(scene), engine, steps, search) for scene, engine in pairs]
     return Verdict(name, tuple(places), sound)
 
@@ -131,16 +130,19 @@ class Passed:
     nothing: tuple[str, ...]
 
 
-def passed_by(engines: Sequence[str], scene: str = FOURBAR, steps: int = STEPS) -> list[Passed]:
+def passed_by(engines: Sequence[str], kind: RunKind = "motion", steps: int = STEPS) -> list[Passed]:
     """Plant what need not be seen, in one scene."""
-    able = [name for name in engines if held(scene, name)]
-    return [_passed(each, load_scene(scene), able, steps) for each in UNSEEN]
+    scene, unseen = (SWING, UNSEEN_FREE) if kind == "free" else (FOURBAR, UNSEEN)
+    able = [name for name in engines if held(scene, name, kind)]
+    return [_passed(each, load_scene(scene), able, steps, kind) for each in unseen]
 
 
-def _passed(each: Unseen, scene: Scene, engines: Sequence[str], steps: int) -> Passed:
+def _passed(
+    each: Unseen, scene: Scene, engines: Sequence[str], steps: int, kind: RunKind
+) -> Passed:
     failed, nothing = {}, []
     for name in filter(each.needs, engines):
-        cell = _cell(scene, name, steps, converge=False)
+        cell = _cell(scene, name, steps, converge=False, kind=kind)
         full, none = (examined(cell, each.plant(size))[0] for size in (1.0, 0.0))
         failed[name] = tuple(finding.rule for finding in full.failures)
         nothing += [name] * (each.shows and full.errors == none.errors)
@@ -168,7 +170,7 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     """A fault in one place."""
 
     def planted(size: float) -> Checked:
-        cell = _cell(scene, engine, steps, converge=fault.finer, forces=fault.of_forces)
+        cell = _cell(scene, engine, steps, converge=fault.finer, kind=fault.kind)
         cell = replace(cell, settings=fault.settings(engine))
         return examined(cell, fault.plant(size))[0]
 
@@ -188,8 +190,16 @@ def _place(fault: Fault, scene: Scene, engine: str, steps: int, search: bool) ->
     )
 
 
-def _cell(scene: Scene, engine: str, steps: int, *, converge: bool, forces: bool = False) -> Cell:
+def _cell(
+    scene: Scene, engine: str, steps: int, *, converge: bool, kind: RunKind = "motion"
+) -> Cell:
+    """A turn of so many steps; of what is let go, the run that `FREE_RUNS` says, as much finer."""
+    if kind == "free":
+        dt_s, of_run = FREE_RUNS[scene.name]
+        dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS
+        return Cell(scene, engine, PROFILE, dt_s, steps, drive="free", converge=converge)
     dt_s = scene.driver.law.period_s / steps
+    forces = kind == "forces"
     return Cell(scene, engine, PROFILE, dt_s, steps, converge=converge, with_forces=forces)
 
 

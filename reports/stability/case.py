@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Literal
 
+from analytic.free.toggle_barrier import ToggleBarrier
 from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
@@ -21,7 +22,18 @@ TURNS = 2.0
 BEYOND = 10.0
 """How far beyond its values a case may be looked at: by that factor."""
 Scale = Literal["log", "linear", "whole"]
-Judge = Literal["follow", "limit", "free"]
+Judge = Literal["follow", "limit", "chain", "let-go", "toggle"]
+"""What runs are held to, see `reports.stability.grading`."""
+LET_GO: tuple[Judge, ...] = ("let-go", "toggle")
+"""The judges of cases of free motion, which are run when asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Throw:
+    """A four-bar that is thrown at its toggle, with the margin of its energy."""
+
+    barrier: ToggleBarrier
+    margin: float
 
 
 @dataclass(frozen=True)
@@ -31,8 +43,10 @@ class Trial:
     ``scene`` is the reference; ``start`` where the engine is put in its place (None: where the
     reference is), with joints open by up to ``open_m`` [m]; errors count from ``settled_turns`` on.
     ``every`` so many steps are logged.
-    ``limit_rad`` is the driver angle that cannot be passed, and ``chain`` what is left free, where
-    that is what is to be seen.
+    ``limit_rad`` is the driver angle that cannot be passed, ``chain`` what is left free, and
+    ``throw`` what is thrown at its toggle, where that is what is to be seen. A scene that is let go
+    is held to its motion at the same time for ``followed_s`` [s], and after it to its geometry and
+    its energy alone; its turn is the time for which the scene says that it is let go.
     """
 
     scene: Scene
@@ -46,6 +60,8 @@ class Trial:
     settled_turns: float = 0.0
     limit_rad: float = math.nan
     chain: Chain | None = None
+    throw: Throw | None = None
+    followed_s: float = math.inf
 
     @property
     def dt_s(self) -> float:
@@ -72,6 +88,11 @@ class Case(CaseFacts):
     trial: Callable[[float], Trial]
     scale: Scale = "log"
     judge: Judge = "follow"
+
+    @property
+    def free(self) -> bool:
+        """Whether it is one of free motion."""
+        return self.judge in LET_GO
 
     def refuse(self, value: float) -> None:
         """Refuse a value that means nothing for the case. Raises CrankcheckError."""

@@ -71,9 +71,9 @@ def error_series(scene: Scene, run: Run, settled_turns: float = 0.0) -> ErrorSer
     assert beside is not None
     time_s, driver = beside.motion.time_s, beside.driver_rad
     with np.errstate(over="ignore", invalid="ignore"):  # what has come apart is judged, not warned
-        place = _widest([length(track.error) / track.scale for track in beside.places], driver)
-        gap = _widest([np.abs(gap) / scene.longest_m for gap in run.gaps.values()], driver)
-        drive = _widest([beside.drive], driver)
+        place = widest([length(track.error) / track.scale for track in beside.places], driver)
+        gap = widest([np.abs(gap) / scene.longest_m for gap in run.gaps.values()], driver)
+        drive = widest([beside.drive], driver)
     period = scene.driver.law.period_s
     first = int(np.searchsorted(time_s, time_s[0] + settled_turns * period))
     settled = min(first, len(driver) - 1)
@@ -115,7 +115,7 @@ def worst_of(series: Array) -> Array:
     return np.where(np.isnan(series), math.inf, series)
 
 
-def _widest(series: list[Array], like: Array) -> Array:
+def widest(series: list[Array], like: Array) -> Array:
     """The largest of several series at each sample, infinite where one is not a number."""
     if not series:
         return np.zeros_like(like)

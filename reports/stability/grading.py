@@ -11,15 +11,17 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
-from models.motion import Motion
+from models.motion import Motion, State
 from reports.stability.case import Case, Judge, Trial
 from reports.stability.error_series import ErrorSeries, error_series
+from reports.stability.falling_chain import falling, freely
 from reports.stability.force_error import force_error
-from reports.stability.free import falling, freely
 from reports.stability.grades import outcome
+from reports.stability.let_go import let_go, let_go_start, true_motion
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
+from reports.stability.toggle import at_toggle, thrown_motion, thrown_start
 from sim.engine import Run
 from sim.registry import engine as engine_of
 from sim.run import run
@@ -30,10 +32,14 @@ GradedPicture = tuple[Graded, Picture | None]
 
 @dataclass(frozen=True)
 class Yardstick:
-    """What runs are held to: how one is seen beside it, and how it moves, to be drawn."""
+    """What runs are held to: how one is seen beside it, how it moves, to be drawn, and the state
+    that they start in."""
 
     look: Callable[[Trial, Run], ErrorSeries]
     motion: Callable[[Trial, Array], Motion]
+    start: Callable[[Trial], State] = lambda trial: (
+        trial.start or solve(trial.scene, np.zeros(1)).state()
+    )
 
 
 JUDGES: Mapping[Judge, Yardstick] = {
@@ -42,7 +48,9 @@ JUDGES: Mapping[Judge, Yardstick] = {
         lambda trial, time_s: solve(trial.scene, time_s, bound=False),
     ),
     "limit": Yardstick(at_limit, held),
-    "free": Yardstick(freely, falling),
+    "chain": Yardstick(freely, falling),
+    "let-go": Yardstick(let_go, true_motion, let_go_start),
+    "toggle": Yardstick(at_toggle, thrown_motion, thrown_start),
 }
 
 
@@ -79,7 +87,7 @@ def graded(
 def _graded(case: Case, trial: Trial, blank: Graded, *, forces: bool) -> tuple[Graded, Run | None]:
     """The grade, and the run where there is one."""
     blank = replace(blank, steps=trial.steps, dt_s=trial.dt_s)
-    state = trial.start or solve(trial.scene, np.zeros(1)).state()
+    state = JUDGES[case.judge].start(trial)
     try:
         done = run(
             trial.scene,

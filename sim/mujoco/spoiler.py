@@ -8,6 +8,7 @@ from typing import cast
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
 import numpy as np
 
+from models.array import Array
 from sim.engine import Session, Settings
 from sim.mujoco.session import MujocoSession
 from sim.mujoco.settings import text
@@ -84,6 +85,34 @@ class MujocoSpoiler:
         data = _own(session)._data
         data.qpos[:] = rounded(np.array(data.qpos), relative)
         data.qvel[:] = rounded(np.array(data.qvel), relative)
+
+    def damp(self, session: Session, per_s: float) -> None:
+        """By the damping of each joint, over its inertia in the model's own configuration."""
+        model = _own(session)._model
+        model.dof_damping[:] += per_s * model.dof_M0
+
+    def slow(self, session: Session, share: float) -> None:
+        """By an armature."""
+        model = _own(session)._model
+        model.dof_armature[-1] += share * model.dof_M0[-1]
+
+    def spin(self, session: Session, by_rad_s: float) -> None:
+        """The last joint."""
+        own = _own(session)
+        own._data.qvel[-1] += by_rad_s
+        mujoco.mj_forward(own._model, own._data)
+
+    def quicken(self, session: Session, share: float) -> None:
+        """The rates of the joints."""
+        _own(session)._data.qvel[:] *= 1.0 + share
+
+    def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
+        """RK4 takes about the mean of the velocities before and after a step."""
+        data = _own(session)._data
+        now = np.array(data.qvel)
+        if before is not None:
+            data.qpos[:] -= 0.5 * by_s * (now - before)
+        return now
 
     def lose(self, session: Session) -> None:
         """Of the last joint; MuJoCo then puts the whole state back to the start."""

@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 import pymunk
 
+from models.array import Array
 from sim.engine import Session, Settings
 from sim.pymunk.engine import PymunkSession
 from sim.pymunk.space import SpaceModel
@@ -75,6 +76,34 @@ class PymunkSpoiler:
             x, y, angle, vx, vy, omega = rounded(state, relative).tolist()
             body.position, body.angle = (x, y), angle
             body.velocity, body.angular_velocity = (vx, vy), omega
+
+    def damp(self, session: Session, per_s: float) -> None:
+        """What Chipmunk calls damping is the share of a velocity that is left after a second."""
+        _model(session).space.damping *= math.exp(-per_s)
+
+    def slow(self, session: Session, share: float) -> None:
+        """The last body, about its centre of gravity."""
+        _last(session).moment *= 1.0 + share
+
+    def spin(self, session: Session, by_rad_s: float) -> None:
+        """The last body."""
+        _last(session).angular_velocity += by_rad_s
+
+    def quicken(self, session: Session, share: float) -> None:
+        """Of every body."""
+        for body in _model(session).bodies.values():
+            body.velocity *= 1.0 + share
+            body.angular_velocity *= 1.0 + share
+
+    def hold_back(self, session: Session, by_s: float, before: Array | None = None) -> Array:
+        """Velocities lie half a step after positions: what they change in a step is all too new."""
+        bodies = list(_model(session).bodies.values())
+        now = np.array([[*body.velocity, body.angular_velocity] for body in bodies])
+        off = np.zeros_like(now) if before is None else by_s * (now - before)
+        for body, (x, y, turn) in zip(bodies, off, strict=True):
+            body.position -= (float(x), float(y))
+            body.angle -= float(turn)
+        return now
 
     def lose(self, session: Session) -> None:
         """Of the last body."""

@@ -13,7 +13,7 @@ from rich.progress import track
 
 from models.errors import CrankcheckError, suggestion
 from models.schema import NAME
-from reports.figures.all_figures import FIGURES
+from reports.figures.all_figures import FIGURES, Drawing
 from reports.figures.saving import FORMATS, saved
 from reports.figures.style import styled
 from reports.output.console import tell
@@ -77,15 +77,35 @@ def _planned(report: Report, names: Sequence[str], scenes: Sequence[str]) -> dic
     figures: dict[str, Drawn] = {}
     for name in names:
         of, over_all = FIGURES[name].of, FIGURES[name].over_all
-        if over_all is not None and not scenes and (of is None or len(chosen) > 1):
-            figures[name] = partial(over_all, report)
+        every = _whole(report, FIGURES[name])
+        if over_all is not None and every and not scenes and (of is None or len(chosen) > 1):
+            figures[name] = partial(over_all, every)
         if of is not None:
-            figures |= {f"{name}-{scene}": partial(of, report, scene) for scene in chosen}
+            fitting = ((scene, _report_on(report, FIGURES[name], scene)) for scene in chosen)
+            figures |= {f"{name}-{scene}": partial(of, own, scene) for scene, own in fitting if own}
     if not figures:
+        drives = {drive for name in names for drive in FIGURES[name].drives}
         raise CrankcheckError(
-            f"--only {', '.join(names)}: drawn over all scenes, not of one; leave out --scene"
+            f"--only {', '.join(names)}: drawn over all scenes, or of what was "
+            f"{' or '.join(sorted(drives))}, which is not chosen; leave out --scene or --only"
         )
     return figures
+
+
+def _whole(report: Report, drawing: Drawing) -> Report | None:
+    """What of a store a figure over all scenes shows: what was driven, where there is any."""
+    if report.driven is not None:
+        return report.driven if "driven" in drawing.drives else report
+    return report if "let go" in drawing.drives else None
+
+
+def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
+    """What of a store a figure of a scene shows; None for a scene of the other kind."""
+    driven = report.driven
+    if driven is not None and scene in driven.scenes and "driven" in drawing.drives:
+        return driven
+    free = any(line.scene == scene for line in report.free_lines)
+    return report if free and "let go" in drawing.drives else None
 
 
 def _chosen(asked: Sequence[str], names: Iterable[str], option: str, noun: str) -> list[str]:

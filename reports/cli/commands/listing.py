@@ -12,10 +12,11 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
-from models.errors import harmless
+from models.errors import StructureError, harmless
 from models.files import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
+from models.scene import Scene
 from reports.describe.law import describe_law
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
@@ -31,9 +32,16 @@ def scenes(console: Console) -> None:
             table.add_column(head, overflow="fold", no_wrap=head == "scene")
         for name in shipped(kind):
             scene = load_scene(name)
-            groups = " + ".join(group.kind for group in analyse(scene).groups)
-            table.add_row(name, groups, describe_law(scene), Text(scene.source))
+            table.add_row(name, _groups(scene), describe_law(scene), Text(scene.source))
         console.print(table, highlight=False)
+
+
+def _groups(scene: Scene) -> str:
+    """The Assur groups of a scene in solving order, a dash for one that is none of dyads."""
+    try:
+        return " + ".join(group.kind for group in analyse(scene).groups)
+    except StructureError:
+        return "-"
 
 
 def _heading(kind: str) -> str:

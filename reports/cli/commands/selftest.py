@@ -9,6 +9,7 @@ import pandas as pd
 from rich.console import Console
 from rich.progress import Progress
 
+from models.errors import CrankcheckError
 from reports.cli.checking import SelftestRequest
 from reports.judge.cell import Checked
 from reports.output.frame_file import csv
@@ -16,7 +17,8 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
-from reports.selftest.fault import PROFILE
+from reports.selftest.fault import PROFILE, RunKind
+from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.table import place_row, show
 from reports.selftest.trial import (
     STEPS,
@@ -37,8 +39,8 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
     """Do it; returns the exit code: 0 where every fault is caught, 1 where one escapes or plants
     nothing, and where nothing is planted of what need not be seen.
     Raises CrankcheckError for an unknown engine or fault, and an output that can not be written."""
-    engines = chosen_engines(request.engines)
-    faults = chosen_faults(request.faults, engines, of_forces=request.forces)
+    engines, kind = chosen_engines(request.engines), _kind(request)
+    faults = chosen_faults(request.faults, engines, kind)
     check_outputs({"--csv": request.csv, "--json": request.json}, request.folder, IN_FOLDER)
     for name in engines:
         if name not in offering("spoiler"):
@@ -48,17 +50,26 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
         names = [fault.name for fault in faults]
         verdicts = tried_all(names, engines, request.jobs, lambda _: bar.advance(task))
     sound = [
-        healthy(scene, name, forces=of_forces)
-        for of_forces in dict.fromkeys(fault.of_forces for fault in faults)
-        for scene, name in sites([f for f in faults if f.of_forces == of_forces], engines)
+        healthy(scene, name, kind=each)
+        for each in dict.fromkeys(fault.kind for fault in faults)
+        for scene, name in sites([f for f in faults if f.kind == each], engines)
     ]
-    passed = [] if request.faults or request.forces else passed_by(engines)
+    passed = [] if request.faults or request.forces else passed_by(engines, kind)
     facts = provenance({name: engine(name).version() for name in engines})
     try:
         _write(request, verdicts, sound, passed, facts)
     finally:  # a full disk costs the file, and not the verdict with it
         show(console, sound, verdicts, engines, facts, passed)
     return int(not all(one.caught for one in verdicts) or any(one.nothing for one in passed))
+
+
+def _kind(request: SelftestRequest) -> RunKind:
+    """What runs the faults are planted in, where none is named. Raises CrankcheckError."""
+    if request.forces and request.free:
+        raise CrankcheckError(
+            "--forces with --free: the faults of either have runs of their own; ask for one of them"
+        )
+    return "forces" if request.forces else "free" if request.free else "motion"
 
 
 def _write(
@@ -80,6 +91,14 @@ def _write(
             write(target, text)
 
 
+def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
+    """How long the runs are, and at which step; free ones by their scene."""
+    kinds = {one.fault.kind for one in verdicts}
+    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free"} else {}
+    runs = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
+    return {"profile": PROFILE, **turn, **({"free": runs} if "free" in kinds else {})}
+
+
 def _json(
     verdicts: Sequence[Verdict],
     sound: Sequence[Checked],
@@ -90,7 +109,7 @@ def _json(
     """Facts, settings, the runs without a fault, every fault in every place, and what passes."""
     content = {
         "provenance": dict(facts),
-        "settings": {"profile": PROFILE, "steps_per_turn": STEPS, "turns": 1},
+        "settings": _settings(verdicts),
         "caught": sum(one.caught for one in verdicts),
         "escaped": [one.name for one in verdicts if not one.caught],
         "without_a_fault": [

@@ -39,7 +39,7 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
         An unknown case, engine or profile, a value that has no reference, or a folder that can
         not be written.
     """
-    cases = _cases(request.cases)
+    cases = _cases(request.cases, free=request.free)
     engines = chosen_engines(request.engines)
     profiles = [name for name, _ in chosen_profiles(request.profiles or PROFILES, engines)]
     limits = checked_limits(request.limit_s, request.memory_gb)
@@ -74,12 +74,17 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
     return 0
 
 
-def _cases(names: Sequence[str]) -> list[Case]:
-    """The named cases, or all."""
+def _cases(names: Sequence[str], *, free: bool) -> list[Case]:
+    """The named cases, or all: those that are let go with ``free``, else those that are driven."""
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
-    return [CATALOGUE[name] for name in dict.fromkeys(names or CATALOGUE)]
+    driven = [name for name in names if free and not CATALOGUE[name].free]
+    if driven:
+        known = ", ".join(name for name, case in CATALOGUE.items() if case.free)
+        raise CrankcheckError(f"--free and {driven[0]}: no case of free motion; those are {known}")
+    every = (name for name, case in CATALOGUE.items() if case.free == free)
+    return [CATALOGUE[name] for name in dict.fromkeys(names or every)]
 
 
 def _keep_others(folder: Path, wanted: set[str]) -> None:

@@ -74,3 +74,14 @@ def drift(series: Array, time_s: Array, over_s: float) -> float:
     first = series[time_s <= time_s[0] + over_s]
     last = series[time_s >= time_s[-1] - over_s]
     return float(np.mean(last) - np.mean(first))
+
+
+def window_means(scene: Scene, time_s: Array, series: Array) -> Array:
+    """The mean of a series over the window around each instant, (T,); NaN where it does not fit."""
+    over_s = window_s(scene, float(time_s[-1] - time_s[0]))
+    sums = np.concatenate([[0.0], np.cumsum(series)])
+    first = np.searchsorted(time_s, time_s - 0.5 * over_s)
+    after = np.searchsorted(time_s, time_s + 0.5 * over_s, side="right")
+    means = (sums[after] - sums[first]) / (after - first)
+    whole = (time_s - 0.5 * over_s >= time_s[0]) & (time_s + 0.5 * over_s <= time_s[-1])
+    return np.where(whole, means, np.nan)

@@ -62,6 +62,10 @@ class FreeBeside(Beside):
         return replace(track, error=track.error / over, bound=track.bound / growth)
 
     @property
+    def missing(self) -> tuple[str, ...]:
+        return super().missing if self.run.energy else (*super().missing, "energy")
+
+    @property
     def incomplete(self) -> str:
         return incomplete(self.whole_run)
 

@@ -22,8 +22,11 @@ def free_departure(beside: FreeBeside) -> Departure | None:
     closed.
 
     What the truth goes through itself is no departure, and a phase that has run away is none: the
-    links are held to the position that the run's own coordinate has.
+    links are held to the position that the run's own coordinate has. With several freedoms the
+    phase alone tells.
     """
+    if not beside.let_go.by_dyads:
+        return None
     closed = np.ones(beside.motion.time_s.shape, dtype=bool)
     for gap in beside.run.gaps.values():
         closed &= np.abs(gap) < CLOSED * beside.scene.longest_m

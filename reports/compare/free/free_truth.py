@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.kinematics import solve_driven
 from models.array import Array
 from models.motion import Motion, State
 from models.released import Released
 from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
-from reports.compare.free.first_samples import first_samples
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.motion_parts import one_after_another
+from reports.compare.free.some_samples import first_samples
 from reports.quantities.free import PHASE
 from sim.engine import Run
 
@@ -73,26 +72,12 @@ class FreeTruth(Truth):
 
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
-            early = self._before(time_s[time_s < 0.0])
+            early = self.let_go.before(time_s[time_s < 0.0], bound=self.bound)
             return one_after_another(early, self.at(time_s[time_s >= 0.0]))
         return self.let_go.at(time_s, bound=self.bound)
 
-    def _before(self, time_s: Array) -> Motion:
-        """The motion that leads to the start, within a step of it: there some engines have the
-        velocities of their first sample. The third rate of the driver is taken as constant."""
-        link, h = self.scene.driver.link, -float(time_s[0])
-        early = self.let_go.at(np.array([0.0, h, 2.0 * h])).links[link]
-        theta, omega, alpha = early.theta[0], early.omega[0], early.alpha[0]
-        jerk = (4.0 * early.alpha[1] - 3.0 * alpha - early.alpha[2]) / (2.0 * h)
-        t = time_s
-        return solve_driven(
-            self.scene,
-            theta + t * (omega + t * (alpha / 2.0 + t * jerk / 6.0)),
-            omega + t * (alpha + t * jerk / 2.0),
-            alpha + t * jerk,
-            time_s,
-            bound=self.bound,
-        )
+    def with_forces_at(self, time_s: Array) -> Motion:
+        return self.let_go.with_forces(self.at(time_s), bound=self.bound)
 
     def beside(self, run: Run) -> Beside | None:
         """The run as far as the truth is known, beside it; None where it logged nothing."""

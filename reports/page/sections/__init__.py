@@ -20,15 +20,24 @@ from reports.page.sections.recommendation import build as recommendation
 from reports.page.sections.section import PageReport, Section
 from reports.page.sections.stability import build as stability
 from reports.page.sections.verdict import build as verdict
+from reports.results.overview import Report
 
-SECTIONS: dict[str, Callable[[PageReport], Section | None]] = {
+Build = Callable[[PageReport], Section | None]
+
+
+def _of_driven(build: Callable[[Report], Section | None]) -> Build:
+    """A section that speaks of turns: of what was driven alone."""
+    return lambda report: None if report.driven is None else build(report.driven)
+
+
+SECTIONS: dict[str, Build] = {
     "verdict": verdict,
-    "recommendation": recommendation,
-    "precision": precision,
+    "recommendation": _of_driven(recommendation),
+    "precision": _of_driven(precision),
     "free": free,
-    "convergence": convergence,
-    "reading_forces": reading_forces,
-    "motion": motion,
+    "convergence": _of_driven(convergence),
+    "reading_forces": _of_driven(reading_forces),
+    "motion": _of_driven(motion),
     "stability": stability,
     "hard": hard,
     "fairness": fairness,

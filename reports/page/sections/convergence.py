@@ -44,7 +44,7 @@ def build(report: Report) -> Section:
         for name, (words, _) in DIAGRAMS.items()
         if name in report.cells and report.cells[name].notna().any()
     }
-    drawn = {name: [_drawn(report, x) for x in _lines(report, name)] for name in names}
+    curves = {name: [drawn(report, x) for x in _lines(report, name)] for name in names}
     return Section(
         anchor="convergence",
         title="Error against step",
@@ -54,7 +54,7 @@ def build(report: Report) -> Section:
             "quantities": names,
             "rows": [_row(report, line) for line in report.lines],
         },
-        embedded={"quantities": drawn, "units": {name: DIAGRAMS[name][1] for name in names}},
+        embedded={"quantities": curves, "units": {name: DIAGRAMS[name][1] for name in names}},
         scripts=("legend.js", "charts.js", "convergence.js"),
         plotly=True,
     )
@@ -64,7 +64,7 @@ def _lines(report: Report, quantity: str) -> tuple[Line, ...]:
     return report.lines if quantity == "place_pure" else lines(report.stored, quantity)
 
 
-def _drawn(report: Report, line: Line) -> dict[str, object]:
+def drawn(report: Report, line: Line) -> dict[str, object]:
     """The measured points of a line, and the curve that was fitted to it."""
     fit = line.fit
     runs = [(dt, e) for dt, e in fit.runs if e > 0.0]

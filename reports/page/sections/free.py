@@ -2,24 +2,102 @@
 
 from __future__ import annotations
 
+from models.scene import Scene
+from reports.output.numbers import duration
+from reports.page.sections.convergence import drawn
+from reports.page.sections.free_courses import FreeCourses, sizes_of
 from reports.page.sections.section import Section
+from reports.page.thinning import BUDGET, steps_held
+from reports.results.lines import Line, lines
 from reports.results.overview import Report
 
 SHOWN = (
-    *("phase_pure", "phase_limit_pure", "geometry_pure", "gap_pure", "energy_pure"),
-    *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict"),
+    *("phase_pure", "phase_limit_pure", "geometry_pure", "energy_pure"),
+    *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
 )
 """The columns of the table."""
+SCRIPTS = ("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js")
+ERRORS = {
+    "phase_pure": ("phase, over the sensitivity", "rad"),
+    "geometry_pure": ("geometry at the run's own angle", "rad, or of longest link"),
+    "energy_pure": ("drift of energy", "of largest kinetic energy"),
+    "place_pure": ("place at the same time, over the sensitivity", "rad, or of longest link"),
+    "gap_pure": ("gaps of pins and sliders", "of longest link"),
+}
+"""What is drawn against the step, by column of the store: its name, and its unit."""
 
 
-def build(report: Report) -> Section | None:
-    """The section; None where everything was driven."""
-    rows = [
-        {"scene": line.scene, "look": report.look(line)} | {name: cell[name] for name in SHOWN}
-        for line in report.lines
-        if line.drive == "free"
+def build(report: Report, room: int = BUDGET) -> Section | None:
+    """The section; None where everything was driven. ``room`` is that of its drawings and curves
+    [characters]."""
+    let_go = report.free_lines
+    if not let_go:
+        return None
+    names = list(dict.fromkeys(line.scene for line in let_go))
+    sizes = sizes_of(report, let_go)
+    held = steps_held(sizes, let_go, room)
+    fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
+    return Section(
+        anchor="free",
+        title="Let go",
+        template="free.html",
+        words={
+            "rows": [row for line in let_go for row in _rows(report, line)],
+            "scenes": [_words(name, report.scenes[name]) for name in names],
+            "errors": {name: ERRORS[name][0] for name in fits},
+            "thinned": held < max(len(line.cells) for line in let_go),
+            "held": held,
+        },
+        embedded={
+            "scenes": [
+                FreeCourses(report, name, report.scenes[name], sizes, held).embedded()
+                for name in names
+            ],
+            "fits": fits,
+            "units": {name: ERRORS[name][1] for name in fits},
+            "judged": sorted({report.look(x).number for x in let_go if x.cells["gated"].all()}),
+        },
+        scripts=(
+            "legend.js",
+            "charts.js",
+            "mechanism.js",
+            "stage.js",
+            "free_courses.js",
+            "free.js",
+        ),
+        plotly=True,
+    )
+
+
+def _rows(report: Report, line: Line) -> list[dict[str, object]]:
+    """The cells of a line as rows of the table."""
+    look = report.look(line)
+    return [
+        {"scene": line.scene, "look": look, "variant": line.variant}
+        | {name: cell.get(name) for name in SHOWN}
+        | {f"{name}_told": _horizon(cell[f"horizon_{name}_s"]) for name in ("1e-1", "1e-3")}
         for cell in line.cells.to_dict("records")
     ]
-    if not rows:
-        return None
-    return Section(anchor="free", title="Let go", template="free.html", words={"rows": rows})
+
+
+def _horizon(time_s: float | None) -> str:
+    """The time to which something holds."""
+    return "not at all" if time_s == 0.0 else duration(time_s)
+
+
+def _words(name: str, scene: Scene | None) -> dict[str, str]:
+    """A scene with its source."""
+    return {
+        "name": name,
+        "source": scene.source if scene else "",
+        "note": scene.note if scene else "",
+    }
+
+
+def _fits(report: Report, quantity: str) -> list[dict[str, object]]:
+    """The errors of all free lines against the step, with their fits."""
+    return [
+        drawn(report, line) | {"lasts_s": line.period_s}
+        for line in lines(report.stored, quantity)
+        if line.drive == "free"
+    ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from reports.output.numbers import duration
 from reports.page.sections.section import Section
 from reports.results.overview import Report
 
@@ -24,7 +25,9 @@ class Holds:
 
 def build(report: Report) -> Section:
     """The section."""
-    looks = list(report.looks.values())
+    every = list(report.looks.values())
+    engines = Counter(look.engine for look in every)
+    looks = [look for engine in engines for look in every if look.engine == engine]
     held = {(x.scene, report.look(x).number): holds(x.cells) for x in report.lines}
     lost = report.cells[report.cells["status"] != "ok"]
     return Section(
@@ -33,7 +36,8 @@ def build(report: Report) -> Section:
         template="stability.html",
         words={
             "looks": looks,
-            "engines": Counter(look.engine for look in looks),
+            "engines": engines,
+            "free": any(line.drive == "free" for line in report.lines),
             "rows": [
                 (scene, [held.get((scene, look.number)) for look in looks])
                 for scene in report.scenes
@@ -45,7 +49,7 @@ def build(report: Report) -> Section:
 
 def holds(cells: pd.DataFrame) -> Holds:
     """How a line holds; its cells go from the coarse to the fine step."""
-    steps = [f"{step:g}" for step in cells["steps_per_turn"]]
+    steps = [_step(row) for _, row in cells.iterrows()]
     ran = [status == "ok" for status in cells["status"]]
     within = [verdict == "within" for verdict in cells["verdict"]]
     ends = Counter(status for status in cells["status"] if status != "ok")
@@ -57,6 +61,11 @@ def holds(cells: pd.DataFrame) -> Holds:
         runs=_runs(steps, ran, why),
         within=_within(steps, within),
     )
+
+
+def _step(row: pd.Series) -> str:
+    """The step of a cell: steps in a turn, or what is let go has none, its time."""
+    return duration(row["dt_s"]) if row["drive"] == "free" else f"{row['steps_per_turn']:g}"
 
 
 def _runs(steps: list[str], ran: list[bool], why: str) -> str:
@@ -94,6 +103,7 @@ def _lost(report: Report, row: pd.Series) -> dict[str, object]:
         "scene": row["scene"],
         "look": look,
         "steps": row["steps_per_turn"],
+        "step": _step(row),
         "status": row["status"],
         "reason": row["reason"],
     }

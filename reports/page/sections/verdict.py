@@ -52,6 +52,7 @@ class VerdictRow:
 def build(report: Report) -> Section:
     """The section."""
     rows = [_row(look, lines) for look, lines in _by_look(report)]
+    chosen = () if report.driven is None else report.driven.recommendations
     gated = report.cells[report.cells["gated"]]
     return Section(
         anchor="verdict",
@@ -61,10 +62,11 @@ def build(report: Report) -> Section:
             "verdict": verdict(gated),
             "level": level(gated),
             "sentences": [
-                (engine, version, sentence(engine, rows, report.recommendations))
+                (engine, version, sentence(engine, rows, chosen))
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
+            "free": report.driven is not report,
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )

@@ -13,6 +13,7 @@ from reports.stability.catalogue import (
     change_points,
     driving,
     duration,
+    free_motion,
     levers,
     limits,
     masses,
@@ -21,6 +22,7 @@ from reports.stability.catalogue import (
     slider_cranks,
     starts,
     stepping,
+    toggles,
 )
 
 GROUPS = {
@@ -35,6 +37,8 @@ GROUPS = {
     "duration": duration.CASES,
     "step and solver": stepping.CASES,
     "slotted lever, crank through the pivot": levers.CASES,
+    "free motion": free_motion.CASES,
+    "free motion at a toggle": toggles.CASES,
 }
 CATALOGUE: dict[str, Case] = {
     case.name: replace(case, group=group) for group, cases in GROUPS.items() for case in cases

@@ -53,6 +53,6 @@ CASES = (
         values=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0),
         trial=_windows,
         scale="whole",
-        judge="free",
+        judge="chain",
     ),
 )

@@ -144,6 +144,7 @@ def test_stability_says_from_which_step_on_a_line_holds(
 ) -> None:
     cells = pd.DataFrame(
         {
+            "drive": "prescribed",
             "steps_per_turn": STEPS,
             "status": ["ok" if mark == "1" else "diverged" for mark in ran],
             "verdict": ["within" if mark == "1" else "out" for mark in within],

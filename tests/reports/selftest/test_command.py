@@ -102,12 +102,26 @@ def test_files_hold_every_fault_in_every_place(crank: Crank, tmp_path: Path) -> 
     assert content["provenance"]["mujoco"].startswith("4")
 
 
+def test_faults_of_free_motion_tell_their_runs(crank: Crank, tmp_path: Path) -> None:
+    file = tmp_path / "free.json"
+    result = crank(*named("torque-reversed"), "--engine", "pymunk", "--json", str(file))
+    assert result.exit_code == 0, result.output
+    text = flat(result.output)
+    assert "ok torque-reversed a torque turns the other way CC127 yes" in text
+    assert "Profile tuned, let go: fourbar-pulse 1 ms, 1.5 s." in text
+    assert "steps a turn" not in text
+    content = json.loads(file.read_text())
+    assert content["settings"]["free"]["fourbar-pulse"] == {"dt_s": 1e-3, "steps": 1500}
+    assert "turns" not in content["settings"]
+
+
 @pytest.mark.parametrize(
     ("args", "parts"),
     [
         (["--fault", "gravity-left"], ["'gravity-left'", "did you mean gravity-left-on"]),
         (["--fault", "qqq"], ["'qqq'", "use engine-other, engine-renamed"]),
         (["--fault", "first-order", "--engine", "mujoco"], ["planted in pymunk only", "mujoco"]),
+        (["--forces", "--free"], ["--forces with --free", "ask for one of them"]),
         (["--engine", "mujoko"], ["'mujoko'", "did you mean mujoco"]),
         (["--csv", "/nowhere/at/all.csv"], ["--csv", "no folder"]),
     ],

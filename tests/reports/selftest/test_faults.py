@@ -13,9 +13,10 @@ from reports.selftest.fault import FOURBAR, SHAPER, SLIDER
 from reports.selftest.trial import Verdict, healthy, passed_by, passes, tried
 
 ENGINES = ("mujoco", "pymunk")
-NO_FAULT_OF_A_RUN = {"CC112", "CC119", "CC126"}
+NO_FAULT_OF_A_RUN = {"CC112", "CC119", "CC126", "CC130"}
 """That the reference is certain depends on the scene and the limits alone; what is required is
-asked of a user's own log; what an engine says against its own forces is planted in tests/sim."""
+asked of a user's own log; what an engine says against its own forces is planted in tests/sim; of
+the scenes that are let go none keeps its angular momentum."""
 WITHIN_THE_LIMIT_AT_360 = {"pin-moved": "CC103", "slow-drift": "CC103"}
 """What is planted below the limit of 360 steps a turn is above that of 720."""
 ASKED_FOR = {
@@ -40,6 +41,11 @@ ASKED_FOR = {
     "other-scale": 1e-3,
     "nan-at-end": None,
     "too-good": None,
+    "inertia-at-pin": 1.0,
+    "gravity-scaled": 1e-3,
+    "torque-late": 1.0,
+    "damping-left-on": 0.1,
+    "explicit-euler": 1.0,
 }
 """What the selftest promises to catch, and at which size."""
 
@@ -117,6 +123,19 @@ def test_exact_places_are_no_fault_of_an_engine_that_solves_its_joints() -> None
     assert {name for name in exact if FAULTS[name].possible("exudyn")} == set()
     assert all(FAULTS[name].possible("pymunk") for name in exact)
     assert tried("too-good", ["exudyn"], search=False).caught
+
+
+def test_faults_of_dynamics_are_seen_in_every_engine_that_can_have_them() -> None:
+    names = [name for name, fault in FAULTS.items() if fault.kind == "free"]
+    assert len(names) >= 12
+    everywhere = {n for n in names if set(ENGINES) <= {p.engine for p in planted(n).places}}
+    assert set(names) - everywhere == {"semi-implicit", "bias-left-on", "free-copied"}
+
+
+def test_what_need_not_be_seen_of_free_motion_is_not_seen() -> None:
+    for one in passed_by(ENGINES, "free"):
+        assert set(one.failed.values()) == {()}, one
+        assert one.nothing == ()
 
 
 def test_the_model_check_refuses_gravity_by_name() -> None:

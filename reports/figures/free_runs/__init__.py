@@ -1,0 +1,1 @@
+"""Figures of a store's free runs beside the truth."""

@@ -1,0 +1,143 @@
+"""Free runs in the page: the mechanism moving beside the truth, and their courses over time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.free.energy_drift import window_means
+from reports.drawing.moving import displacements, drawing, drawn_links, moving_points
+from reports.drawing.packed import packed, size_of
+from reports.drawing.true_motion import true_motion
+from reports.output.numbers import duration
+from reports.page.thinning import chosen
+from reports.results.lines import Line
+from reports.results.overview import Report
+
+INSTANTS = 721
+"""Of the drawing, over the whole motion."""
+CURVES = 5
+"""Of a run: phase, sensitivity, angular velocity, energy and its means."""
+SHORTEST_MS, LONGEST_MS = 4000.0, 20000.0
+"""What a round of the drawing may take."""
+
+
+def sizes_of(report: Report, lines: Sequence[Line]) -> dict[str, int]:
+    """What each traced cell takes in the page [characters], by key."""
+    sizes = {}
+    for line in lines:
+        scene = report.scenes[line.scene]
+        rows = 0 if scene is None else 2 * len(moving_points(scene)) + len(drawn_links(scene))
+        for key in map(str, line.cells["key"]):
+            trace = report.stored.trace(key)
+            if "phase" in trace:
+                sizes[key] = size_of(rows, INSTANTS) + size_of(CURVES, len(trace["time_s"]))
+    return sizes
+
+
+@dataclass(frozen=True)
+class FreeCourses:
+    """A scene that was let go on its way into the page; of each line ``held`` cells are drawn."""
+
+    report: Report
+    name: str
+    scene: Scene | None
+    sizes: Mapping[str, int]
+    held: int
+
+    def embedded(self) -> dict[str, object]:
+        """The scene with everything that is drawn of it; without a drawing where the store has no
+        readable text of it."""
+        lines = self.report.lines_of(self.name)
+        time_s = self._instants(lines)
+        truth = self._truth(time_s)
+        lasts_s = float(time_s[-1])
+        return {
+            "name": self.name,
+            "drawing": truth and self._drawing(time_s, truth),
+            "lasts_ms": float(np.clip(1000.0 * lasts_s, SHORTEST_MS, LONGEST_MS)),
+            "truth": truth and self._driver(time_s, truth),
+            "lines": [self._line(line, time_s, truth) for line in lines if line.drive == "free"],
+        }
+
+    def _drawing(self, time_s: Array, truth: Motion) -> dict[str, object]:
+        assert self.scene is not None
+        return drawing(self.scene, time_s, truth) | {"until_s": float(time_s[-1])}
+
+    def _instants(self, lines: Sequence[Line]) -> Array:
+        """Equal parts of the longest run of a scene."""
+        ends = [
+            float(self.report.stored.trace(str(key))["time_s"][-1])
+            for line in lines
+            for key in line.cells["key"]
+            if str(key) in self.sizes
+        ]
+        return np.linspace(0.0, max(ends, default=1.0), INSTANTS)
+
+    def _truth(self, time_s: Array) -> Motion | None:
+        """The motion as it was integrated; None where the store does not have its scene."""
+        try:
+            return None if self.scene is None else true_motion(self.scene, time_s)
+        except CrankcheckError:
+            return None
+
+    def _driver(self, time_s: Array, truth: Motion) -> dict[str, object]:
+        """Angle [turns] and angular velocity of the driver, over time."""
+        assert self.scene is not None
+        driver = truth.links[self.scene.driver.link]
+        return {
+            "time_s": time_s,
+            "curves": packed(np.vstack([driver.theta / math.tau, driver.omega])),
+        }
+
+    def _line(self, line: Line, time_s: Array, truth: Motion | None) -> dict[str, object]:
+        cells = line.cells.set_index("key")
+        keys = chosen(line, dict(self.sizes), self.held)
+        return {
+            "look": self.report.look(line).number,
+            "cells": [
+                {"dt": duration(float(cells.loc[key]["dt_s"])), "dt_s": cells.loc[key]["dt_s"]}
+                | self._cell(key, time_s, truth)
+                for key in keys
+            ],
+        }
+
+    def _cell(self, key: str, time_s: Array, truth: Motion | None) -> dict[str, object]:
+        """What a run is off by in the drawing, and its curves over its own instants, by name."""
+        trace = self.report.stored.trace(key)
+        curves = run_curves(self.scene, trace)
+        off = None
+        if self.scene is not None and truth is not None:
+            own = true_motion(self.scene, trace["time_s"])
+            off = displacements(self.scene, trace, time_s, own)
+        return {
+            "off": off,
+            "time_s": trace["time_s"],
+            "names": list(curves),
+            "curves": packed(np.vstack(list(curves.values()))),
+        }
+
+
+def run_curves(scene: Scene | None, trace: Mapping[str, Array]) -> dict[str, Array]:
+    """The curves of a free run by name: its phase as it is [rad] and over the sensitivity, the
+    driver's angle [turns] and angular velocity, and what its energy changed by, over the largest
+    kinetic energy, as it is and as means over windows."""
+    curves = {"phase": trace["phase"], "phase_judged": trace["phase"] / trace["growth"]}
+    if scene is not None and f"theta.{scene.driver.link}" in trace:
+        # The log may count its turns from elsewhere: the truth and what it is off by do not.
+        curves["angle"] = (trace["driver_rad"] + trace["phase"]) / math.tau
+    if "omega" in trace:
+        curves["speed"] = trace["omega"]
+    largest = float(np.max(trace["kinetic"])) if "kinetic" in trace else 0.0
+    if largest > 0.0:
+        curves["energy"] = trace["energy"] / largest
+        if scene is not None:
+            curves["energy_mean"] = window_means(scene, trace["time_s"], curves["energy"])
+    return curves

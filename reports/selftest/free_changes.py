@@ -1,0 +1,143 @@
+"""Make another machine of a scene that is let go: its matter, its weight, its loads and springs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from analytic.free.release import release
+from models.characteristics import Constant
+from models.loads import Load
+from models.released import Released
+from models.scene import Link, Scene
+from models.springs import SlideSpring
+from reports.judge.cell import CellRunner
+from reports.selftest.fault import Plant
+from sim.engine import Run
+from sim.run import run
+
+
+def in_free_scene(change: Callable[[Scene, float], Scene]) -> Plant:
+    """The engine is given another scene than the reference, with the accelerations that it starts
+    with: all of it is sound, and another machine."""
+
+    def plant(size: float) -> CellRunner:
+        def runner(scene: Scene, _state: object, *args: Any, **options: Any) -> Run:
+            wrong = change(scene, size)
+            start = release(wrong, options["dt_s"]).at(np.zeros(1)).state()
+            return run(wrong, start, *args, **options)
+
+        return runner
+
+    return plant
+
+
+def of_coupler(change: Callable[[Link, float], Link]) -> Callable[[Scene, float], Scene]:
+    """A change of the link that is pinned to the driver."""
+
+    def changed(scene: Scene, size: float) -> Scene:
+        link = change(list(scene.links.values())[1], size)
+        return replace(scene, links={**scene.links, link.name: link})
+
+    return changed
+
+
+def heavier(link: Link, share: float) -> Link:
+    return replace(link, mass_kg=(1.0 + share) * link.mass_kg)
+
+
+def about_pin(link: Link, share: float) -> Link:
+    """The inertia about the first pin, or a share of the way there (Steiner)."""
+    arm_m = math.dist(link.centre_m, next(iter(link.points.values())))
+    return replace(link, inertia_kg_m2=link.inertia_kg_m2 + share * link.mass_kg * arm_m**2)
+
+
+def off_centre(link: Link, share: float) -> Link:
+    """The centre of mass, farther along the link by a share of its length."""
+    (x, y), (ax, ay), (bx, by) = link.centre_m, *list(link.points.values())[:2]
+    return replace(link, centre_m=(x + share * (bx - ax), y + share * (by - ay)))
+
+
+def of_all_matter(scene: Scene, share: float) -> Scene:
+    """Every mass and inertia, by the same factor."""
+    more = 1.0 + share
+    links = {
+        name: replace(link, mass_kg=more * link.mass_kg, inertia_kg_m2=more * link.inertia_kg_m2)
+        for name, link in scene.links.items()
+    }
+    return replace(scene, links=links)
+
+
+def without_flywheel(scene: Scene, share: float) -> Scene:
+    """What turns with the driver, less a share of it."""
+    link = scene.links[scene.driver.link]
+    light = replace(link, inertia_kg_m2=(1.0 - share) * link.inertia_kg_m2)
+    return replace(scene, links={**scene.links, link.name: light})
+
+
+def stronger_gravity(scene: Scene, share: float) -> Scene:
+    x, y = scene.gravity_m_s2
+    return replace(scene, gravity_m_s2=((1.0 + share) * x, (1.0 + share) * y))
+
+
+def turned_gravity(scene: Scene, angle_rad: float) -> Scene:
+    turned = complex(*scene.gravity_m_s2) * complex(math.cos(angle_rad), math.sin(angle_rad))
+    return replace(scene, gravity_m_s2=(turned.real, turned.imag))
+
+
+def faster_start(scene: Scene, share: float) -> Scene:
+    law = scene.driver.law
+    assert isinstance(law, Released)
+    faster = replace(law, speed_rad_s=(1.0 + share) * law.speed_rad_s)
+    return replace(scene, driver=replace(scene.driver, law=faster))
+
+
+def of_first_load(change: Callable[[Scene, Load, float], Load]) -> Callable[[Scene, float], Scene]:
+    """A change of the first load of the scene, which is a torque on the driver."""
+
+    def changed(scene: Scene, size: float) -> Scene:
+        load = next(iter(scene.loads.values()))
+        return replace(scene, loads={**scene.loads, load.name: change(scene, load, size)})
+
+    return changed
+
+
+def later(delay_s: float) -> Callable[[Scene, Load, float], Load]:
+    """A load over time, felt later by a multiple of a time."""
+    return lambda _, load, times: replace(
+        load, characteristic=load.characteristic.carried(1.0, shift=times * delay_s)
+    )
+
+
+def reversed_load(_: Scene, load: Load, swap: float) -> Load:
+    return replace(load, characteristic=load.characteristic.carried(-1.0)) if swap else load
+
+
+def on_last_link(scene: Scene, load: Load, swap: float) -> Load:
+    return replace(load, body=list(scene.links)[-1]) if swap else load
+
+
+def held_at_start(scene: Scene, load: Load, swap: float) -> Load:
+    """A motor that keeps the torque of the start, whatever its speed."""
+    law = scene.driver.law
+    assert isinstance(law, Released)
+    first = float(load.magnitude(np.array([law.speed_rad_s]))[0])
+    return replace(load, characteristic=Constant(first), over="time") if swap else load
+
+
+def of_spring(
+    change: Callable[[SlideSpring, float, float], SlideSpring],
+) -> Callable[[Scene, float], Scene]:
+    """A change of the spring of a slider, of a size, and of that size over the longest link."""
+
+    def changed(scene: Scene, size: float) -> Scene:
+        spring = next(iter(scene.springs.values()))
+        assert isinstance(spring, SlideSpring)
+        other = change(spring, size, size * scene.longest_m)
+        return replace(scene, springs={**scene.springs, spring.name: other})
+
+    return changed

@@ -1,0 +1,142 @@
+"""Mechanisms that are let go: what a driver would hide shows in where they are, and when."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from analytic.forces.springs import spring_lengths
+from analytic.free.chart import Chart
+from analytic.free.machine import Machine
+from models.files import load_scene
+from models.hard import fourbar
+from models.released import Released
+from models.scene import Scene
+from models.springs import SlideSpring
+from reports.stability.case import Case, Trial
+
+SWING, SLIDER_CRANK = "fourbar-swing", "slider-crank-spring"
+DT_S = 1e-3
+SWING_S = 1.0
+"""More than a swing of a four-bar with a crank of a tenth of a metre."""
+SLACK_RAD, PULLED_RAD = 1.0, 0.05
+"""The crank's angle at which the spring is slack, and by how much it is let go beside it: so little
+that two steps in a period of the spring are not refused as too few for the crank."""
+PERIODS = 10
+LONG_DT_S, LONG_TURN_S, FOLLOWED_S = 5e-3, 10.0, 20.0
+"""Of long runs: the step, the while in which the growth of errors is told, and how long the phase
+is followed; a thousand seconds of truth would cost minutes."""
+DOWN = (0.0, -9.81)
+FREE_RATIOS = (1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6)
+
+
+def from_rest(scene: Scene, start_rad: float, lasts_s: float, dt_s: float = DT_S) -> Trial:
+    """A trial of a scene that is let go from rest at a driver angle."""
+    law = Released(start_rad, 0.0, lasts_s)
+    free = replace(scene, driver=replace(scene.driver, law=law))
+    return Trial(free, steps_per_turn=lasts_s / dt_s, turns=1.0, drive="free")
+
+
+def _swing(scene: Scene, dt_s: float = DT_S) -> Trial:
+    return from_rest(scene, 0.0, SWING_S, dt_s)
+
+
+def _heavier(name: str, ratio: float) -> Trial:
+    """The swinging four-bar with one link that many times as heavy, of the same shape."""
+    scene = load_scene(SWING)
+    link = scene.links[name]
+    heavy = replace(link, mass_kg=link.mass_kg * ratio, inertia_kg_m2=link.inertia_kg_m2 * ratio)
+    return _swing(replace(scene, links={**scene.links, name: heavy}))
+
+
+def _stiff(steps: float) -> Trial:
+    """A slider-crank between whose block and the ground a spring has a period of so many steps."""
+    scene = load_scene(SLIDER_CRANK)
+    machine, slack = Machine(scene), np.array([SLACK_RAD])
+    ((_, q, rate),) = spring_lengths(scene, machine.chart.unit(slack))
+    inertia = float(machine.inertia(slack)[0][0])
+    stiffness = inertia * (math.tau / (steps * DT_S * float(rate[0]))) ** 2
+    spring = SlideSpring("back", stiffness, 0.0, float(q[0]), "C")
+    sprung = replace(scene, springs={"back": spring})
+    return from_rest(sprung, SLACK_RAD + PULLED_RAD, PERIODS * steps * DT_S)
+
+
+def _beside_flat(off_rad: float) -> Trial:
+    """A parallelogram that is let go so far from its flat position, and swings as far from the
+    other one."""
+    flat = fourbar("parallelogram-let-go", 0.1, 0.3, 0.1, 0.3, source="Grashof's limiting case")
+    # Below its flat position C lies to the right of the line from B to D.
+    return from_rest(replace(flat, gravity_m_s2=DOWN, branch={"C": -1}), -off_rad, SWING_S)
+
+
+def _long(lasts_s: float) -> Trial:
+    """The lecture's four-bar, ten times as large, swinging about its lowest position."""
+    large = fourbar("fourbar-long-swing", 1.0, 2.5, 2.0, 3.0, source=SWING)
+    trial = from_rest(replace(large, gravity_m_s2=DOWN), -0.7, LONG_TURN_S, LONG_DT_S)
+    return replace(trial, turns=lasts_s / LONG_TURN_S, every=20, followed_s=FOLLOWED_S)
+
+
+_case: Callable[..., Case] = partial(Case, judge="let-go")
+CASES = (
+    _case(
+        name="free-coarse-step",
+        title="Step too large, let go",
+        source=SWING,
+        truth="the equation of the machine, integrated to rounding",
+        expected="errors that grow with the step squared, and no blow-up",
+        parameter="dt",
+        unit="s",
+        values=(1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2),
+        trial=lambda dt_s: _swing(load_scene(SWING), dt_s),
+    ),
+    _case(
+        name="free-stiff-spring",
+        title="Stiff spring on a slider",
+        source=SLIDER_CRANK,
+        truth="the equation of the machine; twenty periods of the spring",
+        expected="holds down to a few steps in a period, and does not blow up below",
+        parameter="steps in a period",
+        values=(200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 3.0, 2.0),
+        trial=_stiff,
+    ),
+    *(
+        _case(
+            name=f"free-heavy-{name}",
+            title=f"Heavy {name} between light links, let go",
+            source=SWING,
+            truth="the equation of the machine: its reduced mass becomes that of one link",
+            expected="holds, with more iterations if need be",
+            parameter="mass ratio",
+            values=FREE_RATIOS,
+            trial=partial(_heavier, name),
+        )
+        for name in ("rocker", "coupler")
+    ),
+    _case(
+        name="free-change-point",
+        title="Parallelogram let go beside its flat position",
+        source="Grashof's rule; nothing carries it through, as it has no speed there",
+        truth="the coupler keeps its direction; a pendulum",
+        expected="stays a parallelogram, as it falls and as it turns back beside the other one",
+        parameter="crank off the flat position",
+        unit="rad",
+        values=(0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
+        trial=_beside_flat,
+    ),
+    _case(
+        name="free-long",
+        title="A four-bar that swings on and on",
+        source=SWING,
+        truth="the equation of the machine for 20 s; after it geometry and energy alone",
+        expected="keeps its energy, and its joints",
+        parameter="duration",
+        unit="s",
+        values=(10.0, 30.0, 100.0, 300.0, 1000.0),
+        trial=_long,
+        scale="whole",
+    ),
+)

@@ -1,0 +1,116 @@
+"""A machine that is let go, beside the motion that its masses and forces give it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from models.array import Array
+from models.errors import CrankcheckError
+from models.motion import Motion, State
+from reports.compare.free.energy_drift import window_s
+from reports.compare.free.first_samples import first_samples
+from reports.compare.free.free_beside import FreeBeside
+from reports.compare.free.free_branch import free_departure
+from reports.compare.free.free_truth import FreeTruth, free_truth
+from reports.compare.series import length
+from reports.compare.tracks import Track
+from reports.quantities.free import GEOMETRY, PHASE
+from reports.stability.case import Trial
+from reports.stability.error_series import ErrorSeries, lacking, nearest, widest, worst_of
+from sim.engine import Run
+
+
+def let_go(trial: Trial, run: Run) -> ErrorSeries:
+    """A run of a scene that loses no energy, beside its free motion.
+
+    The error of place is the largest of three: that of phase and places at the same time, over the
+    sensitivity, as far as the truth is followed and known; that of the places at the run's own
+    driver angle; and the drift of the energy, over the largest kinetic energy. No crank is told
+    where to be.
+    """
+    motion = run.motion
+    assert motion is not None
+    truth = _truth(trial)
+    followed = int(np.searchsorted(motion.time_s, trial.followed_s * (1.0 + 1e-9), "right"))
+    known = truth.beside(first_samples(run, followed))
+    assert isinstance(known, FreeBeside)
+    whole = FreeBeside(truth, run, motion, whole_run=run, let_go=truth.let_go)
+    with np.errstate(all="ignore"):  # what has come apart is judged, not warned
+        place = np.maximum(_geometry(whole), _energy(whole))
+        place[: known.motion.time_s.size] = np.maximum(
+            place[: known.motion.time_s.size], _same_time(known)
+        )
+        gaps = [np.abs(gap) / trial.scene.longest_m for gap in run.gaps.values()]
+    return ErrorSeries(
+        status=run.status,
+        reason=run.reason,
+        time_s=motion.time_s,
+        driver_rad=whole.crank,
+        place=place,
+        gap=widest(gaps, motion.time_s),
+        drive=np.zeros_like(motion.time_s),
+        crank=whole.crank,
+        period_s=trial.scene.driver.law.period_s,
+        departure=free_departure(known),
+        sine=nearest(trial.scene, known.reference),
+        incomplete=lacking(trial.scene, run),
+    )
+
+
+def let_go_start(trial: Trial) -> State:
+    """The state at time 0, with the accelerations that the masses and forces give."""
+    return _truth(trial).start
+
+
+def true_motion(trial: Trial, time_s: Array) -> Motion:
+    """The truth to be drawn. Raises CrankcheckError where it is no longer followed."""
+    return replace(_truth(trial).at(time_s), bound=None)
+
+
+def _truth(trial: Trial) -> FreeTruth:
+    """The integrated motion, as far as it is followed; kept from one run to the next."""
+    steps = min(float(trial.steps), trial.followed_s / trial.dt_s)
+    return free_truth(trial.scene, round(steps), trial.dt_s)
+
+
+def _same_time(known: FreeBeside) -> Array:
+    """The worst error of phase and place at the same time over the sensitivity (T,)."""
+    tracks = (*known.tracks((PHASE.name,), known.reference), *known.places)
+    time_s = known.motion.time_s
+    return widest([_pure(known.judged(track, time_s)) for track in tracks], time_s)
+
+
+def _geometry(whole: FreeBeside) -> Array:
+    """The worst error of place at the run's own driver angle (T,); 0 where it has left the range
+    of that, of which the other errors tell."""
+    none = np.zeros_like(whole.motion.time_s)
+    if not np.isfinite(whole.crank).all():
+        return np.full_like(none, np.inf)
+    try:
+        tracks = whole.tracks((GEOMETRY.name,), whole.at_crank)
+    except CrankcheckError:
+        return none
+    return widest([_pure(track) for track in tracks], none)
+
+
+def _energy(whole: FreeBeside) -> Array:
+    """What the mean of the energy over a while before each sample has drifted by since the first
+    while, over the largest kinetic energy (T,): it also comes and goes with the motion."""
+    energy, time_s = whole.run.energy, whole.motion.time_s
+    if energy is None:
+        return np.zeros_like(time_s)
+    followed = np.linspace(0.0, whole.let_go.until_s, 1001)
+    largest = float(np.max(whole.let_go.energy(followed).kinetic))
+    over = int(np.searchsorted(time_s, window_s(whole.scene, float(time_s[-1] - time_s[0]))))
+    over = max(over, 1)
+    total = np.cumsum(np.append(0.0, energy.total_j))
+    means = (total[over:] - total[:-over]) / over
+    drift = np.zeros_like(time_s)
+    drift[over - 1 :] = np.abs(means - means[0]) / largest
+    return worst_of(drift)
+
+
+def _pure(track: Track) -> Array:
+    return np.asarray(length(track.error) / track.scale)
