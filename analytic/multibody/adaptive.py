@@ -26,6 +26,8 @@ from models.array import Array
 from models.errors import CrankcheckError
 
 MOST_STEPS = 1_000_000
+FIRST_STEPS, FAR = 2_000, 2.0
+"""After so many it is told how many all take, and refused where they are so many times too many."""
 CAREFUL = 0.1
 """The smallest singular value of the constraints, of rows of the largest entry 1, below which the
 stages of a step are put back onto the constraints as well: what they are off by, which is more than
@@ -38,6 +40,7 @@ class _Steps:
     time since which nothing has jumped. ``careful`` if a change point may be near."""
 
     times: list[float]
+    until_s: float
     within: list[Callable[[Array], Array]] = field(default_factory=list)
     passages: list[Passage] = field(default_factory=list)
     clear_s: float = 0.0
@@ -75,7 +78,7 @@ class Adaptive:
         """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
         pushes = self.dynamics.pushes
         own, state = switches(pushes), np.concatenate([q, rates, [0.0]])
-        steps = _Steps([0.0])
+        steps = _Steps([0.0], until_s)
         times = edges(pushes, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
@@ -105,7 +108,7 @@ class Adaptive:
         steps.clear_s = begin
         while solver.status == "running":
             before_s, before = float(solver.t), solver.y
-            self._step(solver, len(steps.times))
+            self._step(solver, steps)
             crossing = self._crossing(own, cells, solver)
             if crossing is None:
                 self._take(steps, solver)
@@ -118,7 +121,7 @@ class Adaptive:
                     steps, before_s, crossing.at_s, before, strokes(own, cells), first_s
                 )
                 while solver.status == "running":
-                    self._step(solver, len(steps.times))
+                    self._step(solver, steps)
                     self._take(steps, solver)
                 before_s, before = float(solver.t), solver.y
                 cells = crossing.cells
@@ -189,16 +192,24 @@ class Adaptive:
         own = self.dynamics.assembly.units
         return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m**2]])
 
-    def _step(self, solver: DOP853, count: int) -> None:
+    def _step(self, solver: DOP853, steps: _Steps) -> None:
         name = self.dynamics.assembly.scene.name
         with np.errstate(all="ignore"):
             trouble = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
             raise CrankcheckError(f"{name}: the integration fails at {solver.t:g} s: {trouble}")
-        if count > MOST_STEPS:
+        self._check_count(len(steps.times), float(solver.t), steps.until_s)
+
+    def _check_count(self, made: int, now_s: float, until_s: float) -> None:
+        """Raises CrankcheckError where the time takes more steps than can be worked out."""
+        ahead = made * until_s / now_s
+        if made > MOST_STEPS or (made >= FIRST_STEPS and ahead > FAR * MOST_STEPS):
             raise CrankcheckError(
-                f"{name}: {MOST_STEPS} steps have come to {solver.t:g} s; a load that is switched "
-                "by the motion may hold it in place, or a spring is too stiff"
+                f"{self.dynamics.assembly.scene.name}: free for {until_s:g} s, of which "
+                f"{now_s:.3g} s took {made} steps of the integration; at most {MOST_STEPS} are "
+                "made, and a load that is switched by the motion may hold it in place, or a "
+                f"spring or damper is too stiff: give a time of {now_s * MOST_STEPS / made:.2g} s "
+                "or less, or a softer one"
             )
 
     def _take(self, steps: _Steps, solver: DOP853) -> None:

@@ -34,6 +34,8 @@ from models.errors import CrankcheckError
 MOST_TRIES = 40
 MET = 1e-12
 """How near the coefficient comes to the one that was asked for, over it."""
+LEAST = 1e-6
+"""A coefficient, whose `MET` part is the rounding of a speed; flywheels for less are not resolved."""
 EVEN = 1e-4
 """The share of a coefficient that changes no torque."""
 FINER = 20
@@ -123,13 +125,18 @@ def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywhe
 
 
 def _check(delta: float) -> None:
-    if not (math.isfinite(delta) and 0.0 < delta < 2.0):
-        why = {
-            True: "an even run takes a flywheel without end; give one above 0, such as 0.02",
-            False: "a machine that goes on all the time has one above 0 and below 2, usual ones "
-            "are 0.005 to 0.2",
-        }[delta == 0.0]
-        raise CrankcheckError(f"--delta {delta:g}: {why}")
+    if delta == 0.0:
+        why = "an even run takes a flywheel without end; give one above 0, such as 0.02"
+    elif not 0.0 < delta < 2.0:  # or no number
+        why = (
+            "a machine that goes on all the time has one above 0 and below 2, usual ones are 0.005 "
+            "to 0.2"
+        )
+    elif delta < LEAST:
+        why = f"rounding hides so small a fluctuation of speed; give {LEAST:g} or more"
+    else:
+        return
+    raise CrankcheckError(f"--delta {delta:g}: {why}")
 
 
 def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:

@@ -209,3 +209,13 @@ def test_within_a_passage_the_motion_is_smooth() -> None:
     found = free.at(flat).links["rocker1"]
     assert found.theta == pytest.approx(theta, abs=1e-8)
     assert found.alpha == pytest.approx(alpha, abs=1e-5)
+
+
+def test_what_takes_too_many_steps_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("analytic.multibody.adaptive.MOST_STEPS", 200)
+    monkeypatch.setattr("analytic.multibody.adaptive.FIRST_STEPS", 20)
+    damped = scene(
+        DOUBLE_PENDULUM + '[springs.stiff]\npoints = ["A", "C"]\ndamping_n_s_m = 1e6\n'
+    )
+    with pytest.raises(CrankcheckError, match=r"took 20 steps .* give a time of .* s or less"):
+        release_multibody(damped, 1.0).at(np.array([1.0]))
