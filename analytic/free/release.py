@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from analytic.free.arc import Arc
+from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.chart import Chart
 from analytic.free.doubt import Doubt
-from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.gauss import gauss, sums
 from analytic.free.integration import Integration

@@ -45,9 +45,7 @@ def _coordinates(assembly: Assembly, logged: Motion) -> Array:
     q = np.full((logged.time_s.size, assembly.size), np.nan)
     for name, link in scene.links.items():
         theta, at = logged.links[name].theta, assembly.at[name]
-        point = next(
-            (p for p in link.points if p in logged.points or p in scene.ground), None
-        )
+        point = next((p for p in link.points if p in logged.points or p in scene.ground), None)
         if point is None:
             continue
         x, y = link.points[point]
