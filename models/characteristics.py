@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -43,6 +44,11 @@ class Characteristic(ABC):
     def kinks(self) -> tuple[float, ...]:
         """The places, within a period where it has one, in which it is not smooth."""
         return ()
+
+    def kinks_between(self, first: float, last: float) -> Iterator[float]:
+        """The places from ``first`` to ``last`` in which it is not smooth, in order, those of all
+        periods; there may be very many."""
+        yield from (kink for kink in self.kinks if first <= kink <= last)
 
     @abstractmethod
     def steepest(self, x: Array, by: Array | float) -> Array | float:
@@ -202,6 +208,19 @@ class Tabulated(Characteristic):
     @property
     def kinks(self) -> tuple[float, ...]:
         return self.places
+
+    def kinks_between(self, first: float, last: float) -> Iterator[float]:
+        if self.period is None:
+            yield from super().kinks_between(first, last)
+            return
+        closed = self.places[-1] - self.places[0] > self.period * (1.0 - END)
+        own = self.places[:-1] if closed else self.places
+        # A period more on both sides, as quotients round.
+        earliest = math.floor((first - own[0]) / self.period) - 1
+        latest = math.ceil((last - own[0]) / self.period) + 1
+        for turn in range(earliest, latest + 1):
+            repeated = (kink + turn * self.period for kink in own)
+            yield from (kink for kink in repeated if first <= kink <= last)
 
     @cached_property  # asked for at every step of an engine
     def _knots(self) -> tuple[Array, Array]:

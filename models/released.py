@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.array import Array
+from models.errors import CrankcheckError
 from models.laws import Law
 
 if TYPE_CHECKING:
@@ -15,6 +16,14 @@ if TYPE_CHECKING:
 
 LONGEST_S = 1e6
 """For which a mechanism may be left free [s]."""
+
+
+def check_duration(name: str, until_s: float) -> None:
+    """Raises CrankcheckError for a time [s] for which the scene of a name cannot be left free."""
+    if not 0.0 < until_s <= LONGEST_S:  # or no number
+        raise CrankcheckError(
+            f"{name}: free for {until_s:g} s; give a time above 0, of at most {LONGEST_S:g} s"
+        )
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ class Doubt:
         starts = np.repeat(track.starts_s, len(SHARES))
         ends = np.repeat([window.end_s for window in track.windows], len(SHARES))
         time_s = starts + np.tile(SHARES, len(track.windows)) * (ends - starts)
-        own, sizes = np.array(track.state(time_s)), np.zeros((3, len(time_s)))
+        own = np.array(track.state(time_s))
         off = np.zeros((3, len(time_s)))
         seen = np.array(other.state(time_s))
         window = other.windows_at(time_s)
@@ -41,8 +41,8 @@ class Doubt:
                 at = np.arange(span.start, span.stop)[window[span] == k]
                 there = _moved(other.windows[k].chart, chart, seen[:, at], own[0, at])
                 off[:, at] = np.abs(there - own[:, at])
-        sizes = np.abs(own) + np.array([[1.0], [1.0], [1.0]]) * np.abs(own).max(axis=1)[:, None]
-        off = np.maximum.accumulate(np.nan_to_num(off), axis=1)
+        sizes = np.abs(own) + np.abs(own).max(axis=1)[:, None]
+        off = np.maximum.accumulate(off, axis=1)
         return Doubt(time_s, SAFETY * off + 4 * EPS * sizes)
 
     def at(self, time_s: Array) -> Array:
@@ -53,8 +53,8 @@ class Doubt:
 
 
 def _moved(of: Chart, to: Chart, state: Array, near: Array) -> Array:
-    """A state (3, T) of one chart in another, next to coordinates ``near``; accelerations of
-    charts that differ are not compared."""
+    """A state (3, T) of one chart in another, next to coordinates ``near``: by the driver's angle
+    where they are about different limits, which is away from both."""
     if of is to or to.limit is None:
         return state
     u, v, a = state
@@ -62,9 +62,9 @@ def _moved(of: Chart, to: Chart, state: Array, near: Array) -> Array:
     if of.limit.driver_rad == to.limit.driver_rad:
         sign = np.where(np.abs(u - near) <= np.abs(u + near), 1.0, -1.0)
         return np.asarray(state * sign)
-    phi, first, _ = of.driver(u)
+    phi, first, second = of.driver(u)
     size = np.sqrt(np.maximum(0.0, to.limit.side * (to.limit.driver_rad - phi)))
     moved = np.where(near < 0.0, -size, size)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rate = first * v / to.driver(moved)[1]
-    return np.stack([moved, rate, np.full_like(a, np.nan)])
+    _, slope, bend = to.driver(moved)
+    rate = first * v / slope
+    return np.stack([moved, rate, (second * v * v + first * a - bend * rate * rate) / slope])

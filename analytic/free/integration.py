@@ -15,10 +15,11 @@ import numpy as np
 
 from analytic.free.crossing import Crossing, Formulas, first_crossing, precisely
 from analytic.free.gauss import Gauss, sums
-from analytic.free.kinks import Kinked, heeds_direction, is_kinked, kinked, time_kinks
+from analytic.free.kinks import Kinked, heeds_direction, is_kinked, kinked
 from analytic.free.machine import Machine
 from analytic.free.track import MOST, Track, Window
 from analytic.free.window import Scale, Solved, solve_window
+from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
@@ -68,9 +69,8 @@ class Integration:
 
     def run(self) -> Track:
         """All windows. Raises CrankcheckError where it fails."""
-        borders = [*time_kinks(self.scene, self.until_s), self.until_s]
         self.long_s = self.until_s / 100.0
-        for border in borders:
+        for border in edges(self.scene, self.until_s)[1:]:
             self._to(border)
             if border < self.until_s:
                 self.edges_s.append(border)

@@ -8,7 +8,6 @@ over to another formula (`Kinked`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,33 +16,6 @@ from analytic.free.machine import Machine
 from models.array import Array
 from models.characteristics import Characteristic, Tabulated
 from models.scene import Scene
-
-MOST = 100_000
-"""Kinks over time that are integrated from one to the next."""
-
-
-def time_kinks(scene: Scene, until_s: float) -> list[float]:
-    """The instants after 0 and before ``until_s`` at which a load over time has a kink."""
-    found: set[float] = set()
-    for load in scene.loads.values():
-        if load.over == "time" and load.characteristic.kinks:
-            found.update(_repeated(load.characteristic, until_s))
-    return sorted(found)
-
-
-def _repeated(characteristic: Characteristic, until_s: float) -> Iterator[float]:
-    """The kinks of a characteristic in (0, until_s), in all its periods."""
-    period = _period(characteristic)
-    for kink in characteristic.kinks:
-        if period is None:
-            if 0.0 < kink < until_s:
-                yield kink
-            continue
-        first = math.floor(-kink / period) + 1
-        last = min(math.ceil((until_s - kink) / period), first + MOST)
-        for turn in range(first, last):
-            if 0.0 < kink + turn * period < until_s:
-                yield kink + turn * period
 
 
 def _period(characteristic: Characteristic) -> float | None:

@@ -22,7 +22,7 @@ from analytic.free.track import Track, Window
 from analytic.multibody.release import release_multibody
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError
-from models.released import LONGEST_S, Released
+from models.released import Released, check_duration
 from models.scene import KEPT, Same, Scene
 
 NODES, OTHERS = 20, 16
@@ -56,10 +56,7 @@ def release(scene: Scene, until_s: float) -> FreeMotion:
         follows from the reactions; a position on the way that has no smooth motion through it; a
         time that is none.
     """
-    if not 0.0 < until_s <= LONGEST_S:
-        raise CrankcheckError(
-            f"{scene.name}: free for {until_s:g} s; give a time above 0, of at most {LONGEST_S:g} s"
-        )
+    check_duration(scene.name, until_s)
     return _released(Same(scene), float(until_s))
 
 

@@ -79,7 +79,7 @@ class Adaptive:
         pushes = self.dynamics.pushes
         own, state = switches(pushes), np.concatenate([q, rates, [0.0]])
         steps = _Steps([0.0], until_s)
-        times = edges(pushes, until_s)
+        times = edges(pushes.scene, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
             state, cells = self._stretch(steps, own, cells, begin, end, state)

@@ -33,7 +33,7 @@ class FixedSteps:
         own = switches(self.dynamics.pushes)
         state = np.concatenate([q, rates, [0.0]])
         times, states, slopes = [], [], []
-        edge = edges(self.dynamics.pushes, until_s)
+        edge = edges(self.dynamics.assembly.scene, until_s)
         for begin, end in itertools.pairwise(edge):
             count = max(1, math.ceil((end - begin) / self.step_s * (1.0 - 1e-9)))
             h, last = (end - begin) / count, math.nextafter(end, begin)

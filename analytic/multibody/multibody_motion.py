@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import qr  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
@@ -125,7 +127,7 @@ class MultibodyMotion:
     @property
     def edges_s(self) -> tuple[float, ...]:
         """The instants at which loads over time are not smooth [s]."""
-        return tuple(edges(self.dynamics.pushes, self.until_s)[1:-1])
+        return tuple(edges(self.scene, self.until_s)[1:-1])
 
     @property
     def change_points_s(self) -> tuple[float, ...]:
@@ -207,8 +209,13 @@ class MultibodyMotion:
             yield some, assembly.at_rates(q, rates), state[:, -1]
 
     def sensitivity(self, time_s: Array) -> Array:
-        """G (T,): by how much a small change of the start, along any of the freedoms, has grown by
-        then at most, in any coordinate; at least 1."""
+        """G (T,): by how much a small change of the start has grown by then at most, in any
+        coordinate, at least 1.
+
+        For a start whose place is off, along any of the freedoms; or whose speed is, per peak speed
+        over the range that coordinates go through (a turn, or as many longest links, at most):
+        changes that are the same part of the motion.
+        """
         return np.interp(time_s, *self._growth)
 
     @cached_property
@@ -217,13 +224,23 @@ class MultibodyMotion:
         rough, outset = Projection(1e-10), Outset(self.dynamics.assembly)
         q, rates = self.start
         n = len(q)
-        near = self._integrated(q, rates, rough).state(time_s)[:n]
+        unit = self.dynamics.assembly.units[:, None]
+        state = self._integrated(q, rates, rough).state(time_s)
+        near = state[:n]
+        reach = min(math.tau, float((np.ptp(near, axis=1) / unit[:, 0]).max()))
+        peak = float(np.abs(state[n : 2 * n] / unit).max())
+        per_s = peak / reach if reach > 0.0 else 0.0
         growth = np.ones(LOOKS)
-        for direction in outset.freedoms(q):
-            nudged = self.dynamics.closed(q + NUDGE * direction, rates)
-            far = self._integrated(*nudged, rough).state(time_s)[:n]
-            grown = np.abs((far - near) / self.dynamics.assembly.units[:, None]).max(axis=0) / NUDGE
-            growth = np.maximum(growth, grown)
+        free = outset.freedoms(q)
+        # As many coordinates as there are freedoms, which move most: they keep their speeds.
+        leads = qr(free / unit[:, 0], mode="r", pivoting=True)[1][: len(free)]
+        for direction in free:
+            moved = self.dynamics.closed(q + NUDGE * direction, rates)[0]
+            beside = outset.freedoms(moved)
+            as_fast = np.linalg.lstsq(beside[:, leads].T, rates[leads], rcond=None)[0] @ beside
+            for start in ((moved, as_fast), (q, rates + NUDGE * per_s * direction)):
+                far = self._integrated(*start, rough).state(time_s)[:n]
+                growth = np.maximum(growth, np.abs((far - near) / unit).max(axis=0) / NUDGE)
         return time_s, np.maximum.accumulate(growth)
 
 

@@ -13,6 +13,7 @@ from analytic.multibody.pushes import Pushes
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import State
+from models.released import check_duration
 from models.scene import Scene
 
 PROJECTED = Projection()
@@ -42,10 +43,11 @@ def release_multibody(
     ------
     CrankcheckError
         A start that is open, not named whole, or in a change point; speeds that contradict each
-        other; a freedom without mass; friction; an integration that fails.
+        other; a freedom without mass; friction; a time that is none; an integration that fails.
     """
+    check_duration(scene.name, until_s)
     dynamics, q, rates = _ready(scene, near)
-    return MultibodyMotion(dynamics, method, until_s, (q, rates))
+    return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 
 
 def start_state(scene: Scene, near: State | None = None) -> State:
@@ -68,8 +70,9 @@ def _ready(scene: Scene, near: State | None) -> tuple[Dynamics, Array, Array]:
             "with multipliers do not have here; leave it out, or give dampers"
         )
     assembly = Assembly(scene)
-    q, rates = Outset(assembly).find(near)
-    free = Outset(assembly).freedoms(q)
+    outset = Outset(assembly)
+    q, rates = outset.find(near)
+    free = outset.freedoms(q)
     dynamics = Dynamics(assembly, Pushes(assembly, q), assembly.size - len(free))
     _check_start(dynamics, q, free)
     return dynamics, q, rates

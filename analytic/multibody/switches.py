@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -12,6 +13,10 @@ from analytic.multibody.pushes import Pushes, Strokes
 from models.array import Array
 from models.characteristics import Tabulated
 from models.loads import Load
+from models.scene import Scene
+
+MOST_EDGES = 100_000
+"""Of a load over time that are integrated from one to the next."""
 
 
 @dataclass(frozen=True)
@@ -86,13 +91,10 @@ def strokes(own: tuple[Switch, ...], cells: Array) -> Strokes:
     }
 
 
-def edges(pushes: Pushes, until_s: float) -> list[float]:
+def edges(scene: Scene, until_s: float) -> list[float]:
     """The times at which loads over time are not smooth, from 0 to the end with both."""
-    inside = {
-        kink
-        for load in pushes.scene.loads.values()
-        if load.over == "time"
-        for kink in load.characteristic.kinks
-        if 0.0 < kink < until_s
-    }
-    return [0.0, *sorted(inside), until_s]
+    inside: set[float] = set()
+    for load in scene.loads.values():
+        if load.over == "time":
+            inside.update(islice(load.characteristic.kinks_between(0.0, until_s), MOST_EDGES))
+    return [0.0, *sorted(inside - {0.0, until_s}), until_s]

@@ -41,6 +41,10 @@ FINER = 20
 """Places at which a curve is looked at, to the place of the cycle's own samples."""
 
 
+class CoefficientError(CrankcheckError):
+    """A coefficient of fluctuation that no machine is given a flywheel for."""
+
+
 @dataclass(frozen=True)
 class EnergyMass:
     """Wittenbauer's diagram: the work W since the start [J] over the machine's own reduced moment
@@ -135,7 +139,7 @@ def _check(delta: float) -> None:
         why = f"rounding hides so small a fluctuation of speed; give {LEAST:g} or more"
     else:
         return
-    raise CrankcheckError(f"--delta {delta:g}: {why}")
+    raise CoefficientError(f"delta {delta:g}: {why}")
 
 
 def _bare(machine: TurningMachine) -> tuple[TurningMachine, SteadyCycle | None]:

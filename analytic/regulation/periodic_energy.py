@@ -265,6 +265,6 @@ class _Newton:
         of = "" if mean is None else f" with a mean speed of {mean:.6g} rad/s"
         return (
             f"{scene.name}: no steady cycle{of}: its masses hold too little energy, and it comes "
-            f"to rest near {scene.driver.link} {where:.4g} deg; put a flywheel on (crankcheck "
-            "flywheel says how large)"
+            f"to rest near {scene.driver.link} {where:.4g} deg; put a flywheel on, as large as "
+            "a wanted coefficient of fluctuation takes"
         )

@@ -14,12 +14,12 @@ speed and place as the load gives them, but for what the motion in the step does
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from models.array import Array
-from models.characteristics import Characteristic, Tabulated
+from models.characteristics import Characteristic
 from models.loads import Load
 
 INSIDE = 1e-9
@@ -72,23 +72,12 @@ def _cut_steps(
     """The steps with a kink within, and where in the step it is, between 0 and 1."""
     cuts: dict[int, list[float]] = {}
     end_s = start_s + dt_s * (first + count)
-    for kink in _kinks(course, start_s + dt_s * first, end_s):
+    for kink in course.kinks_between(start_s + dt_s * first, end_s):
         place = (kink - start_s) / dt_s
         step = math.floor(place)
         if first <= step < first + count and INSIDE < place - step < 1.0 - INSIDE:
             cuts.setdefault(step, []).append(place - step)
     return cuts
-
-
-def _kinks(course: Characteristic, first_s: float, last_s: float) -> Iterator[float]:
-    """The kinks of a course from ``first_s`` to ``last_s``, those of every period."""
-    period = course.period if isinstance(course, Tabulated) else None
-    if period is None:
-        yield from course.kinks
-        return
-    for kink in course.kinks:
-        earliest, latest = math.ceil((first_s - kink) / period), (last_s - kink) / period
-        yield from (kink + k * period for k in range(earliest, math.floor(latest) + 1))
 
 
 def _parabola(load: Load, begin_s: float, dt_s: float, cuts: Sequence[float]) -> Array:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
+from analytic.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
 from analytic.regulation.let_go import let_go
 from analytic.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
@@ -25,7 +25,11 @@ SCENE = ".toml"
 def run_flywheel(request: FlywheelRequest, console: Console) -> int:
     """Show or write a flywheel. Raises CrankcheckError for what can not be asked."""
     _check(request)
-    found = wanted_flywheel(TurningMachine.of(load_scene(request.scene)), request.delta)
+    machine = TurningMachine.of(load_scene(request.scene))
+    try:
+        found = wanted_flywheel(machine, request.delta)
+    except CoefficientError as error:
+        raise CrankcheckError(f"--{error}") from None  # of the option
     if request.figures is not None:
         from reports.figures.regulation.all_figures import written_figures
         from reports.figures.regulation.regulated import Regulated

@@ -16,8 +16,10 @@ from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release import release_multibody
 from analytic.multibody.rigid import RigidBodies
 from models.array import Array
+from models.characteristics import Tabulated
 from models.errors import CrankcheckError
 from models.files import load_scene
+from models.loads import Load
 from models.scene import Scene
 from models.window_chain import Chain
 from tests.analytic.multibody.scenes import (
@@ -139,6 +141,46 @@ def test_sensitivity_is_what_a_changed_start_grows_by() -> None:
     grown = let_go(mechanism, 0.5).sensitivity(end)[0]
     assert abs(apart[1] - apart[0]) <= 1.01e-5 * grown
     assert grown < 100.0
+
+
+def test_sensitivity_is_what_a_changed_speed_grows_by_too() -> None:
+    """Spun so fast that its speed tells when it is where."""
+    pulsed = load_scene("fourbar-pulse")
+    law = replace(pulsed.driver.law, speed_rad_s=20.0)
+    spun, end = replace(pulsed, loads={}, driver=replace(pulsed.driver, law=law)), np.array([0.5])
+    wanted = release(spun, 0.5).sensitivity(end)[0]
+    assert wanted > 8.0
+    assert let_go(spun, 0.5).sensitivity(end)[0] == pytest.approx(wanted, rel=0.05)
+
+
+@pytest.mark.parametrize("beside_rad", [-1e-17, 0.0, 1e-17])
+def test_it_starts_at_a_row_of_a_table(beside_rad: float) -> None:
+    """Or by rounding beside it, and so crosses the row as soon as it is let go."""
+    gas = (
+        '[loads.gas]\nblock = "C"\ndirection_deg = 180.0\nlaw = "table"\nover = "angle"\n'
+        'interpolation = "linear"\nat_deg = [0.0, 90.0, 270.0]\nperiod_deg = 360.0\n'
+        "force_n = [4.0, 1.0, 2.0]\n"
+    )
+    mechanism = scene(SLIDER_CRANK + "speed_rad_s = 15.0\n" + gas)
+    near = solve(mechanism, np.zeros(1), bound=False).state()
+    near = replace(near, theta={**near.theta, "crank": beside_rad})
+    free = release_multibody(mechanism, 0.05, near=near)
+    other = release(mechanism, 0.05).at(np.array([0.05]), bound=False)
+    found = free.at(np.array([0.05]))
+    assert found.links["crank"].theta == pytest.approx(other.links["crank"].theta, abs=1e-10)
+
+
+@pytest.mark.parametrize("until_s", [math.nan, 0.0, -1.0, math.inf])
+def test_a_time_that_is_none_is_told(until_s: float) -> None:
+    with pytest.raises(CrankcheckError, match="give a time above 0"):
+        release_multibody(scene(DOUBLE_PENDULUM), until_s)
+
+
+def test_a_table_over_time_has_kinks_in_all_its_periods() -> None:
+    table = Tabulated((0.0, 0.02), (1.0, -1.0), period=0.05)
+    motor = Load("motor", "crank", None, table)
+    free = let_go(replace(CASES["spun"], loads={"motor": motor}), 0.11)
+    assert free.edges_s == pytest.approx([0.02, 0.05, 0.07, 0.1])
 
 
 CUT = """
