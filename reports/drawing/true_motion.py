@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import pickle
-from functools import lru_cache
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
-
-if TYPE_CHECKING:
-    from analytic.free.free_motion import FreeMotion
+from reports.compare.free.kept_motion import kept_motion
 
 
 def true_motion(scene: Scene, time_s: Array) -> Motion:
@@ -22,12 +16,4 @@ def true_motion(scene: Scene, time_s: Array) -> Motion:
     if not scene.is_free:
         return solve(scene, time_s, bound=False)
     lasts_s = float(np.max(time_s))
-    return _let_go(pickle.dumps(scene), lasts_s).at(time_s, bound=False)
-
-
-@lru_cache(maxsize=4)
-def _let_go(pickled: bytes, lasts_s: float) -> FreeMotion:
-    """The free motion of a scene, of which several runs are drawn."""
-    from analytic.free.release import release  # loads scipy: for free motion alone
-
-    return release(pickle.loads(pickled), lasts_s)
+    return kept_motion(scene, lasts_s).at(time_s, bound=False)
