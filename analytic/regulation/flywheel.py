@@ -20,7 +20,6 @@ co hoc may", chapter on real motion and its regulation (surplus of work).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +34,7 @@ MOST_TRIES = 40
 MET = 1e-12
 """How near the coefficient comes to the one that was asked for, over it."""
 LEAST = 1e-6
-"""A coefficient, whose `MET` part is the rounding of a speed; flywheels for less are not resolved."""
+"""A coefficient; of a smaller one `MET` is below the rounding of a speed."""
 EVEN = 1e-4
 """The share of a coefficient that changes no torque."""
 FINER = 20

@@ -84,9 +84,13 @@ class RunRequest:
     steps_per_turn: StepsPerTurn = None
     turns: Turns = 2.0
     every: Annotated[int, typer.Option(metavar="N", help="Log every N-th step.")] = 1
-    drive: Annotated[str, typer.Option(help="prescribed, servo, or free (nothing drives it).")] = (
-        "prescribed"
-    )
+    drive: Annotated[
+        str | None,
+        typer.Option(
+            help="prescribed, servo, or free (nothing drives it); default free for a scene that is "
+            "let go, else prescribed."
+        ),
+    ] = None
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
     ] = None

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from reports.diff.costs import cost_text
 from reports.output.numbers import count
 from reports.results.changes.changes import CellPair, Diff, ErrorChange, Word, other_settings
-from reports.results.changes.runs import CellName, StoredCell, StoredRun, each_once
+from reports.results.changes.runs import CellName, StoredCell, StoredRun, each_once, steps_told
 
 REASON = 120
 """Characters of the reason that an engine gave for how it ended."""
@@ -69,9 +69,7 @@ def left_out(cells: Iterable[StoredCell]) -> list[str]:
     for cell in cells:
         groups.setdefault(cell.name.line, []).append(cell.name)
     return [
-        f"{names[0].scene}, {_called(names[0])}, "
-        f"{', '.join(f'{each:g}' for each in sorted(n.steps_per_turn for n in names))} steps a turn"
-        for names in groups.values()
+        f"{names[0].scene}, {_called(names[0])}, {steps_told(names)}" for names in groups.values()
     ]
 
 

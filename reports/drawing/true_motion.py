@@ -15,5 +15,4 @@ def true_motion(scene: Scene, time_s: Array) -> Motion:
     """The motion at times [s], without bounds. Raises CrankcheckError where there is none."""
     if not scene.is_free:
         return solve(scene, time_s, bound=False)
-    lasts_s = float(np.max(time_s))
-    return kept_motion(scene, lasts_s).at(time_s, bound=False)
+    return kept_motion(scene, float(np.max(time_s))).at(time_s, bound=False)

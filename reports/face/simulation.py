@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+from models.errors import CrankcheckError
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
 from reports.face.arguments import (
@@ -100,7 +101,7 @@ def run(
     dt_s: float | None = None,
     turns: float = 2.0,
     every: int = 1,
-    drive: str = "prescribed",
+    drive: str | None = None,
     settings: Mapping[str, SettingValue] | None = None,
     forces: bool = False,
 ) -> Simulation:
@@ -118,9 +119,10 @@ def run(
         Turns (periods) of the driver.
     every : int
         Log every so many steps.
-    drive : str
+    drive : str or None
         ``prescribed``: the driver follows its law exactly; ``servo``: a motor of limited gain
-        drives it; ``free``: nothing does, after its start.
+        drives it; ``free``: nothing does, after its start. None: ``free`` for a scene that is let
+        go, which has no other, and ``prescribed`` for one that is driven.
     settings : Mapping or None
         Settings of the engine in place of the profile's.
     forces : bool
@@ -161,14 +163,14 @@ def simulated(
     dt_s: float | None,
     turns: float,
     every: int,
-    drive: str,
+    drive: str | None,
     settings: Mapping[str, SettingValue] | None = None,
     forces: bool = False,
 ) -> Simulation:
     """As `run`, in the words of the command."""
     scene = scene_of(scene)
     name, profile = engine_of(engine, profile, settings)
-    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    driven = _drive(scene, drive)
     every = whole_of(every, "--every")
     dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
     state = truth_of(Same(scene)).start
@@ -185,3 +187,15 @@ def simulated(
         with_forces=is_true(forces, "forces"),
     )
     return Simulation(**vars(done), mechanism=scene)
+
+
+def _drive(scene: Scene, drive: str | None) -> Drive:
+    """What drives a scene. Raises CrankcheckError for a drive of what is let go: it has no law."""
+    if drive is None:
+        return "free" if scene.is_free else "prescribed"
+    driven = cast(Drive, one_of(drive, "--drive", DRIVES))
+    if scene.is_free and driven != "free":
+        raise CrankcheckError(
+            f"--drive {driven}: {scene.name} is let go, and nothing drives it; leave --drive out"
+        )
+    return driven

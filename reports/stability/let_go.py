@@ -9,17 +9,20 @@ import numpy as np
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion, State
-from reports.compare.free.energy_drift import window_s
-from reports.compare.free.first_samples import first_samples
+from reports.compare.free.energy_drift import window_means
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_branch import free_departure
 from reports.compare.free.free_truth import FreeTruth, free_truth
+from reports.compare.free.some_samples import first_samples
 from reports.compare.series import length
 from reports.compare.tracks import Track, tracks
 from reports.quantities.free import GEOMETRY, PHASE
 from reports.stability.case import Trial
-from reports.stability.error_series import ErrorSeries, lacking, nearest, widest, worst_of
+from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
 from sim.engine import Run
+
+LOOKS = 1001
+"""Instants at which the largest kinetic energy is looked for."""
 
 
 def let_go(trial: Trial, run: Run) -> ErrorSeries:
@@ -98,20 +101,21 @@ def _geometry(whole: FreeBeside) -> Array:
 
 
 def _energy(whole: FreeBeside) -> Array:
-    """What the mean of the energy over a while before each sample has drifted by since the first
+    """What the mean of the energy over a while around each sample has drifted by since the first
     while, over the largest kinetic energy (T,): it also comes and goes with the motion."""
     energy, time_s = whole.run.energy, whole.motion.time_s
     if energy is None:
         return np.zeros_like(time_s)
-    followed = np.linspace(0.0, whole.let_go.until_s, 1001)
-    largest = float(np.max(whole.let_go.energy(followed).kinetic))
-    over = int(np.searchsorted(time_s, window_s(whole.scene, float(time_s[-1] - time_s[0]))))
-    over = max(over, 1)
-    total = np.cumsum(np.append(0.0, energy.total_j))
-    means = (total[over:] - total[:-over]) / over
+    means = window_means(whole.scene, time_s, energy.total_j)
+    instants = np.linspace(0.0, whole.let_go.until_s, LOOKS)
+    largest = float(np.max(whole.let_go.energy(instants).kinetic))
+    if not np.isfinite(energy.total_j).all():
+        return np.full_like(time_s, np.inf)
+    whiles = np.flatnonzero(np.isfinite(means))  # none reaches beyond the log
     drift = np.zeros_like(time_s)
-    drift[over - 1 :] = np.abs(means - means[0]) / largest
-    return worst_of(drift)
+    if whiles.size:
+        drift[whiles] = np.abs(means[whiles] - means[whiles[0]]) / largest
+    return drift
 
 
 def _pure(track: Track) -> Array:

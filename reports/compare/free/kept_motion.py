@@ -20,13 +20,7 @@ belong to half a step after a run."""
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
     """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
     `analytic.free.release`."""
-    until_s = max(_shared(lasts_s), _told_s(scene, BEYOND * lasts_s))
-    return _released(pickle.dumps(scene), until_s)
-
-
-def _shared(time_s: float) -> float:
-    """A time without its rounding: one for all steps of a sweep."""
-    return float(f"{time_s:.9g}")
+    return _released(pickle.dumps(scene), max(lasts_s, _told_s(scene, BEYOND * lasts_s)))
 
 
 def _told_s(scene: Scene, until_s: float) -> float:
@@ -34,7 +28,8 @@ def _told_s(scene: Scene, until_s: float) -> float:
     ends = [
         load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
     ]
-    return min(_shared(until_s), LONGEST_S, *ends)
+    # Without its rounding it is one for all steps of a sweep.
+    return min(float(f"{until_s:.9g}"), LONGEST_S, *ends)
 
 
 @lru_cache(maxsize=4)

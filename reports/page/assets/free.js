@@ -9,6 +9,7 @@
   let shown = null; // the scene of the moment
   let legend = null;
   let orders = null;
+  let started = false; // the stage has had a drawing
   let last = null; // the mechanism and the position that were drawn last
 
   /** The runs that are switched on, with their cell of this step. */
@@ -29,7 +30,7 @@
     const axes = part("chart")._fullLayout;
     const line = part("cursor");
     line.hidden = true;
-    if (!axes?.xaxis || !last || course.value === "portrait") return;
+    if (!axes?.xaxis || !last || !shown.drawing || course.value === "portrait") return;
     const { mechanism, position } = last;
     const place = axes.xaxis.l2p((shown.drawing.until_s * position) / (mechanism.samples - 1));
     if (!(place >= 0 && place <= axes.xaxis._length)) return;
@@ -87,9 +88,12 @@
     offerSteps();
     for (const words of told.children) words.hidden = words.dataset.scene !== scene.value;
     for (const row of table.tBodies[0].rows) row.hidden = row.dataset.scene !== scene.value;
+    part("picture").closest(".pair").style.display = shown.drawing ? "" : "none"; // no run moved
     if (shown.drawing) stage.set(shown.drawing);
     moved();
     errors();
+    if (shown.drawing && !started) stage.start();
+    started ||= Boolean(shown.drawing);
   }
 
   scene.addEventListener("change", choose);
@@ -100,5 +104,4 @@
   });
   error.addEventListener("change", errors);
   choose();
-  if (shown.drawing) stage.start();
 })();

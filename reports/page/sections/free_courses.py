@@ -54,10 +54,11 @@ class FreeCourses:
 
     def embedded(self) -> dict[str, object]:
         """The scene with everything that is drawn of it; without a drawing where the store has no
-        readable text of it."""
+        readable text of it, or no run that moved."""
         lines = self.report.lines_of(self.name)
         time_s = self._instants(lines)
-        truth = self._truth(time_s)
+        ran = any(str(key) in self.sizes for line in lines for key in line.cells["key"])
+        truth = self._truth(time_s) if ran else None
         lasts_s = float(time_s[-1])
         return {
             "name": self.name,

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field, replace
 from models.errors import few
 from reports.judge.cell import Cell, Checked
 from reports.judge.rows import cell_row
-from reports.judge.tolerance import DEFAULTS
+from reports.judge.tolerance import EVERY
 from reports.output.numbers import count
 from reports.results.cost import apart
 
-COMPARED = tuple(DEFAULTS)
+COMPARED = EVERY
 """What is compared: the largest error of each, as a pure number."""
 CellRow = Mapping[str, object]
 
@@ -38,10 +38,22 @@ class CellName:
     @property
     def label(self) -> str:
         servo = "" if self.drive == "prescribed" else f", drive {self.drive}"
-        return (
-            f"{self.scene}, {self.engine} {self.variant}{servo}, {self.steps_per_turn:g} steps a "
-            f"turn, {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
-        )
+        long = "" if self.is_free else f", {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
+        return f"{self.scene}, {self.engine} {self.variant}{servo}, {steps_told([self])}{long}"
+
+    @property
+    def is_free(self) -> bool:
+        """Whether it was let go, and has no turns."""
+        return self.drive == "free"
+
+
+def steps_told(names: Collection[CellName]) -> str:
+    """How many steps cells of one line have, in words: in a turn, or in all of free motion."""
+    if all(name.is_free for name in names):
+        steps = sorted({same(name.steps_per_turn * name.turns) for name in names})
+        return f"{', '.join(f'{each:g}' for each in steps)} steps"
+    steps = sorted({name.steps_per_turn for name in names})
+    return f"{', '.join(f'{each:g}' for each in steps)} steps a turn"
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from models.array import Array
 STEP_RAD = 0.06
 """The longest step, by what the driver turns in it: left to itself the method takes longer ones,
 and misses its tolerance by a thousand."""
-ASIDE_S = 1e-12
+ASIDE = 1e-12
 """An end of a stretch is looked at from inside it by so much of its length: there what acts may
 jump."""
 
@@ -46,7 +46,7 @@ def driver_by_steps(free: MachineMotion, time_s: Array) -> Array:
 
 def _stretch(free: MachineMotion, chart: Chart, now: float, end: float, state: Array) -> Array:
     """The coordinate and its rate at the end of a stretch without kinks inside."""
-    machine, aside = Machine(free.scene, chart), ASIDE_S * (end - now)
+    machine, aside = Machine(free.scene, chart), ASIDE * (end - now)
     wound = dict(free.track.windows[int(free.track.windows_at(np.array([now]))[0])].wound)
 
     def rates(t: float, y: Array) -> tuple[float, float]:

@@ -145,3 +145,11 @@ def test_what_shows_on_the_way_is_one_message(fault: str, crank: Crank, tmp_path
     assert result.exit_code == 2
     assert said in " ".join(result.stderr.split())
     assert result.stderr.startswith("crankcheck: ")
+
+
+def test_of_several_freedoms_the_mobility_is_told(crank: Crank) -> None:
+    result = crank("solve", "double-pendulum", "--duration", "0.1", "--steps", "2")
+    assert result.exit_code == 0
+    said = " ".join(result.output.split())
+    assert "mobility 2; driver upper, let go at rest at -50 deg" in said
+    assert "every link's angle is off by at most" in said

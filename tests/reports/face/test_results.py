@@ -15,6 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import crankcheck
+from models.errors import CrankcheckError
 from models.files import shipped
 from reports.cli import app
 from reports.face.shown import Shown
@@ -243,3 +244,10 @@ def test_a_run_that_an_engine_can_not_do_is_told_and_drawn() -> None:
     assert done.frame().empty
     assert "ended unsupported: " in str(done)
     assert "svg" in done._repr_html_()
+
+
+def test_a_scene_that_is_let_go_runs_free_and_is_not_driven() -> None:
+    done = crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, turns=0.02)
+    assert done.drive == "free"
+    with pytest.raises(CrankcheckError, match="fourbar-swing is let go, and nothing drives it"):
+        crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, turns=0.02, drive="servo")

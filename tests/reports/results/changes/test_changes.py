@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from models.errors import CrankcheckError
 from reports.results.changes.changes import ErrorChange, compare, floor, other_settings
-from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun
+from reports.results.changes.runs import COMPARED, CellName, StoredCell, StoredRun, steps_told
 
 Make = Callable[..., StoredCell]
 Group = Callable[..., StoredRun]
@@ -199,3 +200,15 @@ def test_a_ratio_is_of_the_numbers_as_they_stand() -> None:
     assert ErrorChange("angle", 2e-3, 3e-3, 1e-11).ratio == pytest.approx(1.5)
     assert ErrorChange("angle", 0.0, 3e-3, 1e-11).ratio == math.inf
     assert ErrorChange("angle", 0.0, 0.0, 1e-11).ratio == 1.0
+
+
+def test_what_is_compared_of_free_motion_alone_is_compared_with_an_earlier_run() -> None:
+    assert {"phase", "geometry", "energy", "momentum"} <= set(COMPARED)
+
+
+def test_a_cell_of_free_motion_is_named_by_its_steps_and_not_by_turns() -> None:
+    free = CellName("swing", "pymunk", "tuned", "free", 1250.0, 0.1)
+    assert free.label == "swing, pymunk tuned, drive free, 125 steps"
+    assert steps_told([free, replace(free, steps_per_turn=2000.0)]) == "125, 200 steps"
+    driven = replace(free, drive="prescribed", turns=2.0)
+    assert driven.label == "swing, pymunk tuned, 1250 steps a turn, 2 turns"
