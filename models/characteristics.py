@@ -279,9 +279,10 @@ class Tabulated(Characteristic):
         off = (x < first - slack) | (x > last + slack)
         if off.any():
             beyond = np.where(off, np.maximum(first - x, x - last), 0.0)
+            k = int(np.argmax(beyond))
             raise ValueError(
-                f"the table goes from {first:g} to {last:g}, and {x[np.argmax(beyond)]:g} is asked "
-                "for; give it rows up to there"
+                f"the table goes from {first:.9g} to {last:.9g}, and {x[k]:.9g} is asked for, "
+                f"{beyond[k]:.3g} beyond; give it rows up to there"
             )
 
     def steepest(self, x: Array, by: Array | float) -> Array | float:

@@ -65,3 +65,11 @@ def beside(values: ArrayLike, like: Array, what: str, beside_what: str) -> Array
 
 def _no_numbers(what: str, found: str, cure: str) -> CrankcheckError:
     return CrankcheckError(f"{what}: found {found}; {cure}")
+
+
+def from_end(time_s: Array, until_s: float) -> tuple[float, Array, float]:
+    """The end, 0 or ``until_s``, that times are all beyond [s]; how much later than it they are
+    (T,); and how far back into the time between one has to go to look as far as they do."""
+    end_s = until_s if time_s.min() > until_s else 0.0
+    later = time_s - end_s
+    return end_s, later, -float(later[np.argmax(np.abs(later))])

@@ -53,7 +53,8 @@ RateNumber = Annotated[Number, AfterValidator(_not_tiny)]
 class Table(BaseModel):
     """A table of the file: unknown keys are faults, nothing is changed after reading."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Built where a scene has such a table: most have few of them, and each takes a millisecond.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class GroundTable(Table):

@@ -86,8 +86,8 @@ class BodiesMotion:
         motion = replace(self.bodies.at(time_s), forces=None)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
-    def before(self, time_s: Array, *, bound: bool = True) -> Motion:
-        motion = self.bodies.before(time_s)
+    def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
+        motion = self.bodies.outside(time_s)
         return replace(motion, bound=self._bound(time_s)) if bound else motion
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:

@@ -65,9 +65,10 @@ class FreeMotion(Protocol):
         """The motion at times [s], (T,), from 0 to ``until_s``; bounds hold what the integration
         may be off by as well. Raises CrankcheckError for times beyond."""
 
-    def before(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,): within a step of it,
-        where some engines have the velocities of their first sample."""
+    def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
+        end, at times above ``until_s``: within a step of it, where some engines have the velocities
+        of their first or last sample."""
 
     def with_forces(self, motion: Motion, *, bound: bool = True) -> Motion:
         """A motion of `at`, with the forces in its joints; there are none (NaN) in dead points."""

@@ -21,7 +21,7 @@ from analytic.kinematics import solve_driven
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import samples
+from models.samples import from_end, samples
 from models.scene import Scene
 
 
@@ -67,12 +67,11 @@ class MachineMotion:
         self._check_within(instants)
         return motion_along(self.scene, self.track, self.doubt if bound else None, instants)
 
-    def before(self, time_s: Array, *, bound: bool = True) -> Motion:
-        """As `FreeMotion.before`; the third rate of the driver is taken as constant."""
-        h = -float(time_s.min())
-        theta, omega, alpha = self._driver(np.array([0.0, h, 2.0 * h]))
+    def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
+        """As `FreeMotion.outside`; the third rate of the driver is taken as constant."""
+        end_s, t, h = from_end(time_s, self.until_s)
+        theta, omega, alpha = self._driver(end_s + np.array([0.0, h, 2.0 * h]))
         jerk = (4.0 * alpha[1] - 3.0 * alpha[0] - alpha[2]) / (2.0 * h)
-        t = time_s
         return solve_driven(
             self.scene,
             theta[0] + t * (omega[0] + t * (alpha[0] / 2.0 + t * jerk / 6.0)),

@@ -23,7 +23,7 @@ from analytic.multibody.switches import edges
 from models.array import Array, Mask
 from models.errors import CrankcheckError
 from models.motion import Motion
-from models.samples import samples
+from models.samples import from_end, samples
 from models.scene import Scene
 
 TOLERANCE = 1e-13
@@ -110,12 +110,14 @@ class MultibodyMotion:
             parts.append(replace(motion, forces=forces))
         return _joined(parts)
 
-    def before(self, time_s: Array) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,): within a step of it. The
-        third derivatives of the coordinates are taken as constant."""
-        h, t = -float(time_s.min()), time_s[:, None]
-        _, now, _ = next(self._configurations(np.array([0.0, h, 2.0 * h])))
-        seconds, _ = self._solved(np.array([0.0, h, 2.0 * h]), now)
+    def outside(self, time_s: Array) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
+        end, at times above ``until_s``: within a step of it. The third derivatives of the
+        coordinates are taken as constant."""
+        end_s, later, h = from_end(time_s, self.until_s)
+        within, t = end_s + np.array([0.0, h, 2.0 * h]), later[:, None]
+        _, now, _ = next(self._configurations(within))
+        seconds, _ = self._solved(within, now)
         thirds = (4.0 * seconds[1] - 3.0 * seconds[0] - seconds[2]) / (2.0 * h)
         q = now.q[0] + t * (now.rates[0] + t * (seconds[0] / 2.0 + t * thirds / 6.0))
         rates = now.rates[0] + t * (seconds[0] + t * thirds / 2.0)

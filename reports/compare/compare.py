@@ -21,7 +21,6 @@ from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
 from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.free_errors import free_errors, free_places
 from reports.compare.loading import loading
 from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
 from reports.compare.uneven import uneven, unevenly_turned
@@ -42,6 +41,8 @@ def compare(beside: Beside | None) -> Errors | None:
     if beside is None:
         return None
     if isinstance(beside, FreeBeside):
+        from reports.compare.free.free_errors import free_errors  # for what is let go alone
+
         return free_errors(beside)
     scene, run, reference = beside.scene, beside.run, beside.reference
     at = instants_of(beside, beside.motion.time_s, reference)
@@ -90,6 +91,8 @@ def places(beside: Beside | None) -> list[Error]:
     if beside is None:
         return []
     if isinstance(beside, FreeBeside):
+        from reports.compare.free.free_errors import free_places  # for what is let go alone
+
         return free_places(beside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
     return [

@@ -104,9 +104,8 @@ class Errors:
     may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
     that a driver which was let go turns through, weighed with the square of its speed over the
     largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, both
-    0 of one that is driven;
-    ``free`` is what else there is to
-    know of a run that was let go, None of one that was driven.
+    0 of one that is driven; ``free`` is what else there is to know of a run that was let go, None
+    of one that was driven.
     """
 
     rows: tuple[Error, ...]

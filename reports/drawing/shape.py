@@ -14,6 +14,7 @@ from models.errors import CrankcheckError
 from models.laws import Oscillating
 from models.motion import Motion
 from models.scene import GROUND, Scene, Slider
+from reports.compare.free.kept_motion import kept_motion
 from reports.drawing.beside_locking import clear_of_locking
 
 PATH_SAMPLES = 361
@@ -47,13 +48,11 @@ def turn_of(
 
 def _free(scene: Scene, time_s: Array, *, with_forces: bool) -> Motion:
     """The free motion of a scene. Raises CrankcheckError for forces, which it is not drawn with."""
-    from analytic.free.release import release  # loads scipy
-
     if with_forces:
         raise CrankcheckError(
             f"{scene.name}: let go, it is drawn without its forces; leave them out"
         )
-    return release(scene, float(time_s[-1])).at(time_s, bound=False)
+    return kept_motion(scene, float(time_s[-1])).at(time_s, bound=False)
 
 
 def clearest(path: Motion) -> int:

@@ -155,7 +155,7 @@ def _let_go(
     forces: bool,
 ) -> Solution:
     """The free motion of a scene. Raises CrankcheckError."""
-    from reports.face.free_solution import free_solution  # loads scipy
+    from reports.face.free_solution import free_solution  # slow to import
 
     if is_true(forces, "forces"):
         raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")

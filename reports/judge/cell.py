@@ -15,7 +15,6 @@ from reports.compare.asked import not_asked_for
 from reports.compare.beside import Truth, truth_of
 from reports.compare.compare import compare
 from reports.compare.errors import Departure
-from reports.compare.free.free_truth import free_truth
 from reports.judge.halving import Followed, followed
 from reports.judge.rules import judge
 from reports.judge.rules.rule import Evidence, Finding
@@ -59,6 +58,8 @@ class Cell:
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
         if self.drive == "free":
+            from reports.compare.free.free_truth import free_truth  # for what is let go alone
+
             return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
         return truth_of(Same(self.scene))
 

@@ -44,7 +44,7 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
         Friction that grows with what a joint bears, a load over time whose table ends before, no
         mass that moves, a start that can not be assembled or contradicts itself.
     """
-    from analytic.free.release import release  # loads scipy: for free motion alone
+    from analytic.free.release import release  # slow to import, for free motion alone
 
     check_names(scene)
     if scene.coulomb_joints:

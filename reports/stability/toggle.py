@@ -60,7 +60,7 @@ def thrown_start(trial: Trial) -> State:
 
 def thrown_motion(trial: Trial, time_s: Array) -> Motion:
     """The truth to be drawn."""
-    from analytic.free.release import release  # loads scipy: for free motion alone
+    from analytic.free.release import release  # slow to import, for free motion alone
 
     return release(trial.scene, trial.steps * trial.dt_s).at(time_s, bound=False)
 

@@ -47,6 +47,10 @@ FREE_NUMBERS = {
     QUANTITIES["energy"].head: ["energy"],
 }
 """Those of the table of what was let go."""
+DRIVEN_SAID = (
+    "Largest errors against the closed form at the commanded time; L longest link, w driver's peak "
+    "speed."
+)
 FREE_SAID = (
     "Let go: errors at the same time over G, by how much a small change of the start has grown; "
     "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
@@ -252,7 +256,7 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     free = [one for one in checked if one.cell.drive == "free"]
     driven = [one for one in checked if one.cell.drive != "free"]
     lines = [
-        *(_driven_words(driven) if driven else ()),
+        *([DRIVEN_SAID] if driven else ()),
         *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
         *(_free_words(free) if free else ()),
         *_notes(checked),
@@ -260,14 +264,6 @@ def _footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     return escape("\n".join(lines))
-
-
-def _driven_words(driven: Sequence[Checked]) -> list[str]:
-    """What the numbers of driven cells are."""
-    return [
-        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
-        "peak speed."
-    ]
 
 
 def _driven_steps(driven: Sequence[Checked]) -> list[str]:

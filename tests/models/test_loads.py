@@ -234,6 +234,8 @@ def test_one_value_past_the_end_of_a_table_is_refused_as_in_an_array() -> None:
     assert table.at_one(1.0 + 1e-10) == 3.0  # where rounding has it
     with pytest.raises(ValueError, match=r"from 0 to 1, and 1\.5 is asked for"):
         table.at_one(1.5)
+    with pytest.raises(ValueError, match=r"1\.000002 is asked for, 2e-06 beyond"):
+        table.at_one(1.000002)
     load = Load("valve", "crank", None, table, "angle")
     with pytest.raises(CrankcheckError, match=r"loads\.valve: over the angle \[rad\] the table"):
         load.size(0.0, -1.0, {}, 0.0)

@@ -47,7 +47,7 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     if scene.is_free:
-        from reports.cli.commands.solve_free import run_solve_free  # loads scipy
+        from reports.cli.commands.solve_free import run_solve_free  # slow to import
 
         run_solve_free(scene, request, console)
         return

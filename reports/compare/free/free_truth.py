@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +14,7 @@ from models.released import Released
 from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.free.free_beside import FreeBeside
+from reports.compare.free.kept_motion import kept_motion
 from reports.compare.free.motion_parts import one_after_another
 from reports.compare.free.some_samples import first_samples
 from reports.quantities.free import PHASE
@@ -27,25 +26,13 @@ if TYPE_CHECKING:
 LEAST_KNOWN = 0.25
 """What the truth may be off by, of the limit of the phase: samples beyond are not judged."""
 
-BEYOND = 1.01
-"""How much longer than a run is integrated: some velocities belong to half a step after it, and all
-steps of a sweep share one motion."""
-
-
-@lru_cache(maxsize=2)
-def _motion(pickled: bytes, until_s: float) -> FreeMotion:
-    """The motion of a scene, which may come from another process: kept by what it holds."""
-    from analytic.free.release import release  # loads scipy: for free motion alone
-
-    return release(pickle.loads(pickled), until_s)
-
 
 def free_truth(
     scene: Scene, steps: int, dt_s: float, tolerance: Mapping[str, float] | None = None
 ) -> FreeTruth:
     """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
     `analytic.free.release`."""
-    motion = _motion(pickle.dumps(scene), float(f"{BEYOND * steps * dt_s:.9g}"))
+    motion = kept_motion(scene, steps * dt_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
     law = Released(
         float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
@@ -72,8 +59,12 @@ class FreeTruth(Truth):
 
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
-            early = self.let_go.before(time_s[time_s < 0.0], bound=self.bound)
+            early = self.let_go.outside(time_s[time_s < 0.0], bound=self.bound)
             return one_after_another(early, self.at(time_s[time_s >= 0.0]))
+        after = time_s > self.let_go.until_s
+        if after.any():
+            late = self.let_go.outside(time_s[after], bound=self.bound)
+            return late if after.all() else one_after_another(self.at(time_s[~after]), late)
         return self.let_go.at(time_s, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:

@@ -65,7 +65,7 @@ def test_beside_nothing_there_is_nothing(pendulum: FreeMotion) -> None:
 
 def test_what_leads_to_the_start_goes_on_through_it(pendulum: FreeMotion) -> None:
     h = 1e-3
-    before = pendulum.before(np.array([-h])).links
+    before = pendulum.outside(np.array([-h])).links
     after = pendulum.at(np.array([0.0, h])).links
     for name, link in after.items():
         second = (before[name].theta[0] - 2.0 * link.theta[0] + link.theta[1]) / h**2

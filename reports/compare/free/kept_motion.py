@@ -1,0 +1,40 @@
+"""The free motion of a scene: integrated once for all that is compared with it and drawn of it."""
+
+from __future__ import annotations
+
+import pickle
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from models.released import LONGEST_S
+from models.scene import Scene
+
+if TYPE_CHECKING:
+    from analytic.free.free_motion import FreeMotion
+
+BEYOND = 1.01
+"""How much longer than asked for is integrated, where loads over time say so much: some velocities
+belong to half a step after a run."""
+
+
+def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
+    """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return _released(pickle.dumps(scene), max(lasts_s, _told_s(scene, BEYOND * lasts_s)))
+
+
+def _told_s(scene: Scene, until_s: float) -> float:
+    """Until when the loads over time are given, and a motion may last, up to a time [s]."""
+    ends = [
+        load.characteristic.nearest(until_s) for load in scene.loads.values() if load.over == "time"
+    ]
+    # Without its rounding it is one for all steps of a sweep.
+    return min(float(f"{until_s:.9g}"), LONGEST_S, *ends)
+
+
+@lru_cache(maxsize=4)
+def _released(pickled: bytes, until_s: float) -> FreeMotion:
+    """The motion of a scene, which may come from another process: kept by what it holds."""
+    from analytic.free.release import release  # slow to import, and for free motion alone
+
+    return release(pickle.loads(pickled), until_s)
