@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from matplotlib.axes import Axes
@@ -19,10 +20,18 @@ from reports.figures.mechanism import draw
 from reports.figures.style import cut, styled, width_in
 from reports.results.overview import Report
 from reports.store.manifest import Manifest
+from reports.store.reader import read_store
 from tests.reports.results.made import cell, stored
+from tests.worlds.free_store import SCENE
 from tests.worlds.small_store import SCENES
 
-SHOWN = [(name, scene) for name in FIGURES for scene in (*SCENES, None)]
+SHOWN = [
+    (name, scene)
+    for name, drawing in FIGURES.items()
+    if "driven" in drawing.drives
+    for scene in (*SCENES, None)
+]
+LET_GO = [name for name, drawing in FIGURES.items() if "let go" in drawing.drives]
 
 
 def figure_of(report: Report, name: str, scene: str | None) -> Figure | None:
@@ -64,8 +73,20 @@ def test_words_keep_off_each_other_and_off_the_edge(
                 ("profile", False),
             }
             return
-        found = boxes(figure)
-    page = figure.bbox
+        _has_room(figure)
+
+
+@pytest.mark.parametrize("name", LET_GO)
+def test_words_of_what_was_let_go_keep_off_each_other(free_store: Path, name: str) -> None:
+    with styled():
+        figure = figure_of(Report(read_store(free_store)), name, SCENE)
+        assert figure is not None
+        _has_room(figure)
+
+
+def _has_room(figure: Figure) -> None:
+    """Every word on the sheet, and none on another."""
+    found, page = boxes(figure), figure.bbox
     assert len(found) > 5
     for text, box in found:
         inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
