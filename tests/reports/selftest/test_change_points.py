@@ -33,7 +33,7 @@ NO_FAULT_THERE = {
     "acceleration-late": "the rocker turns steadily, with no acceleration that could be late",
     "first-order": "parallel links have no error of angle, of first order or other: CC113 sees it",
 }
-PLANTED = [n for n, each in FAULTS.items() if n not in NO_FAULT_THERE and not each.of_forces]
+PLANTED = [n for n, each in FAULTS.items() if n not in NO_FAULT_THERE and each.kind == "motion"]
 """Forces near change points are shown, and not judged."""
 
 
