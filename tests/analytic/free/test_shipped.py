@@ -26,8 +26,8 @@ OF_BODIES = {"fourbar-chain": 1e-8}
 STEADY = 100.0
 """The sensitivity up to which the digits of the issue are asked for."""
 TOO_LONG = {"engine-flywheel": 1.0, "squeezer": 1.0}
-"""A second of the engine has 1320 kinks of its table, and costs a minute; its own time is 0.12 s. The
-squeezer's is 1 s: in ten its motor spins it up, which takes minutes to integrate."""
+"""A second of the engine has 1320 kinks of its table, and costs a minute; its own time is 0.12 s.
+The squeezer's is 1 s: in ten its motor spins it up, which takes minutes to integrate."""
 LONG = [
     pytest.param(name, until_s, marks=pytest.mark.slow)
     for name in NAMES
