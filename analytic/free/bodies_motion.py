@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.dyads.plane import EPS
-from analytic.free.energy import Energy
 from analytic.free.free_motion import LimitPassage
 from analytic.free.integrated_law import IntegratedLaw
 from analytic.multibody.as_motion import as_motion
+from analytic.multibody.energies import Energies
 from analytic.multibody.logged_places import logged_places
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from models.array import Array
@@ -100,9 +100,8 @@ class BodiesMotion:
         q = logged_places(assembly, logged, self.freedoms)
         return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
 
-    def energy(self, time_s: Array) -> Energy:
-        found = self.bodies.energy(time_s)
-        return Energy(found.kinetic, found.potential, found.work)
+    def energy(self, time_s: Array) -> Energies:
+        return self.bodies.energy(time_s)
 
     def sensitivity(self, time_s: Array) -> Array:
         return self.bodies.sensitivity(time_s)

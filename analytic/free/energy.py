@@ -2,33 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from analytic.free.gauss import gauss, sums
 from analytic.free.machine import Machine
 from analytic.free.track import MOST, Track
+from analytic.multibody.energies import Energies
 from models.array import Array
 from models.scene import Scene
 
 
-@dataclass(frozen=True)
-class Energy:
-    """Energies [J], (T,): of motion; of weights, over the ground's origin, and springs; and the
-    ``work`` since time 0 of all that does not keep it: loads, dampers, friction."""
-
-    kinetic: Array
-    potential: Array
-    work: Array
-
-    @property
-    def balance(self) -> Array:
-        """What stays as it is: energy less the work that was put in [J]."""
-        return np.asarray(self.kinetic + self.potential - self.work)
-
-
-def energy(scene: Scene, track: Track, time_s: Array) -> Energy:
+def energy(scene: Scene, track: Track, time_s: Array) -> Energies:
     """The energies of an integrated motion at times [s], (T,)."""
     u, v, _ = track.state(time_s)
     window = track.windows_at(time_s)
@@ -43,7 +27,7 @@ def energy(scene: Scene, track: Track, time_s: Array) -> Energy:
             wound = track.wound_at(window[at])
             kinetic[at] = machine.kinetic(u[at], v[at])
             potential[at] = machine.potential(u[at], wound)
-    return Energy(kinetic, potential, np.asarray(work))
+    return Energies(kinetic, potential, np.asarray(work))
 
 
 def _work(scene: Scene, track: Track) -> tuple[Array, Array]:

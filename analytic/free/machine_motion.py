@@ -11,13 +11,14 @@ import numpy as np
 from analytic.forces.kinetostatics import forces
 from analytic.free.beside import beside
 from analytic.free.doubt import Doubt
-from analytic.free.energy import Energy, energy
+from analytic.free.energy import energy
 from analytic.free.free_motion import LimitPassage
 from analytic.free.growth import growth
 from analytic.free.integrated_law import IntegratedLaw
 from analytic.free.places import motion_along
 from analytic.free.track import Track
 from analytic.kinematics import solve_driven
+from analytic.multibody.energies import Energies
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
@@ -91,7 +92,7 @@ class MachineMotion:
         and near a limit of that at the angle or the displacement of what goes on through it."""
         return beside(self.scene, self.track, logged)
 
-    def energy(self, time_s: Array) -> Energy:
+    def energy(self, time_s: Array) -> Energies:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         self._check_within(instants)

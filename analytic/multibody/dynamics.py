@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.energies import Energies
 from analytic.multibody.pushes import Pushes, Strokes
 from analytic.multibody.saddle import Saddle
 from models.array import Array
@@ -24,21 +25,6 @@ WEAK = 1e-2
 MOST_PROJECTIONS = 20
 NEAR = 1e-9
 """A step of a projection, over the longest link or in radians, whose square is below rounding."""
-
-
-@dataclass(frozen=True)
-class Energies:
-    """Kinetic and potential energy, with that of springs [J], and the ``work`` that loads and
-    dampers have done since the start, (T,)."""
-
-    kinetic: Array
-    potential: Array
-    work: Array
-
-    @property
-    def balance(self) -> Array:
-        """What stays as it is but for errors [J], (T,)."""
-        return self.kinetic + self.potential - self.work
 
 
 @dataclass(frozen=True)

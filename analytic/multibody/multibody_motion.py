@@ -14,7 +14,8 @@ from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Configuration
 from analytic.multibody.course import Course
-from analytic.multibody.dynamics import Dynamics, Energies
+from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.energies import Energies
 from analytic.multibody.fixed_steps import FixedSteps
 from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.outset import Outset

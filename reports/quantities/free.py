@@ -96,21 +96,24 @@ def _nothing(scene: Scene, of: Motion | Run) -> Series:
     return {}
 
 
+def _drift(column: str, unit: str, share: str) -> Measure:
+    """One number of a whole run, which no series of the log has."""
+    return Measure(
+        body_kind="mechanism",
+        column=column,
+        unit=unit,
+        share=share,
+        scale=lambda scene, reference: 1.0,
+        truth=_nothing,
+        logged=_nothing,
+    )
+
+
 ENERGY = Quantity(
     name="energy",
     role="free",
     head="energy\n/ T",
-    measures=(
-        Measure(
-            body_kind="mechanism",
-            column="energy_drift_j",
-            unit="J",
-            share="T",
-            scale=lambda scene, reference: 1.0,
-            truth=_nothing,
-            logged=_nothing,
-        ),
-    ),
+    measures=(_drift("energy_drift_j", "J", "T"),),
     criteria=(
         Criterion(
             "CC129",
@@ -135,17 +138,7 @@ ENERGY = Quantity(
 MOMENTUM = Quantity(
     name="momentum",
     role="free",
-    measures=(
-        Measure(
-            body_kind="mechanism",
-            column="momentum_drift_kg_m2_s",
-            unit="kg m^2/s",
-            share="of the largest",
-            scale=lambda scene, reference: 1.0,
-            truth=_nothing,
-            logged=_nothing,
-        ),
-    ),
+    measures=(_drift("momentum_drift_kg_m2_s", "kg m^2/s", "of the largest"),),
     criteria=(
         Criterion(
             "CC130",
