@@ -39,8 +39,6 @@ DRIVE_COLUMNS = frozenset(
 )
 FREE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("free"))
 """Those of cells that were driven, and those of cells that were let go."""
-MOVING = tuple(name for name in DEFAULTS if name not in named("force"))
-"""The tolerances of what is compared of every cell."""
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
 """The first columns of the frame of errors: what an error has of that name."""
 

@@ -8,7 +8,8 @@ import pytest
 from models.scene import Scene
 from reports.judge.cell import Cell, check, unfinished
 from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS, MOVING
+from reports.judge.rows import ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
+from reports.judge.tolerance import DEFAULTS, FORCES
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def test_every_error_column_carries_its_unit(frame: pd.DataFrame) -> None:
     names = [name for name, *_ in ERROR_COLUMNS]
     assert all(name.endswith(units) for name in names)
     assert set(names) - FORCE_COLUMNS - FREE_COLUMNS == set(names) & set(frame.columns)
-    for name in MOVING:
+    for name in [each for each in DEFAULTS if each not in FORCES]:
         assert f"{name.replace('-', '_')}_pure" in frame.columns
 
 
