@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.multibody.multibody_motion import Baumgarte
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from models.joints import bodies
 from models.motion import State
 from models.poses import centre_of, frames

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.free.limit import Limit
+from analytic.free.limit_position import LimitPosition
 from analytic.kinematics import Prepared, prepared, solve_driven
 from analytic.reach import ranges
 from models.array import Array
@@ -25,7 +25,7 @@ class Arc:
     """A scene in one assembly; ``limits`` of its driver's range, the lower one first, or none."""
 
     scene: Scene
-    limits: tuple[Limit, Limit] | None
+    limits: tuple[LimitPosition, LimitPosition] | None
 
     @staticmethod
     def of(scene: Scene, driver_rad: float) -> Arc:
@@ -48,13 +48,13 @@ class Arc:
         low, high = self.limits
         return high.driver_rad - low.driver_rad
 
-    def nearest(self, driver_rad: float) -> Limit | None:
+    def nearest(self, driver_rad: float) -> LimitPosition | None:
         """The limit that is nearest to a driver angle."""
         if self.limits is None:
             return None
         return min(self.limits, key=lambda limit: abs(limit.driver_rad - driver_rad))
 
-    def beyond(self, limit: Limit) -> Arc:
+    def beyond(self, limit: LimitPosition) -> Arc:
         """The arc of the other assembly, into which the motion passes at one of the limits. Raises
         CrankcheckError where it is not to be told."""
         scene = self.scene
@@ -96,7 +96,7 @@ def _range_about(spans: list[tuple[float, float]], driver_rad: float) -> tuple[f
     return None
 
 
-def _limit(scene: Scene, span: tuple[float, float], side: int) -> Limit:
+def _limit(scene: Scene, span: tuple[float, float], side: int) -> LimitPosition:
     """The limit at one end of a range. Raises CrankcheckError where no dyad is stretched or folded
     there, or two are."""
     ready, driver_rad = prepared(scene), span[1] if side > 0 else span[0]
@@ -108,7 +108,7 @@ def _limit(scene: Scene, span: tuple[float, float], side: int) -> Limit:
         closure = at_limit.closures.get(key)
         if closure is not None and closure.root is not None:
             exact = _zero_of_root(ready, key, driver_rad, -side * 1e-3 * (span[1] - span[0]))
-            return Limit(scene, exact, side, key, span[1] - span[0])
+            return LimitPosition(scene, exact, side, key, span[1] - span[0])
     raise CrankcheckError(
         f"{scene.name}: the range of {scene.driver.link} ends at {math.degrees(driver_rad):.6g} "
         "deg, where no dyad is stretched or folded: its free motion is not followed there"

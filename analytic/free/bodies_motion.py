@@ -15,7 +15,7 @@ from analytic.dyads.plane import EPS
 from analytic.free.free_motion import LimitPassage
 from analytic.free.integrated_law import IntegratedLaw
 from analytic.multibody.as_motion import as_motion
-from analytic.multibody.energies import Energies
+from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.logged_places import logged_places
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from models.array import Array
@@ -100,7 +100,7 @@ class BodiesMotion:
         q = logged_places(assembly, logged, self.freedoms)
         return as_motion(assembly, logged.time_s, assembly.at_rest(q), np.zeros_like(q))
 
-    def energy(self, time_s: Array) -> Energies:
+    def energy(self, time_s: Array) -> EnergyBalance:
         return self.bodies.energy(time_s)
 
     def sensitivity(self, time_s: Array) -> Array:

@@ -1,7 +1,8 @@
 """What the motion is integrated over: the driver's angle, or near its limits the coordinate there.
 
 A mechanism whose driver has limits moves in one chart about either of them, and changes from one to
-the other in between (`analytic.free.limit`); one whose driver turns fully has its angle alone.
+the other in between (`analytic.free.limit_position`); one whose driver turns fully has its angle
+alone.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from analytic.change_points.smooth import Rates
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.free.arc import Arc
-from analytic.free.limit import Limit
+from analytic.free.limit_position import LimitPosition
 from analytic.kinematics import prepared
 from models.array import Array
 
@@ -34,7 +35,7 @@ class Chart:
     """
 
     arc: Arc
-    limit: Limit | None
+    limit: LimitPosition | None
     ahead: Mapping[str, float] = field(default_factory=dict)
 
     @staticmethod

@@ -24,7 +24,7 @@ ROUNDS = 8
 
 
 @dataclass(frozen=True)
-class Crossing:
+class FormulaChange:
     """A first change of formula: between ``low_s`` and ``high_s``, and foretold at ``at_s`` [s]."""
 
     low_s: float
@@ -32,7 +32,7 @@ class Crossing:
     at_s: float
 
 
-def first_crossing(formulas: Formulas, looks: Array) -> Crossing | None:
+def first_crossing(formulas: Formulas, looks: Array) -> FormulaChange | None:
     """The first one at looks [s], (T,); None where all are of the formulas of the first."""
     rows = formulas(looks)
     pieces = np.array([row.pieces for row in rows])
@@ -42,10 +42,10 @@ def first_crossing(formulas: Formulas, looks: Array) -> Crossing | None:
     k = int(np.argmax(changed.any(axis=0)))
     low, high = float(looks[k - 1]), float(looks[k])
     at = min(_foretold(row, looks, k) for row, own in zip(rows, changed, strict=True) if own[k])
-    return Crossing(low, high, min(max(at, low), high))
+    return FormulaChange(low, high, min(max(at, low), high))
 
 
-def precisely(formulas: Formulas, crossing: Crossing, first: float, least_s: float) -> float:
+def precisely(formulas: Formulas, crossing: FormulaChange, first: float, least_s: float) -> float:
     """The time [s] at which the formulas of time ``first`` have just given way, to ``least_s``."""
     long_s = crossing.high_s
     for _ in range(ROUNDS):

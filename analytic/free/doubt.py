@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.dyads.plane import EPS
 from analytic.free.chart import Chart
-from analytic.free.track import Track
+from analytic.free.coordinate_history import CoordinateHistory
 from models.array import Array
 
 SAFETY = 4.0
@@ -26,16 +26,16 @@ class Doubt:
     off: Array
 
     @staticmethod
-    def between(track: Track, other: Track) -> Doubt:
+    def between(history: CoordinateHistory, other: CoordinateHistory) -> Doubt:
         """What two integrations of one motion leave in doubt of the first."""
-        starts = np.repeat(track.starts_s, len(SHARES))
-        ends = np.repeat([window.end_s for window in track.windows], len(SHARES))
-        time_s = starts + np.tile(SHARES, len(track.windows)) * (ends - starts)
-        own = np.array(track.state(time_s))
+        starts = np.repeat(history.starts_s, len(SHARES))
+        ends = np.repeat([window.end_s for window in history.windows], len(SHARES))
+        time_s = starts + np.tile(SHARES, len(history.windows)) * (ends - starts)
+        own = np.array(history.state(time_s))
         off = np.zeros((3, len(time_s)))
         seen = np.array(other.state(time_s))
         window = other.windows_at(time_s)
-        for chart, first, last in track.legs():
+        for chart, first, last in history.legs():
             span = slice(first * len(SHARES), last * len(SHARES))
             for k in np.unique(window[span]):
                 at = np.arange(span.start, span.stop)[window[span] == k]

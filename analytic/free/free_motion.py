@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from analytic.free.integrated_law import IntegratedLaw
-from analytic.multibody.energies import Energies
+from analytic.multibody.energy_balance import EnergyBalance
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
@@ -77,7 +77,7 @@ class FreeMotion(Protocol):
         """The positions, without rates and bounds, that the mechanism has where a run of this scene
         is at each of its instants, whatever time the true motion has them at."""
 
-    def energy(self, time_s: Array) -> Energies:
+    def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
 
     def sensitivity(self, time_s: Array) -> Array:

@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from analytic.free.chart import Chart
+from analytic.free.coordinate_history import CoordinateHistory, Window
 from analytic.free.gauss import gauss
-from analytic.free.track import Track, Window
 from models.array import Array
 
 STEEP = 0.1
@@ -25,27 +25,27 @@ AT_REST = 1e-10
 """Of the rates in a window: what is slower at its end has come to rest."""
 
 
-def growth(track: Track, omega: float) -> tuple[Array, Array]:
+def growth(history: CoordinateHistory, omega: float) -> tuple[Array, Array]:
     """Times [s], and by how much a small change of the start has grown until then at most.
 
     What has grown is the change of the driver's angle. It is the larger one of what comes of a
     changed angle, per rad, and of a changed speed, per ``omega`` [rad/s]; at least 1.
     """
-    chart = track.windows[0].chart
-    u0, v0 = (float(row[0]) for row in track.state(np.zeros(1))[:2])
+    chart = history.windows[0].chart
+    u0, v0 = (float(row[0]) for row in history.state(np.zeros(1))[:2])
     _, first, second = (float(row[0]) for row in chart.driver(np.array([u0])))
     steep = math.copysign(max(abs(first), STEEP), first)
     # The angle changed by 1 at the same speed; the speed changed by omega.
     change = np.array([[1.0 / steep, 0.0], [-second * v0 / steep**2, omega / steep]])
     times, sizes = [np.zeros(1)], [np.ones(1)]
-    for k, window in enumerate(track.windows):
+    for k, window in enumerate(history.windows):
         at = window.start_s + window.long_s * gauss(window.swing.shape[1]).places
-        turned = window.chart.driver(track.state(at)[0])[1]
+        turned = window.chart.driver(history.state(at)[0])[1]
         sizes.append(np.abs(turned * (window.swing.T @ change).T).max(axis=0))
         times.append(at)
         change = window.change @ change
-        if k + 1 < len(track.windows):
-            change = _across(window, track.windows[k + 1]) @ change
+        if k + 1 < len(history.windows):
+            change = _across(window, history.windows[k + 1]) @ change
     time_s, size = np.concatenate(times), np.concatenate(sizes)
     return time_s, np.maximum.accumulate(np.maximum(size, 1.0))
 

@@ -10,7 +10,7 @@ import numpy as np
 from models.array import Array
 from models.laws import Law
 
-Course = Callable[[Array], tuple[Array, Array, Array]]
+AngleHistory = Callable[[Array], tuple[Array, Array, Array]]
 """Angle [rad], rate [rad/s] and acceleration [rad/s^2] at times [s]."""
 
 
@@ -18,18 +18,18 @@ Course = Callable[[Array], tuple[Array, Array, Array]]
 class IntegratedLaw(Law):
     """What a free driver does from ``start_s`` to ``end_s``, as an integration has it."""
 
-    course: Course
+    history: AngleHistory
     start_s: float
     end_s: float
     peak_rad_s: float
     ahead_rad: float = 0.0
 
-    def __post_init__(self) -> None:  # a course is no number
+    def __post_init__(self) -> None:  # a history is no number
         assert np.isfinite([self.start_s, self.end_s, self.peak_rad_s]).all()
 
     @property
     def offset_rad(self) -> float:
-        return abs(float(self.course(np.array([self.start_s]))[0][0]))
+        return abs(float(self.history(np.array([self.start_s]))[0][0]))
 
     @property
     def period_s(self) -> float:
@@ -40,7 +40,7 @@ class IntegratedLaw(Law):
         return self.peak_rad_s
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
-        theta, omega, alpha = self.course(time_s)
+        theta, omega, alpha = self.history(time_s)
         return theta + self.ahead_rad, omega, alpha
 
     def turned(self, angle_rad: float) -> IntegratedLaw:

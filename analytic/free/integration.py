@@ -13,12 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.free.crossing import Crossing, Formulas, first_crossing, precisely
+from analytic.free.coordinate_history import MOST, CoordinateHistory, Window
+from analytic.free.crossing import FormulaChange, Formulas, first_crossing, precisely
 from analytic.free.gauss import Gauss, sums
 from analytic.free.kinks import Kinked, heeds_direction, is_kinked, kinked
 from analytic.free.machine import Machine
-from analytic.free.track import MOST, Track, Window
-from analytic.free.window import Scale, Solved, solve_window
+from analytic.free.window import Scale, WindowSolution, solve_window
 from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError
@@ -67,14 +67,14 @@ class Integration:
     windows: list[Window] = field(default_factory=list)
     edges_s: list[float] = field(default_factory=list)
 
-    def run(self) -> Track:
+    def run(self) -> CoordinateHistory:
         """All windows. Raises CrankcheckError where it fails."""
         self.long_s = self.until_s / 100.0
         for border in edges(self.scene, self.until_s)[1:]:
             self._to(border)
             if border < self.until_s:
                 self.edges_s.append(border)
-        return Track(tuple(self.windows))
+        return CoordinateHistory(tuple(self.windows))
 
     def _to(self, border_s: float) -> None:
         """Windows up to an instant; in between everything over time is smooth."""
@@ -115,7 +115,7 @@ class Integration:
             if heeds_direction(self.scene) and abs(self.v) <= 1e-9 * self.fastest:
                 self.v = 0.0
 
-    def _keep(self, solved: Solved, lasts_s: float, end_s: float, *, bends: bool) -> None:
+    def _keep(self, solved: WindowSolution, lasts_s: float, end_s: float, *, bends: bool) -> None:
         chart, series = self.machine.chart, solved.series()
         window = Window(
             chart, self.now_s, end_s, solved.long_s, *series, *solved.changes(),
@@ -128,12 +128,12 @@ class Integration:
             ends = self.machine.lengths(np.array([self.u]), self.wound)
             self.wound = {name: float(q[0]) for name, q in ends.items()}
 
-    def _solved(self, long_s: float, way: float) -> tuple[Solved, float, bool]:
+    def _solved(self, long_s: float, way: float) -> tuple[WindowSolution, float, bool]:
         """A window that is short enough, how long it lasts [s], and whether it ends at a change of
         formula: that is a little beyond what was solved, for which one formula counts so. Raises
         CrankcheckError."""
         failed: CrankcheckError | None = None
-        rough: Solved | None = None
+        rough: WindowSolution | None = None
         aimed, start = 0, self._start(long_s, way)
         if self._kinked and (ahead := self._kink_ahead(long_s, start)):
             aimed, long_s = 1, ahead * SHORT_OF
@@ -176,7 +176,9 @@ class Integration:
         )
         return float(start[0])
 
-    def _tried(self, long_s: float, start: float, rough: Solved | None) -> Solved | None:
+    def _tried(
+        self, long_s: float, start: float, rough: WindowSolution | None
+    ) -> WindowSolution | None:
         """A window, begun from a ``rough`` one that was longer, or the acceleration ``start``."""
         if rough is not None and rough.long_s >= long_s:
             ones = np.ones((self.rule.count, 1))
@@ -216,12 +218,12 @@ class Integration:
         crossing = first_crossing(formulas, self._looks(long_s, long_s))
         return crossing.at_s if crossing and crossing.at_s > LEAST_AHEAD * long_s else None
 
-    def _crossing(self, solved: Solved, *, beyond: bool = False) -> Crossing | None:
+    def _crossing(self, solved: WindowSolution, *, beyond: bool = False) -> FormulaChange | None:
         """Where in a window, or a little beyond it, a formula first gives way to another."""
         h = solved.long_s
         return first_crossing(self._along(solved), self._looks(h, BEYOND * h if beyond else h))
 
-    def _landing(self, solved: Solved, crossing: Crossing) -> float:
+    def _landing(self, solved: WindowSolution, crossing: FormulaChange) -> float:
         """How long after the start of a window a formula has just given way [s]."""
         h = solved.long_s
         first = float(self._looks(h, h)[0])
@@ -234,7 +236,7 @@ class Integration:
             return np.concatenate([[0.0], looks])
         return looks  # it starts between two formulas
 
-    def _along(self, solved: Solved) -> Formulas:
+    def _along(self, solved: WindowSolution) -> Formulas:
         """The formulas along a window."""
         u, v, _ = solved.series()
 

@@ -9,16 +9,16 @@ from functools import cached_property
 import numpy as np
 
 from analytic.forces.kinetostatics import forces
-from analytic.free.beside import beside
+from analytic.free.coordinate_history import CoordinateHistory
 from analytic.free.doubt import Doubt
-from analytic.free.energy import energy
 from analytic.free.free_motion import LimitPassage
 from analytic.free.growth import growth
+from analytic.free.history_energy import history_energy
 from analytic.free.integrated_law import IntegratedLaw
-from analytic.free.places import motion_along
-from analytic.free.track import Track
+from analytic.free.motion_along import motion_along
+from analytic.free.places_beside import places_beside
 from analytic.kinematics import solve_driven
-from analytic.multibody.energies import Energies
+from analytic.multibody.energy_balance import EnergyBalance
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
@@ -28,12 +28,12 @@ from models.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class MachineMotion:
-    """What a scene of one freedom does (`FreeMotion`): ``track`` is the integration, and ``doubt``
-    what it may be off by."""
+    """What a scene of one freedom does (`FreeMotion`): ``history`` is the integration, and
+    ``doubt`` what it may be off by."""
 
     scene: Scene
     until_s: float
-    track: Track
+    history: CoordinateHistory
     doubt: Doubt
     passages: tuple[LimitPassage, ...] = ()
     edges_s: tuple[float, ...] = ()
@@ -66,7 +66,7 @@ class MachineMotion:
         may be off by as well. Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         self._check_within(instants)
-        return motion_along(self.scene, self.track, self.doubt if bound else None, instants)
+        return motion_along(self.scene, self.history, self.doubt if bound else None, instants)
 
     def outside(self, time_s: Array, *, bound: bool = True) -> Motion:
         """As `FreeMotion.outside`; the third rate of the driver is taken as constant."""
@@ -90,13 +90,13 @@ class MachineMotion:
         """The reference, without rates and bounds, in the position that a run of this scene has at
         each of its instants, in the assembly that it is in: at the driver's angle that it logged,
         and near a limit of that at the angle or the displacement of what goes on through it."""
-        return beside(self.scene, self.track, logged)
+        return places_beside(self.scene, self.history, logged)
 
-    def energy(self, time_s: Array) -> Energies:
+    def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,). Raises CrankcheckError for times beyond."""
         instants = samples(time_s, "time_s")
         self._check_within(instants)
-        return energy(self.scene, self.track, instants)
+        return history_energy(self.scene, self.history, instants)
 
     def sensitivity(self, time_s: Array) -> Array:
         """G (T,): by how much a small change of the start has grown by then at most, at least 1.
@@ -110,9 +110,9 @@ class MachineMotion:
     def error_rad(self, time_s: Array) -> Array:
         """What the driver's angle may be off by [rad], (T,)."""
         instants = samples(time_s, "time_s")
-        u, off = self.track.state(instants)[0], self.doubt.at(instants)[0]
-        error, window = np.zeros_like(u), self.track.windows_at(instants)
-        for chart, first, last in self.track.legs():
+        u, off = self.history.state(instants)[0], self.doubt.at(instants)[0]
+        error, window = np.zeros_like(u), self.history.windows_at(instants)
+        for chart, first, last in self.history.legs():
             at = (window >= first) & (window < last)
             _, slope, bend = chart.driver(u[at])
             error[at] = (np.abs(slope) + 0.5 * np.abs(bend) * off[at]) * off[at]
@@ -120,10 +120,10 @@ class MachineMotion:
 
     def _driver(self, time_s: Array) -> tuple[Array, Array, Array]:
         """Angle, rate and acceleration of the driver."""
-        u, v, a = self.track.state(time_s)
+        u, v, a = self.history.state(time_s)
         theta, omega, alpha = np.empty_like(u), np.empty_like(u), np.empty_like(u)
-        window = self.track.windows_at(time_s)
-        for chart, first, last in self.track.legs():
+        window = self.history.windows_at(time_s)
+        for chart, first, last in self.history.legs():
             at = (window >= first) & (window < last)
             phi, slope, bend = chart.driver(u[at])
             theta[at], omega[at] = phi, slope * v[at]
@@ -133,14 +133,14 @@ class MachineMotion:
     @cached_property
     def _looks(self) -> tuple[Array, Array, Array]:
         """The driver at instants that are close."""
-        ends = np.append(self.track.starts_s, self.track.end_s)
+        ends = np.append(self.history.starts_s, self.history.end_s)
         share = np.linspace(0.0, 1.0, 17)
         return self._driver((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel())
 
     @cached_property
     def _growth(self) -> tuple[Array, Array]:
         reach = min(2.0 * np.pi, self.range_rad)
-        return growth(self.track, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
+        return growth(self.history, self.peak_speed_rad_s / reach if reach > 0.0 else 0.0)
 
     def _check_within(self, time_s: Array) -> None:
         if time_s.min() < 0.0 or time_s.max() > self.until_s * (1.0 + 1e-12):

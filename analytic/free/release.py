@@ -11,6 +11,7 @@ import numpy as np
 from analytic.free.arc import Arc
 from analytic.free.bodies_motion import BodiesMotion
 from analytic.free.chart import Chart
+from analytic.free.coordinate_history import CoordinateHistory, Window
 from analytic.free.doubt import Doubt
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.free.gauss import gauss, sums
@@ -18,8 +19,7 @@ from analytic.free.integration import Integration
 from analytic.free.machine import Machine
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.start_check import check_start
-from analytic.free.track import Track, Window
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError
 from models.released import Released, check_duration
@@ -93,10 +93,10 @@ def _of_one_freedom(scene: Scene, law: Released, until_s: float) -> MachineMotio
     check_start(scene, machine, u)
     wound = machine.lengths(np.array([u]))
     start = {name: float(q[0]) for name, q in wound.items()}
-    track, edges = _integrated(machine, until_s, NODES, (u, v), start)
+    history, edges = _integrated(machine, until_s, NODES, (u, v), start)
     other, _ = _integrated(machine, until_s, OTHERS, (u, v), start)
-    doubt = Doubt.between(track, other)
-    return MachineMotion(scene, until_s, track, doubt, tuple(_passages(track)), tuple(edges))
+    doubt = Doubt.between(history, other)
+    return MachineMotion(scene, until_s, history, doubt, tuple(_passages(history)), tuple(edges))
 
 
 def _integrated(
@@ -105,15 +105,15 @@ def _integrated(
     nodes: int,
     start: tuple[float, float],
     wound: dict[str, float],
-) -> tuple[Track, list[float]]:
+) -> tuple[CoordinateHistory, list[float]]:
     """The windows up to a time, and the instants at which what acts is not smooth."""
     going = Integration(machine.scene, gauss(nodes), until_s, machine, *start, wound)
     return going.run(), going.edges_s
 
 
-def _passages(track: Track) -> Iterator[LimitPassage]:
+def _passages(history: CoordinateHistory) -> Iterator[LimitPassage]:
     """The limits that the motion passes, one after the other."""
-    for window in track.windows:
+    for window in history.windows:
         limit = window.chart.limit
         if limit is None:
             continue

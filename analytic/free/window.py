@@ -32,7 +32,7 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Solved:
+class WindowSolution:
     """A window: accelerations at the nodes, and u, u' at its end; as good as there are, where
     Newton's method has not ``converged``."""
 
@@ -98,7 +98,7 @@ def solve_window(
     long_s: float,
     first: Array,
     scale: Scale,
-) -> Solved | None:
+) -> WindowSolution | None:
     """A window from ``start`` (time, u, u'), or None where there is none.
 
     ``first`` is where it begins, the accelerations at the nodes. Raises whatever ``acceleration``
@@ -132,4 +132,4 @@ def solve_window(
         before = change
     end_v = v0 + h * float(rule.end_once @ a)
     end_u = u0 + (h * v0 + h * h * float(rule.end_twice @ a))
-    return Solved(rule, h, u0, v0, a, (end_u, end_v), by_u, by_v, converged)
+    return WindowSolution(rule, h, u0, v0, a, (end_u, end_v), by_u, by_v, converged)

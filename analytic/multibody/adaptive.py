@@ -17,10 +17,15 @@ import numpy as np
 from scipy.integrate import DOP853, OdeSolution  # type: ignore[import-untyped]  # ships no stubs
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
-from analytic.multibody.course import Course
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.passage import NEAR, Passage, passage_ahead, smallest_singular
-from analytic.multibody.pushes import Strokes
+from analytic.multibody.generalised_forces import Strokes
+from analytic.multibody.singular_passage import (
+    NEAR,
+    SingularPassage,
+    passage_ahead,
+    smallest_singular,
+)
+from analytic.multibody.state_history import StateHistory
 from analytic.multibody.switches import Switch, edges, state_cells, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
@@ -42,7 +47,7 @@ class _Steps:
     times: list[float]
     until_s: float
     within: list[Callable[[Array], Array]] = field(default_factory=list)
-    passages: list[Passage] = field(default_factory=list)
+    passages: list[SingularPassage] = field(default_factory=list)
     clear_s: float = 0.0
     careful: bool = False
 
@@ -74,27 +79,27 @@ class Adaptive:
     tolerance: float
     projected: bool
 
-    def course(self, q: Array, rates: Array, until_s: float) -> Course:
+    def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
         """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
-        pushes = self.dynamics.pushes
-        own, state = switches(pushes), np.concatenate([q, rates, [0.0]])
+        forces = self.dynamics.forces
+        own, state = switches(forces), np.concatenate([q, rates, [0.0]])
         steps = _Steps([0.0], until_s)
-        times = edges(pushes.scene, until_s)
+        times = edges(forces.scene, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
-            state, cells = self._stretch(steps, own, cells, begin, end, state)
-        return Course(steps.solution, len(steps.within), tuple(steps.passages))
+            state, cells = self._between_edges(steps, own, cells, begin, end, state)
+        return StateHistory(steps.solution, len(steps.within), tuple(steps.passages))
 
     def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
         """The cells in which the switches are as the motion starts, or into which it moves."""
-        cells = state_cells(own, self.dynamics.pushes, state)
+        cells = state_cells(own, self.dynamics.forces, state)
         if not any(switch.turning for switch in own):
             return cells
         slope = self.dynamics.rates(0.0, state, strokes(own, cells))
-        ahead = state_cells(own, self.dynamics.pushes, state + 1e-9 * slope)
+        ahead = state_cells(own, self.dynamics.forces, state + 1e-9 * slope)
         return np.where([switch.turning for switch in own], ahead, cells)
 
-    def _stretch(
+    def _between_edges(
         self,
         steps: _Steps,
         own: tuple[Switch, ...],
@@ -228,8 +233,8 @@ class Adaptive:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a
         slider that turned there, and is on its way back at the end."""
         found: list[_Crossing] = []
-        pushes = self.dynamics.pushes
-        arrived = state_cells(own, self.dynamics.pushes, solver.y)
+        forces = self.dynamics.forces
+        arrived = state_cells(own, self.dynamics.forces, solver.y)
         if np.array_equal(arrived, cells):
             return None
         within = solver.dense_output()
@@ -240,7 +245,7 @@ class Adaptive:
             kink = switch.begin(int(max(cells[number], after[number])))
 
             def beyond(time_s: float, switch: Switch = switch, kink: float = kink) -> float:
-                return switch.of_state(pushes, within(time_s)) - kink
+                return switch.of_state(forces, within(time_s)) - kink
 
             at_s, begin, end = float(solver.t_old), beyond(solver.t_old), beyond(solver.t)
             if begin * end < 0.0:

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analytic.multibody.body import Body
+from analytic.multibody.body_set import BodySet
 from analytic.multibody.rigid import RigidBodies, inertias
 from models.array import Array, Mask
 from models.joints import joined_at, local_point, sliding_angle, sliding_body
@@ -45,7 +45,7 @@ class Configuration:
 
 
 @dataclass
-class _Asked:
+class _MarkerList:
     """The markers that are asked for: a place of a body, and an angle against it."""
 
     ground: dict[tuple[Point, float], int] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Assembly:
         own = inertias(scene)
         self.bodies = tuple(own)
         self.at = {body: 3 * i for i, body in enumerate(self.bodies)}
-        self._asked = _Asked()
+        self._list = _MarkerList()
         self._held = {
             point: {body: self._ask(body, local_point(scene, body, point)) for body in names}
             for point, names in joined_at(scene).items()
@@ -85,11 +85,11 @@ class Assembly:
         numbers = {name: i for i, name in enumerate(self.bodies)}
         rigid = RigidBodies(
             own,
-            [(numbers[body], place, angle) for body, place, angle in self._asked.moving],
+            [(numbers[body], place, angle) for body, place, angle in self._list.moving],
             scene.gravity_m_s2,
         )
-        self.parts: tuple[tuple[Body, slice, slice], ...] = (
-            (rigid, slice(0, rigid.size), slice(0, len(self._asked.moving))),
+        self.parts: tuple[tuple[BodySet, slice, slice], ...] = (
+            (rigid, slice(0, rigid.size), slice(0, len(self._list.moving))),
         )
         self.size = sum(part.size for part, _, _ in self.parts)
         self._joints()
@@ -97,9 +97,9 @@ class Assembly:
     def _ask(self, body: str, place: Point, angle_rad: float = 0.0) -> int:
         """The number of a marker; those of the ground are below 0, until all are known."""
         if body == GROUND:
-            ground = self._asked.ground
+            ground = self._list.ground
             return -1 - ground.setdefault((place, angle_rad), len(ground))
-        moving = self._asked.moving
+        moving = self._list.moving
         return moving.setdefault((body, place, angle_rad), len(moving))
 
     def _named_points(self) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -111,7 +111,7 @@ class Assembly:
 
     def _number_markers(self) -> None:
         """Those of the ground after all others, where they hold still."""
-        still = len(self._asked.moving)
+        still = len(self._list.moving)
 
         def number(marker: int) -> int:
             return marker if marker >= 0 else still - 1 - marker
@@ -125,7 +125,7 @@ class Assembly:
         self.carriers = {
             point: (body, number(marker)) for point, (body, marker) in self.carriers.items()
         }
-        places = [(*place, angle) for place, angle in self._asked.ground]
+        places = [(*place, angle) for place, angle in self._list.ground]
         self._still = np.zeros((still + len(places), 3))
         self._still[still:] = np.array(places).reshape(-1, 3)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.multibody.multibody_motion import Baumgarte, MultibodyMotion
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import State

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.multibody.assembly import Assembly, Configuration
-from analytic.multibody.energies import Energies
-from analytic.multibody.pushes import Pushes, Strokes
+from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from analytic.multibody.saddle import Saddle
 from models.array import Array
 from models.errors import CrankcheckError
@@ -33,7 +33,7 @@ class Dynamics:
     constraints do not follow from others; ``alpha``, ``beta`` [1/s] of Baumgarte."""
 
     assembly: Assembly
-    pushes: Pushes
+    forces: GeneralisedForces
     rank: int
     alpha: float = 0.0
     beta: float = 0.0
@@ -45,8 +45,8 @@ class Dynamics:
 
     def solve(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
         """q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where they
-        are not determined, and as `Pushes.on`."""
-        return self._solved(time_s, now, self.pushes.on(time_s, now))
+        are not determined, and as `GeneralisedForces.on`."""
+        return self._solved(time_s, now, self.forces.on(time_s, now))
 
     def _solved(self, time_s: Array, now: Configuration, pushed: Array) -> tuple[Array, Array]:
         assembly = self.assembly
@@ -66,7 +66,7 @@ class Dynamics:
     def multipliers(self, time_s: Array, now: Configuration, seconds: Array) -> Array:
         """The multipliers (T, m) that go with accelerations q'' (T, n), the smallest ones."""
         mass, right = self.assembly.weigh(now.q, now.rates)
-        right += self.pushes.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
+        right += self.forces.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
         rows = np.swapaxes(self.assembly.jacobian(now), 1, 2)
         each = zip(rows, right, strict=True)
         return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
@@ -82,22 +82,24 @@ class Dynamics:
         of ``strokes`` act or not, whichever way their sliders move."""
         n, at = self.assembly.size, np.array([time_s])
         now = self.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
-        pushed = self.pushes.on(at, now, strokes)
+        pushed = self.forces.on(at, now, strokes)
         seconds, _ = self._solved(at, now, pushed)
         power = (pushed * now.rates).sum(axis=1)
-        for stretch in self.pushes.stretches(now):  # what springs take up they keep
-            power += stretch.spring.rate * (stretch.q - stretch.spring.free) * stretch.rate
+        for deflection in self.forces.deflections(now):  # what springs take up they keep
+            power += (
+                deflection.spring.rate * (deflection.q - deflection.spring.free) * deflection.rate
+            )
         return np.concatenate([now.rates[0], seconds[0], power])
 
-    def energies(self, now: Configuration, work: Array) -> Energies:
+    def energies(self, now: Configuration, work: Array) -> EnergyBalance:
         """The energies at a configuration, beside the work until then [J]."""
         assembly = self.assembly
         pushed = (assembly.mass(now.q) @ now.rates[:, :, None])[:, :, 0]
         potential = assembly.height_energy(now.q)
-        for stretch in self.pushes.stretches(now):
-            spring = stretch.spring
-            potential = potential + 0.5 * spring.rate * (stretch.q - spring.free) ** 2
-        return Energies(0.5 * (now.rates * pushed).sum(axis=1), potential, work)
+        for deflection in self.forces.deflections(now):
+            spring = deflection.spring
+            potential = potential + 0.5 * spring.rate * (deflection.q - spring.free) ** 2
+        return EnergyBalance(0.5 * (now.rates * pushed).sum(axis=1), potential, work)
 
     def closed(self, q: Array, rates: Array) -> tuple[Array, Array]:
         """The coordinates (n,) on the constraints that are next to some, in the norm of the mass

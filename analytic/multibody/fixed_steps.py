@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.multibody.course import Course
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.pushes import Strokes
+from analytic.multibody.generalised_forces import Strokes
+from analytic.multibody.state_history import StateHistory
 from analytic.multibody.switches import edges, state_cells, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
@@ -28,9 +28,9 @@ class FixedSteps:
     dynamics: Dynamics
     step_s: float
 
-    def course(self, q: Array, rates: Array, until_s: float) -> Course:
+    def history(self, q: Array, rates: Array, until_s: float) -> StateHistory:
         """The motion from a state to a time [s]. Raises CrankcheckError where it comes apart."""
-        own = switches(self.dynamics.pushes)
+        own = switches(self.dynamics.forces)
         state = np.concatenate([q, rates, [0.0]])
         times, states, slopes = [], [], []
         edge = edges(self.dynamics.assembly.scene, until_s)
@@ -39,19 +39,19 @@ class FixedSteps:
             h, last = (end - begin) / count, math.nextafter(end, begin)
             for i in range(count):
                 at_s = begin + i * h
-                held = strokes(own, state_cells(own, self.dynamics.pushes, state))
+                held = strokes(own, state_cells(own, self.dynamics.forces, state))
                 slope, state_after = self._step(at_s, h, last, state, held)
                 times.append(at_s)
                 states.append(state)
                 slopes.append(slope)
                 state = state_after
                 self._check(state, at_s + h)
-        held = strokes(own, state_cells(own, self.dynamics.pushes, state))
+        held = strokes(own, state_cells(own, self.dynamics.forces, state))
         times.append(until_s)
         states.append(state)
         slopes.append(self.dynamics.rates(until_s, state, held))
         spline = CubicHermiteSpline(np.array(times), np.array(states), np.array(slopes))
-        return Course(lambda time_s: np.asarray(spline(time_s).T), len(times) - 1)
+        return StateHistory(lambda time_s: np.asarray(spline(time_s).T), len(times) - 1)
 
     def _step(
         self, at_s: float, h: float, last: float, state: Array, held: Strokes

@@ -13,13 +13,13 @@ from scipy.linalg import qr  # type: ignore[import-untyped]  # ships no stubs
 from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Configuration
-from analytic.multibody.course import Course
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.energies import Energies
+from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.fixed_steps import FixedSteps
 from analytic.multibody.joint_forces import joint_forces
 from analytic.multibody.outset import Outset
-from analytic.multibody.passage import Passage
+from analytic.multibody.singular_passage import SingularPassage
+from analytic.multibody.state_history import StateHistory
 from analytic.multibody.switches import edges
 from models.array import Array, Mask
 from models.errors import CrankcheckError
@@ -80,19 +80,19 @@ class MultibodyMotion:
         return self.dynamics.assembly.scene
 
     @cached_property
-    def _course(self) -> Course:
+    def _history(self) -> StateHistory:
         return self._integrated(*self.start, self.method)
 
-    def _integrated(self, q: Array, rates: Array, method: Method) -> Course:
+    def _integrated(self, q: Array, rates: Array, method: Method) -> StateHistory:
         """The state over time."""
         if isinstance(method, Baumgarte):
             dynamics = replace(self.dynamics, alpha=method.alpha, beta=method.beta)
             if method.step_s is not None:
-                return FixedSteps(dynamics, method.step_s).course(q, rates, self.until_s)
-            return Adaptive(dynamics, method.tolerance, projected=False).course(
+                return FixedSteps(dynamics, method.step_s).history(q, rates, self.until_s)
+            return Adaptive(dynamics, method.tolerance, projected=False).history(
                 q, rates, self.until_s
             )
-        return Adaptive(self.dynamics, method.tolerance, projected=True).course(
+        return Adaptive(self.dynamics, method.tolerance, projected=True).history(
             q, rates, self.until_s
         )
 
@@ -135,11 +135,11 @@ class MultibodyMotion:
     @property
     def change_points_s(self) -> tuple[float, ...]:
         """When it has gone through a change point [s]."""
-        return tuple(passage.at_s for passage in self._course.passages)
+        return tuple(passage.at_s for passage in self._history.passages)
 
-    def _passing(self, time_s: Array) -> Iterator[tuple[Passage, Mask]]:
+    def _passing(self, time_s: Array) -> Iterator[tuple[SingularPassage, Mask]]:
         """The passages through change points, and which of the times [s] are in each."""
-        for passage in self._course.passages:
+        for passage in self._history.passages:
             yield passage, (passage.begin_s < time_s) & (time_s < passage.end_s)
 
     def _solved(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
@@ -170,13 +170,13 @@ class MultibodyMotion:
             return replace(self.dynamics, alpha=method.alpha, beta=method.beta)
         return self.dynamics
 
-    def energy(self, time_s: Array) -> Energies:
+    def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,)."""
         instants = samples(time_s, "time_s")
         parts = [
             self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
         ]
-        return Energies(
+        return EnergyBalance(
             *(np.concatenate(own) for own in zip(*(vars(p).values() for p in parts), strict=True))
         )
 
@@ -201,7 +201,7 @@ class MultibodyMotion:
         at_once = max(1, MOST_NUMBERS // (3 * n * assembly.markers))
         for first in range(0, len(time_s), at_once):
             some = time_s[first : first + at_once]
-            state = self._course.state(np.minimum(some, self.until_s)).T
+            state = self._history.state(np.minimum(some, self.until_s)).T
             q, rates = state[:, :n], state[:, n : 2 * n]
             if isinstance(self.method, Projection):  # between steps too
                 passed = np.zeros(len(some), dtype=bool)

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic.multibody.assembly import Assembly, Configuration
-from analytic.multibody.placing import Placing
-from analytic.multibody.pushes import Pushes
+from analytic.multibody.generalised_forces import GeneralisedForces
+from analytic.multibody.start_poses import StartPoses
 from models.array import Array
 from models.errors import CrankcheckError, few
 from models.joints import sliding_angle, sliding_body
@@ -96,7 +96,7 @@ class Outset:
 
         Raises CrankcheckError, with the links that have to be named.
         """
-        placing = Placing(self.assembly)
+        placing = StartPoses(self.assembly)
         placing.spread()
         missing = [body for body in self.assembly.bodies if body not in placing.origins]
         if missing:
@@ -123,10 +123,10 @@ class Outset:
             turns = 0.0 if rates else math.tau * round((value - found) / math.tau)
             words = "driver" if link in own else f"start.{key}.{link}"
             yield _Named(words, value - turns, found, now.gradient[0, marker, 2], ROUGH_RAD)
-        pushes = Pushes(self.assembly, now.q[0]) if sliding else None
+        forces = GeneralisedForces(self.assembly, now.q[0]) if sliding else None
         for name, value in sliding.items():
-            assert pushes is not None
-            slide = pushes.slide(name, now)
+            assert forces is not None
+            slide = forces.slide(name, now)
             found = float((slide.speed if rates else slide.displacement)[0])
             words = f"start.{'speeds_m_s' if rates else 'displacements_m'}.{name}"
             yield _Named(words, value, found, slide.gradient[0], ROUGH * scene.longest_m)

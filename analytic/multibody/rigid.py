@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.multibody.body import Marked
+from analytic.multibody.body_set import Markers
 from models.array import Array
 from models.joints import block_name
 from models.scene import Point, Scene
@@ -36,7 +36,7 @@ def inertias(scene: Scene) -> dict[str, Inertia]:
 
 
 class RigidBodies:
-    """All rigid bodies of a scene at once (`Body`).
+    """All rigid bodies of a scene at once (`BodySet`).
 
     ``markers`` are the number of a body, a place in its frame [m] and an angle against it [rad].
     """
@@ -73,7 +73,7 @@ class RigidBodies:
         self._inertia[turn, turn] = moment + self._mass * np.sum(centre**2, axis=1)
         self._coupled = np.concatenate([x * n + turn, turn * n + x, y * n + turn, turn * n + y])
 
-    def mark(self, q: Array, rates: Array) -> Marked:
+    def mark(self, q: Array, rates: Array) -> Markers:
         count, owner = len(q), self._owner
         theta = q[:, 2::3]
         c, s = np.cos(theta)[:, owner], np.sin(theta)[:, owner]
@@ -87,7 +87,7 @@ class RigidBodies:
         square = (rates[:, 2::3] ** 2)[:, owner]
         drift = np.zeros_like(place)
         drift[:, :, 0], drift[:, :, 1] = -square * arm_x, -square * arm_y
-        return Marked(place, gradient, drift)
+        return Markers(place, gradient, drift)
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
         count = len(q)

@@ -9,7 +9,7 @@ from itertools import islice
 import numpy as np
 
 from analytic.multibody.assembly import Configuration
-from analytic.multibody.pushes import Pushes, Strokes
+from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.characteristics import Tabulated
 from models.loads import Load
@@ -32,18 +32,18 @@ class Switch:
     period: float | None
     turning: bool
 
-    def coordinate(self, pushes: Pushes, now: Configuration) -> float:
+    def coordinate(self, forces: GeneralisedForces, now: Configuration) -> float:
         """Where the state is, in the unit of the kinks."""
         if self.turning:
             assert self.load.slider is not None
-            return float(pushes.slide(self.load.slider, now).speed[0])
-        return float(pushes.over(self.load, np.zeros(1), now)[0])
+            return float(forces.slide(self.load.slider, now).speed[0])
+        return float(forces.over(self.load, np.zeros(1), now)[0])
 
-    def of_state(self, pushes: Pushes, state: Array) -> float:
+    def of_state(self, forces: GeneralisedForces, state: Array) -> float:
         """That of a state, of q, q' and what else, (2 n + 1,)."""
-        n = pushes.assembly.size
-        now = pushes.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
-        return self.coordinate(pushes, now)
+        n = forces.assembly.size
+        now = forces.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
+        return self.coordinate(forces, now)
 
     def cell(self, x: float) -> int:
         """The number of the cell that a coordinate is in."""
@@ -59,13 +59,13 @@ class Switch:
         return self.kinks[k] + (turns * self.period if self.period is not None else 0.0)
 
 
-def switches(pushes: Pushes) -> tuple[Switch, ...]:
+def switches(forces: GeneralisedForces) -> tuple[Switch, ...]:
     """Those of all loads of a scene that go by the state."""
-    return tuple(_switches(pushes))
+    return tuple(_switches(forces))
 
 
-def _switches(pushes: Pushes) -> Iterator[Switch]:
-    for load in pushes.scene.loads.values():
+def _switches(forces: GeneralisedForces) -> Iterator[Switch]:
+    for load in forces.scene.loads.values():
         kinks = load.characteristic.kinks
         if load.over != "time" and kinks:
             own = load.characteristic
@@ -77,9 +77,9 @@ def _switches(pushes: Pushes) -> Iterator[Switch]:
             yield Switch(load, (0.0,), None, turning=True)
 
 
-def state_cells(own: tuple[Switch, ...], pushes: Pushes, state: Array) -> Array:
+def state_cells(own: tuple[Switch, ...], forces: GeneralisedForces, state: Array) -> Array:
     """The cells that the switches are in at a state (2 n + 1,)."""
-    return np.array([switch.cell(switch.of_state(pushes, state)) for switch in own], dtype=int)
+    return np.array([switch.cell(switch.of_state(forces, state)) for switch in own], dtype=int)
 
 
 def strokes(own: tuple[Switch, ...], cells: Array) -> Strokes:

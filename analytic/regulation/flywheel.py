@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.regulation.periodic_energy import StallError
+from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.array import Array
@@ -123,8 +123,8 @@ def wanted_flywheel(scene_machine: TurningMachine, delta: float) -> WantedFlywhe
         )
     least = _heavy(machine, delta)
     near = _classical(least, delta)
-    cycle = _exact(machine, delta, max(near.by_tangents, 1e-9 * least.course.flywheel))
-    return WantedFlywheel(delta, cycle.course.flywheel, cycle, bare, near)
+    cycle = _exact(machine, delta, max(near.by_tangents, 1e-9 * least.solution.flywheel))
+    return WantedFlywheel(delta, cycle.solution.flywheel, cycle, bare, near)
 
 
 def _check(delta: float) -> None:
@@ -175,9 +175,9 @@ def _heavy(machine: TurningMachine, delta: float) -> SteadyCycle:
 def energy_mass(cycle: SteadyCycle) -> EnergyMass:
     """The diagram of a cycle; the moment of inertia is without the flywheel that was put on."""
     u = np.linspace(0.0, cycle.machine.cycle_rad, FINER * (len(cycle.fine) - 1) // 4 + 1)
-    u = np.unique(np.concatenate([u, cycle.course.cells.borders, [cycle.fastest, cycle.slowest]]))
+    u = np.unique(np.concatenate([u, cycle.solution.cells.borders, [cycle.fastest, cycle.slowest]]))
     energy = cycle.energy(u)
-    return EnergyMass(cycle.machine.inertia(u)[0], energy - cycle.course.at_borders[0])
+    return EnergyMass(cycle.machine.inertia(u)[0], energy - cycle.solution.at_borders[0])
 
 
 def _classical(heavy: SteadyCycle, delta: float) -> Approximations:

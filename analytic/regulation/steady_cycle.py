@@ -19,7 +19,7 @@ import numpy as np
 
 from analytic.regulation.angle_cells import AngleCells
 from analytic.regulation.mean_balance import other_way, settled_speed
-from analytic.regulation.periodic_energy import Asked, Course, repeated
+from analytic.regulation.periodic_solution import PeriodicSolution, WantedSpeed, repeated
 from analytic.regulation.turning_machine import TurningMachine
 from analytic.regulation.unsmooth import breaks, rated_breaks
 from models.array import Array
@@ -48,24 +48,24 @@ class SteadyCycle:
     largest and smallest [rad]. Torques count along the motion: what is positive drives.
     """
 
-    course: Course
+    solution: PeriodicSolution
     fastest: float
     slowest: float
 
     @property
     def machine(self) -> TurningMachine:
-        return self.course.machine
+        return self.solution.machine
 
     @cached_property
     def turnover_j(self) -> float:
         """The work of all torques over the cycle, whatever its sign: what rounding is measured
         by."""
-        return self.course.cells.integral(np.abs(self.course.torque))
+        return self.solution.cells.integral(np.abs(self.solution.torque))
 
     @cached_property
     def drive_n_m(self) -> float:
         """The constant torque of the drive, along the motion; 0 of a machine that is let go."""
-        return self._clean(self.course.drive * self.machine.cycle_rad) / self.machine.cycle_rad
+        return self._clean(self.solution.drive * self.machine.cycle_rad) / self.machine.cycle_rad
 
     def _clean(self, work: float) -> float:
         """A work of the cycle [J], 0 where it is rounding."""
@@ -74,7 +74,7 @@ class SteadyCycle:
     @cached_property
     def extreme_speeds_rad_s(self) -> tuple[float, float]:
         """The largest and the smallest speed of the driver."""
-        high, low = self.course.speed_at(np.array([self.fastest, self.slowest]))
+        high, low = self.solution.speed_at(np.array([self.fastest, self.slowest]))
         return float(high), float(low)
 
     @property
@@ -91,7 +91,7 @@ class SteadyCycle:
     @cached_property
     def period_s(self) -> float:
         """How long a cycle takes."""
-        return self.course.cells.integral(1.0 / self.course.speed)
+        return self.solution.cells.integral(1.0 / self.solution.speed)
 
     @property
     def time_mean_rad_s(self) -> float:
@@ -102,13 +102,13 @@ class SteadyCycle:
     def settling(self) -> float:
         """What a change of the energy at the start becomes in a cycle: below 1 it dies away; 1
         where no torque follows the speed."""
-        return self.course.gain
+        return self.solution.gain
 
     @cached_property
     def works_j(self) -> Mapping[str, float]:
         """The work of a cycle by what does it: each load, spring and friction by its key in the
         file, weights, and the drive."""
-        cells, speed = self.course.cells, self.course.speed
+        cells, speed = self.solution.cells, self.solution.speed
         torques = self.machine.torques_by_source(cells.nodes, speed)
         works = {n: self._clean(cells.integral(torque)) for n, torque in torques.items()}
         if self.drive_n_m:
@@ -129,13 +129,15 @@ class SteadyCycle:
     def surplus_j(self) -> float:
         """The surplus of work: by how much the work since the start is larger where it is largest
         than where it is smallest."""
-        work = self.energy(self.course.cells.borders, self.course.cells.nodes.ravel(), self.fine)
+        work = self.energy(
+            self.solution.cells.borders, self.solution.cells.nodes.ravel(), self.fine
+        )
         return float(np.ptp(work))
 
     @cached_property
     def inertia_range(self) -> tuple[float, float]:
         """The smallest and the largest reduced moment of inertia, with flywheels [kg m^2]."""
-        own = self.course.inertia_at(self.fine)
+        own = self.solution.inertia_at(self.fine)
         return float(own.min()), float(own.max())
 
     @cached_property
@@ -146,11 +148,11 @@ class SteadyCycle:
 
     def energy(self, *angles: Array) -> Array:
         """The kinetic energy at angles u [J]."""
-        return self.course.energy_at(np.concatenate(angles))
+        return self.solution.energy_at(np.concatenate(angles))
 
     def time_s(self, u: Array) -> Array:
         """When the driver has turned by angles u."""
-        return self.course.cells.integrated(1.0 / self.course.speed, u)
+        return self.solution.cells.integrated(1.0 / self.solution.speed, u)
 
     def driver_rad(self, u: float) -> float:
         """The driver's own angle, in [0, 2 pi) of the first turn, on into the next ones."""
@@ -172,7 +174,7 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
     scene = machine.scene
     law_speed = abs(float(scene.driver.law.at(np.zeros(1))[1][0]))
     if scene.is_free and machine.is_rated:
-        asked = Asked(None)
+        wanted = WantedSpeed(None)
         speed = settled_speed(machine)
     elif law_speed == 0.0:
         raise CrankcheckError(
@@ -180,37 +182,37 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
             "do; give speed_rad_s, the mean one"
         )
     else:
-        asked, speed = Asked(law_speed), law_speed
-    course = repeated(machine, cells, flywheel_kg_m2, speed, asked)
+        wanted, speed = WantedSpeed(law_speed), law_speed
+    solution = repeated(machine, cells, flywheel_kg_m2, speed, wanted)
     if scene.is_free:
-        _check_closed(course)
+        _check_closed(solution)
     if machine.is_rated:
         # Rows of tables over the speed are passed somewhere on the way: cut there.
-        more = rated_breaks(machine, course.speed_at)
+        more = rated_breaks(machine, solution.speed_at)
         cells = AngleCells.of(machine.cycle_rad, np.concatenate([cells.borders, more]))
-        course = repeated(machine, cells, flywheel_kg_m2, course, asked)
-    return _with_extremes(course, asked)
+        solution = repeated(machine, cells, flywheel_kg_m2, solution, wanted)
+    return _with_extremes(solution, wanted)
 
 
-def _with_extremes(course: Course, asked: Asked) -> SteadyCycle:
-    """The course whose mean speed is right to rounding, and where its speed is largest and
+def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCycle:
+    """The solution whose mean speed is right to rounding, and where its speed is largest and
     smallest."""
-    mean = asked.mean_rad_s
+    mean = wanted.mean_rad_s
     for _ in range(ROUNDS):
         if mean is None:
             break
-        rough = SteadyCycle(course, *_extremes(course, ROUGHLY))
+        rough = SteadyCycle(solution, *_extremes(solution, ROUGHLY))
         if abs(rough.mean_rad_s / mean - 1.0) <= 1e-14:
             break
-        wanted = Asked(mean, (rough.fastest, rough.slowest))
-        course = repeated(course.machine, course.cells, course.flywheel, course, wanted)
-    return SteadyCycle(course, *_extremes(course, CLOSELY))
+        wanted = WantedSpeed(mean, (rough.fastest, rough.slowest))
+        solution = repeated(solution.machine, solution.cells, solution.flywheel, solution, wanted)
+    return SteadyCycle(solution, *_extremes(solution, CLOSELY))
 
 
-def _extremes(course: Course, halvings: int) -> tuple[float, float]:
+def _extremes(solution: PeriodicSolution, halvings: int) -> tuple[float, float]:
     """The angles u at which the speed is largest and smallest, where its slope is 0."""
-    u = np.sort(np.concatenate([course.cells.borders, course.cells.nodes.ravel()]))
-    speed = course.speed_at(u)
+    u = np.sort(np.concatenate([solution.cells.borders, solution.cells.nodes.ravel()]))
+    speed = solution.speed_at(u)
     if np.ptp(speed) <= STILL * speed.max():
         return 0.0, 0.0
     at = np.array([np.argmax(speed), np.argmin(speed)])
@@ -218,33 +220,33 @@ def _extremes(course: Course, halvings: int) -> tuple[float, float]:
     signs = np.array([1.0, -1.0])
     for _ in range(halvings):
         middle = 0.5 * (low + high)
-        rising = _pull(course, middle) * signs > 0.0
+        rising = _pull(solution, middle) * signs > 0.0
         low, high = np.where(rising, middle, low), np.where(rising, high, middle)
     best = 0.5 * (low + high)
     return float(best[0]), float(best[1])
 
 
-def _pull(course: Course, u: Array) -> Array:
+def _pull(solution: PeriodicSolution, u: Array) -> Array:
     """J w dw/du: what the torques leave for a change of the speed [N m]."""
-    inertia, slope = course.machine.inertia(u)
-    speed = np.sqrt(2.0 * course.energy_at(u) / (inertia + course.flywheel))
-    torque = course.machine.torque(u, speed) + course.drive
+    inertia, slope = solution.machine.inertia(u)
+    speed = np.sqrt(2.0 * solution.energy_at(u) / (inertia + solution.flywheel))
+    torque = solution.machine.torque(u, speed) + solution.drive
     return np.asarray(torque - 0.5 * slope * speed**2)
 
 
-def _check_closed(course: Course) -> None:
+def _check_closed(solution: PeriodicSolution) -> None:
     """Refuse loads that follow no speed and do not balance over the cycle."""
-    machine = course.machine
+    machine = solution.machine
     whole = machine.cycle_rad
-    put_in = course.cells.integral(np.maximum(course.torque, 0.0))
-    short = course.drive * whole
+    put_in = solution.cells.integral(np.maximum(solution.torque, 0.0))
+    short = solution.drive * whole
     if abs(short) > CLOSED * put_in:
         scene = machine.scene
         way = "lose" if short > 0.0 else "gain"
         raise CrankcheckError(
             f"{scene.name}: no steady cycle: over {np.degrees(whole):.6g} deg its loads {way} "
             f"{abs(short):.6g} J at any speed; add a torque on {scene.driver.link} of "
-            f"{machine.way * course.drive:.12g} N m, or a load that follows the speed"
+            f"{machine.way * solution.drive:.12g} N m, or a load that follows the speed"
         )
 
 

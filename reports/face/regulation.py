@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.let_go import let_go, with_flywheel
 from analytic.regulation.steady_cycle import SteadyCycle, cycle_of
 from analytic.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
@@ -68,7 +68,7 @@ class MachineCycle(Shown):
     def scene_let_go(self, cycles: float = 5.0) -> Scene:
         """The scene let go in this cycle, for so many of them, the drive's torque a load of it: an
         engine that runs it free runs the cycle."""
-        return let_go(self.details, cycles)
+        return cycle_scene(self.details, cycles)
 
     def frame(self) -> pd.DataFrame:
         """One row each half degree of the driver: speed, inertia, torques, work, energy."""

@@ -128,7 +128,7 @@ def solve(
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
     if scene.is_free:
-        return _let_go(scene, time_s, links, points, sliders, bound=bound, forces=forces)
+        return _free_solution(scene, time_s, links, points, sliders, bound=bound, forces=forces)
     # Whatever the times are, they are looked at there.
     motion = kinematics.solve(
         scene,
@@ -144,7 +144,7 @@ def solve(
     return Solution(**vars(motion), scene=scene)
 
 
-def _let_go(
+def _free_solution(
     scene: Scene,
     time_s: ArrayLike,
     links: Names,

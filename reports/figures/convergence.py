@@ -53,8 +53,8 @@ def draw(report: Report, scene: str) -> Figure:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
     axes.set_xlabel(STEP)
-    axes.set_ylabel(PLACE_FREE if _let_go(own) else PLACE)
-    if not _let_go(own):
+    axes.set_ylabel(PLACE_FREE if _all_free(own) else PLACE)
+    if not _all_free(own):
         _upper(axes, own)
     return figure
 
@@ -70,21 +70,21 @@ def draw_all(report: Report) -> Figure:
     if strip:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
-    let_go = _let_go(lines)
-    labels = (STEP, PLACE_FREE) if let_go else (PER_TURN, PLACE)
+    free = _all_free(lines)
+    labels = (STEP, PLACE_FREE) if free else (PER_TURN, PLACE)
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
-    _limits(axes, lines, 1.0 if let_go else 0.0)
+    _limits(axes, lines, 1.0 if free else 0.0)
     for scene, one in zip(scenes, axes, strict=True):
         own = report.lines_of(scene)
-        unit_s = 1.0 if let_go else own[0].period_s
+        unit_s = 1.0 if free else own[0].period_s
         _panel(one, own, mark_of, unit_s)
         _failed(one, own, mark_of, unit_s, strip)
-        if not let_go:
+        if not free:
             _count(one, own)
     return figure
 
 
-def _let_go(lines: Sequence[Line]) -> bool:
+def _all_free(lines: Sequence[Line]) -> bool:
     """Whether lines have no turns, and errors over the sensitivity of their motion."""
     return all(line.drive == "free" for line in lines)
 

@@ -69,7 +69,7 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
         update={
             "variants": variants,
             "forces": study.forces or choice.forces,
-            **(_let_go(study, choice) if study.free or choice.free else _driven(study, choice)),
+            **(_free_lines(study, choice) if study.free or choice.free else _driven(study, choice)),
         }
     )
 
@@ -86,7 +86,7 @@ def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
     }
 
 
-def _let_go(study: Study, choice: StudyChoice) -> dict[str, object]:
+def _free_lines(study: Study, choice: StudyChoice) -> dict[str, object]:
     """What is said of scenes that are let go: those of free motion, where the study is of others
     and none is named. Raises CrankcheckError for turns."""
     if choice.steps_per_turn or choice.turns is not None:

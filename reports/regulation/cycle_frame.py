@@ -47,7 +47,7 @@ class CycleSeries:
 def cycle_series(cycle: SteadyCycle) -> CycleSeries:
     """The series of a cycle, each half degree of the driver."""
     u, machine = cycle.fine, cycle.machine
-    energy, inertia = cycle.energy(u), cycle.course.inertia_at(u)
+    energy, inertia = cycle.energy(u), cycle.solution.inertia_at(u)
     speed = np.sqrt(2.0 * energy / inertia)
     sources = machine.torques_by_source(u, speed)
     if cycle.drive_n_m:
@@ -86,7 +86,9 @@ def cycle_frame(cycle: SteadyCycle, bare: SteadyCycle | None = None) -> pd.DataF
     }
     columns |= {f"{name}_n_m": torque for name, torque in series.sources.items()}
     if bare is not None:
-        columns[f"bare_{link}_omega_rad_s"] = bare.machine.way * bare.course.speed_at(series.turned)
+        columns[f"bare_{link}_omega_rad_s"] = bare.machine.way * bare.solution.speed_at(
+            series.turned
+        )
     return pd.DataFrame(columns)
 
 

@@ -43,7 +43,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
     """A look for every engine, variant and drive, in the order of the lines; where all were let go
     the drive needs no word."""
     lines = tuple(lines)
-    let_go = all(line.drive == "free" for line in lines)
+    free = all(line.drive == "free" for line in lines)
     every: dict[Named, Look] = {}
     engines: dict[str, int] = {}
     for line in lines:
@@ -54,7 +54,7 @@ def looks(lines: Iterable[Line]) -> Mapping[Named, Look]:
         every[named(line)] = Look(
             number=len(every),
             engine=line.engine,
-            variant=line.variant if let_go else called(line.variant, line.drive),
+            variant=line.variant if free else called(line.variant, line.drive),
             version=line.version,
             colour=family % FAMILIES * FAMILY + place % FAMILY,
             symbol=SYMBOLS[family % len(SYMBOLS)],

@@ -208,8 +208,8 @@ def _healthy(same: Same, name: str, profile: str, settings: Items, options: Item
     """A run as the profile says: the same for all sizes of a fault, at a step, its half and its
     quarter."""
     given = dict(options)
-    let_go = given.get("drive") == "free"
-    truth = free_truth(same.scene, given["steps"], given["dt_s"]) if let_go else truth_of(same)
+    free = given.get("drive") == "free"
+    truth = free_truth(same.scene, given["steps"], given["dt_s"]) if free else truth_of(same)
     start = truth.start  # the cell that is run has asked for it
     return run(same.scene, start, name, profile, settings=dict(settings), **given)
 

@@ -183,13 +183,13 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
     """How long the runs are, and at which step."""
     kinds = {one.fault.kind for one in verdicts}
     scenes = dict.fromkeys(scene for one in verdicts for scene in one.fault.scenes)
-    let_go = [
+    free = [
         f"{scene} {1e3 * dt_s:g} ms, {dt_s * steps:g} s"
         for scene, (dt_s, steps) in FREE_RUNS.items()
         if scene in scenes
     ]
     turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free"} else []
-    return "; ".join([*turn, *([f"let go: {', '.join(let_go)}"] if let_go else [])])
+    return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else [])])
 
 
 def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:

@@ -12,7 +12,7 @@ from sim.pymunk.pushes import NONE, Pushes
 from sim.pymunk.slider_friction import SliderFriction
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.spring_steps import SpringSteps
-from sim.pymunk.step_end import Track, frames_at_end
+from sim.pymunk.step_end import SliderCourse, frames_at_end
 
 
 class Acting:
@@ -26,7 +26,7 @@ class Acting:
         followed |= {getattr(one, "slider", None) for one in scene.springs.values()}
         followed |= {*scene.friction}
         tracks = {
-            slide.slider.name: Track(
+            slide.slider.name: SliderCourse(
                 scene, model, slide, state.displacement[slide.slider.name], dt_s
             )
             for slide in slides

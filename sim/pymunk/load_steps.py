@@ -27,7 +27,7 @@ from sim.engine import Drive
 from sim.load_magnitudes import ahead, known_ahead
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.step_end import Course, Frames, Track, anchor_of
+from sim.pymunk.step_end import Course, Frames, SliderCourse, anchor_of
 
 
 class LoadSteps:
@@ -38,7 +38,7 @@ class LoadSteps:
         scene: Scene,
         model: SpaceModel,
         slots: Mapping[str, Slot],
-        tracks: Mapping[str, Track],
+        tracks: Mapping[str, SliderCourse],
         dt_s: float,
         drive: Drive,
     ) -> None:

@@ -16,14 +16,14 @@ from models.scene import Scene
 from sim.engine import Drive
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.step_end import Frames, Track, anchor_of
+from sim.pymunk.step_end import Frames, SliderCourse, anchor_of
 
 
 class SliderFriction:
     """The constant friction of the sliders of a scene, in a space."""
 
     def __init__(
-        self, scene: Scene, model: SpaceModel, tracks: Mapping[str, Track], drive: Drive
+        self, scene: Scene, model: SpaceModel, tracks: Mapping[str, SliderCourse], drive: Drive
     ) -> None:
         slides = {slide.slider.name: slide for slide in joints(scene).slides}
         self._scene, self._model, self._tracks = scene, model, tracks

@@ -13,14 +13,14 @@ from models.spring_ends import line_ends, whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
-from sim.pymunk.step_end import Course, Frames, Track, anchor_of, frames_at_end
+from sim.pymunk.step_end import Course, Frames, SliderCourse, anchor_of, frames_at_end
 
 
 class SpringSteps:
     """The springs of a scene that its space has not of its own."""
 
     def __init__(
-        self, scene: Scene, model: SpaceModel, tracks: Mapping[str, Track], dt_s: float
+        self, scene: Scene, model: SpaceModel, tracks: Mapping[str, SliderCourse], dt_s: float
     ) -> None:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
@@ -112,7 +112,7 @@ class _OnSlide:
         model: SpaceModel,
         spring: SlideSpring,
         slide: Prism | Slot,
-        track: Track,
+        track: SliderCourse,
     ) -> None:
         self.spring, self._slide, self._track = spring, slide, track
         self._rider = riding_body(slide)

@@ -75,7 +75,7 @@ class Course:
         return (self._values[-1] - self._values[-2]) / self._dt
 
 
-class Track:
+class SliderCourse:
     """The displacement of a slider [m]."""
 
     def __init__(

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
+from analytic.regulation.cycle_scene import cycle_scene
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.let_go import let_go
 from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial
@@ -78,7 +78,7 @@ def test_an_engine_runs_the_cycle_that_the_flywheel_is_for(name: str, engine: st
     """The drive a constant torque, two cycles: nothing settles, so that the second is as the
     first. Some 2 s each, as loads that hang on the angle are asked for at every stage of a step."""
     cycle = wanted(load_scene(name)).cycle
-    found = measured(let_go(cycle, 2.05), engine, cycle, 2800)
+    found = measured(cycle_scene(cycle, 2.05), engine, cycle, 2800)
     assert len(found) == 2
     for one in found:
         holds(one, cycle)
@@ -95,7 +95,7 @@ def test_an_engine_settles_in_the_cycle_of_a_motor() -> None:
     )
     cycle = wanted(scene).cycle
     assert 0.0 < cycle.settling < 0.2
-    started = let_go(cycle, 5.05)
+    started = cycle_scene(cycle, 5.05)
     faster = replace(law, speed_rad_s=1.05 * started.driver.law.at(np.zeros(1))[1][0],
                      duration_s=started.driver.law.period_s)  # fmt: skip
     started = replace(started, driver=replace(started.driver, law=faster))

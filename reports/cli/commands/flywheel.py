@@ -6,8 +6,8 @@ from pathlib import Path
 
 from rich.console import Console
 
+from analytic.regulation.cycle_scene import cycle_scene
 from analytic.regulation.flywheel import CoefficientError, WantedFlywheel, wanted_flywheel
-from analytic.regulation.let_go import let_go
 from analytic.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
 from models.files import find_scene, load_scene
@@ -66,7 +66,7 @@ def _check(request: FlywheelRequest) -> None:
 def _scene(found: WantedFlywheel, *, free: bool) -> str:
     """The scene with the flywheel as the text of a file, the flywheel by itself in it."""
     machine = found.cycle.machine
-    scene = let_go(found.cycle, flywheel=False) if free else machine.scene
+    scene = cycle_scene(found.cycle, flywheel=False) if free else machine.scene
     return scene_text(scene, {scene.driver.link: found.inertia_kg_m2})
 
 

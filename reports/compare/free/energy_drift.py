@@ -30,7 +30,7 @@ def energy_rows(beside: FreeBeside) -> list[Error]:
     if run.energy is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
         return []
     time_s = run.velocity_time_s
-    known = beside.let_go.energy(np.clip(time_s, 0.0, beside.let_go.until_s))
+    known = beside.free.energy(np.clip(time_s, 0.0, beside.free.until_s))
     largest = float(np.max(known.kinetic))
     if not largest > 0.0:
         return []

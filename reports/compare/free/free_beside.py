@@ -29,12 +29,12 @@ class FreeBeside(Beside):
     """
 
     whole_run: Run = field(kw_only=True)
-    let_go: FreeMotion = field(kw_only=True)
+    free: FreeMotion = field(kw_only=True)
 
     @cached_property
     def at_crank(self) -> Motion:
         """The truth in the position that the run's own coordinate has at each instant."""
-        return self.let_go.beside(self.motion)
+        return self.free.beside(self.motion)
 
     @cached_property
     def driver_rad(self) -> Array:
@@ -43,7 +43,7 @@ class FreeBeside(Beside):
     @cached_property
     def growth(self) -> Array:
         """The sensitivity at the logged instants, (T,)."""
-        return self.let_go.sensitivity(self.motion.time_s)
+        return self.free.sensitivity(self.motion.time_s)
 
     @property
     def driver_speed(self) -> Array:
@@ -57,7 +57,7 @@ class FreeBeside(Beside):
         """The error at the same time over the sensitivity; joints are closed at any time."""
         if track.quantity == "gap":
             return track
-        growth = self.let_go.sensitivity(time_s)
+        growth = self.free.sensitivity(time_s)
         over = growth[:, None] if track.error.ndim == 2 else growth
         return replace(track, error=track.error / over, bound=track.bound / growth)
 

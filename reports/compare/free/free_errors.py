@@ -159,7 +159,7 @@ def _facts(beside: FreeBeside, same_time: Iterable[Track]) -> FreeFacts:
         time_s=time_s[kept],
         raw=raw[kept],
         judged=judged[kept],
-        passages=sum(passage.time_s <= time_s[-1] for passage in beside.let_go.passages),
+        passages=sum(passage.time_s <= time_s[-1] for passage in beside.free.passages),
     )
 
 

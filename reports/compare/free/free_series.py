@@ -27,7 +27,7 @@ def free_series(beside: FreeBeside) -> Mapping[str, Array]:
     if driver := beside.motion.links.get(beside.scene.driver.link):
         series["omega"] = driver.omega
     if run.energy is not None and run.velocity_time_s is not None:
-        known = beside.let_go.energy(np.clip(run.velocity_time_s, 0.0, beside.let_go.until_s))
+        known = beside.free.energy(np.clip(run.velocity_time_s, 0.0, beside.free.until_s))
         own = run.energy.total_j - known.work
         series |= {"energy": own - own[0], "kinetic": known.kinetic}
     return series

@@ -41,7 +41,7 @@ def free_truth(
     numbers = PHASE.criteria[0].tolerance
     budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)
     paced = replace(scene, driver=Driver(scene.driver.link, law))
-    return FreeTruth(paced, let_go=motion, known_rad=LEAST_KNOWN * (given or budget))
+    return FreeTruth(paced, free=motion, known_rad=LEAST_KNOWN * (given or budget))
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class FreeTruth(Truth):
     that of its start, which errors of rates are over. Samples count as long as what the truth may
     be off by, over the sensitivity, is at most ``known_rad``."""
 
-    let_go: FreeMotion = field(kw_only=True)
+    free: FreeMotion = field(kw_only=True)
     known_rad: float = field(kw_only=True)
 
     @property
@@ -59,25 +59,25 @@ class FreeTruth(Truth):
 
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
-            early = self.let_go.outside(time_s[time_s < 0.0], bound=self.bound)
+            early = self.free.outside(time_s[time_s < 0.0], bound=self.bound)
             return one_after_another(early, self.at(time_s[time_s >= 0.0]))
-        after = time_s > self.let_go.until_s
+        after = time_s > self.free.until_s
         if after.any():
-            late = self.let_go.outside(time_s[after], bound=self.bound)
+            late = self.free.outside(time_s[after], bound=self.bound)
             return late if after.all() else one_after_another(self.at(time_s[~after]), late)
-        return self.let_go.at(time_s, bound=self.bound)
+        return self.free.at(time_s, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:
-        return self.let_go.with_forces(self.at(time_s), bound=self.bound)
+        return self.free.with_forces(self.at(time_s), bound=self.bound)
 
     def beside(self, run: Run) -> Beside | None:
         """The run as far as the truth is known, beside it; None where it logged nothing."""
         motion = run.motion
         if motion is None or not motion.time_s.size:
             return None
-        unsure = self.let_go.error_rad(motion.time_s) / self.let_go.sensitivity(motion.time_s)
+        unsure = self.free.error_rad(motion.time_s) / self.free.sensitivity(motion.time_s)
         lost = np.flatnonzero(~(unsure <= self.known_rad))
         kept = max(int(lost[0]), 1) if lost.size else motion.time_s.size
         known = first_samples(run, kept)
         assert known.motion is not None
-        return FreeBeside(self, known, known.motion, whole_run=run, let_go=self.let_go)
+        return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)

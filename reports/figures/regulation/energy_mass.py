@@ -73,7 +73,7 @@ def _angles(of: Regulated, axes: Axes) -> None:
     low, high = (math.degrees(each) for each in ends)
     degrees = np.arange(math.ceil(low / EVERY_DEG - 1e-9) * EVERY_DEG, high - 1e-6, EVERY_DEG)
     u = np.clip(cycle.machine.way * (np.radians(degrees) - first), 0.0, cycle.machine.cycle_rad)
-    inertia, work = cycle.machine.inertia(u)[0], cycle.energy(u) - cycle.course.at_borders[0]
+    inertia, work = cycle.machine.inertia(u)[0], cycle.energy(u) - cycle.solution.at_borders[0]
     axes.plot(inertia, work, "o", color=QUIET, markersize=2.0, zorder=3)
     for deg, x, y in zip(degrees, inertia, work, strict=True):
         look: dict[str, Any] = {"size": TINY, "color": QUIET, "va": "center", "bbox": PAPER}
@@ -89,5 +89,5 @@ def _angles(of: Regulated, axes: Axes) -> None:
 
 def _origin(cycle: SteadyCycle) -> str:
     """Where the tangents meet, in the numbers of the axes."""
-    inertia = readable(0.0 - cycle.course.flywheel, 5)
-    return f"{inertia} kg m² and {readable(-float(cycle.course.at_borders[0]), 5)} J"
+    inertia = readable(0.0 - cycle.solution.flywheel, 5)
+    return f"{inertia} kg m² and {readable(-float(cycle.solution.at_borders[0]), 5)} J"

@@ -40,7 +40,7 @@ def draw(of: Regulated) -> Figure:
     figure, axes = sheet(COLUMN_IN, shape, title, entries, notes)
     for k, one in enumerate(axes):
         if bare is not None and (rows == 1 or k == 0):
-            of.plot(one, bare.course.speed_at(of.series.turned), **OTHER)
+            of.plot(one, bare.solution.speed_at(of.series.turned), **OTHER)
         of.plot(one, of.series.speed, **CURVE)
         one.axhline(cycle.mean_rad_s, **MEAN)  # type: ignore[arg-type]  # as above
         at = np.array([cycle.fastest, cycle.slowest])

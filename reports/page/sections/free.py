@@ -30,22 +30,22 @@ ERRORS = {
 def build(report: Report, room: int = BUDGET) -> Section | None:
     """The section; None where everything was driven. ``room`` is that of its drawings and curves
     [characters]."""
-    let_go = report.free_lines
-    if not let_go:
+    lines = report.free_lines
+    if not lines:
         return None
-    names = list(dict.fromkeys(line.scene for line in let_go))
-    sizes = sizes_of(report, let_go)
-    held = steps_held(sizes, let_go, room)
+    names = list(dict.fromkeys(line.scene for line in lines))
+    sizes = sizes_of(report, lines)
+    held = steps_held(sizes, lines, room)
     fits = {name: _fits(report, name) for name in ERRORS if name in report.cells}
     return Section(
         anchor="free",
         title="Let go",
         template="free.html",
         words={
-            "rows": [row for line in let_go for row in _rows(report, line)],
+            "rows": [row for line in lines for row in _rows(report, line)],
             "scenes": [_words(name, report.scenes[name]) for name in names],
             "errors": {name: ERRORS[name][0] for name in fits},
-            "thinned": held < max(len(line.cells) for line in let_go),
+            "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
         embedded={
@@ -55,7 +55,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             ],
             "fits": fits,
             "units": {name: ERRORS[name][1] for name in fits},
-            "judged": sorted({report.look(x).number for x in let_go if x.cells["gated"].all()}),
+            "judged": sorted({report.look(x).number for x in lines if x.cells["gated"].all()}),
         },
         scripts=SCRIPTS,
         plotly=True,

@@ -26,11 +26,11 @@ def driver_by_steps(free: MachineMotion, time_s: Array) -> Array:
     By `scipy`'s DOP853 in the charts of ``free``, which may not have chosen them wrong without
     being seen, as every body is held to the multibody form. It stops where what acts is not smooth.
     """
-    legs = list(free.track.legs())
-    starts = [float(free.track.starts_s[first]) for _, first, _ in legs]
+    legs = list(free.history.legs())
+    starts = [float(free.history.starts_s[first]) for _, first, _ in legs]
     borders = np.unique([*starts, *free.edges_s, free.until_s])
     chart, found = legs[0][0], np.empty((2, len(time_s)))
-    now, state = 0.0, np.array([float(row[0]) for row in free.track.state(np.zeros(1))[:2]])
+    now, state = 0.0, np.array([float(row[0]) for row in free.history.state(np.zeros(1))[:2]])
     for end in np.unique([*borders[borders > 0.0], *time_s]):
         for leg, begin in zip(legs, starts, strict=True):
             if begin == now and leg[0] is not chart:
@@ -47,7 +47,7 @@ def driver_by_steps(free: MachineMotion, time_s: Array) -> Array:
 def _stretch(free: MachineMotion, chart: Chart, now: float, end: float, state: Array) -> Array:
     """The coordinate and its rate at the end of a stretch without kinks inside."""
     machine, aside = Machine(free.scene, chart), ASIDE * (end - now)
-    wound = dict(free.track.windows[int(free.track.windows_at(np.array([now]))[0])].wound)
+    wound = dict(free.history.windows[int(free.history.windows_at(np.array([now]))[0])].wound)
 
     def rates(t: float, y: Array) -> tuple[float, float]:
         inside = min(max(t, now + aside), end - aside)

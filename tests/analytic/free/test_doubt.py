@@ -8,20 +8,20 @@ import pytest
 from analytic.free.doubt import _moved
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
-from tests.analytic.free.let_go import past_limits
+from tests.analytic.free.mechanisms import past_limits
 
 
 def test_a_state_is_the_same_in_the_chart_of_another_limit() -> None:
     """Its acceleration too, so that no difference of that goes unseen where charts change."""
     free = release(past_limits(), 1.0)
     assert isinstance(free, MachineMotion)
-    track = free.track
-    changes = [first for _, first, _ in track.legs()][1:]
+    history = free.history
+    changes = [first for _, first, _ in history.legs()][1:]
     assert changes
     for k in changes:
-        before, after = track.windows[k - 1], track.windows[k]
+        before, after = history.windows[k - 1], history.windows[k]
         share = (before.end_s - before.start_s) / before.long_s
-        left = np.array(track.at(np.array([k - 1]), np.array([share])))
-        entered = np.array(track.at(np.array([k]), np.zeros(1)))
+        left = np.array(history.at(np.array([k - 1]), np.array([share])))
+        entered = np.array(history.at(np.array([k]), np.zeros(1)))
         moved = _moved(before.chart, after.chart, left, entered[0])
         assert moved[:, 0] == pytest.approx(entered[:, 0], rel=1e-9)

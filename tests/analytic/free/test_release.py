@@ -27,7 +27,7 @@ from models.springs import LineSpring, PinSpring
 from models.staircase import Staircase
 from models.start import Start
 from models.waves import Pulse
-from tests.analytic.free.let_go import fourbar, past_limits, slider_crank, weightless
+from tests.analytic.free.mechanisms import fourbar, past_limits, slider_crank, weightless
 from tests.analytic.free.second_method import driver_by_steps
 
 
@@ -72,7 +72,7 @@ def test_loads_with_kinks_are_integrated_from_kink_to_kink(name: str) -> None:
     scene, least = KINKED[name]
     free = release(scene, 0.4)
     assert len(free.edges_s) >= least
-    assert {*free.edges_s} <= {window.end_s for window in free.track.windows}
+    assert {*free.edges_s} <= {window.end_s for window in free.history.windows}
     if name == "table over the angle":
         at = np.remainder(free.law.at(np.array(free.edges_s))[0], math.tau)
         places = np.array(TABLE.places)

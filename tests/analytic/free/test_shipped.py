@@ -9,7 +9,7 @@ from analytic.free.machine_motion import MachineMotion
 from analytic.free.period import period
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.files import load_scene, shipped
 from models.window_chain import Chain

@@ -9,7 +9,7 @@ import pytest
 
 from analytic.multibody.baumgarte_table import STABLE, baumgarte_table
 from analytic.multibody.multibody_motion import Baumgarte
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from models.errors import CrankcheckError
 from tests.analytic.multibody.scenes import THESIS, scene
 

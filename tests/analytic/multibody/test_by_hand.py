@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from analytic.multibody.release import release_multibody, start_state
+from analytic.multibody.release_multibody import release_multibody, start_state
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,
     PARALLELOGRAM,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from analytic.multibody.release import release_multibody, start_state
+from analytic.multibody.release_multibody import release_multibody, start_state
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.friction import ConstantFriction

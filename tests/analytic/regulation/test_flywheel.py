@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
+from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.let_go import let_go, with_flywheel
 from analytic.regulation.steady_cycle import steady_cycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
@@ -88,7 +88,7 @@ def test_with_a_motor_the_flywheel_is_that_of_its_own_cycle() -> None:
 
 def test_a_machine_is_let_go_in_its_cycle() -> None:
     found = wanted(load_scene("compressor"), 0.02)
-    scene = let_go(found.cycle, cycles=3.0)
+    scene = cycle_scene(found.cycle, cycles=3.0)
     law = scene.driver.law
     assert isinstance(law, Released)
     assert law.duration_s == pytest.approx(3.0 * found.cycle.period_s)

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from analytic.check.moved_scene import mirrored
 from analytic.forces.kinetostatics import forces
-from analytic.regulation.periodic_energy import StallError
+from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Constant, Polynomial, Sine, Tabulated
@@ -95,7 +95,7 @@ def test_a_pushed_yoke_by_hand() -> None:
     """F = 40 N, r = 0.2 m: T = T0 + 8 (cos u - 1), J = 0.5 + 0.12 sin^2 u. w^2 = 2 T / J has
     its largest value at 0 and its smallest beyond 90 deg, where T' J = T J'."""
     found = cycle(yoke(40.0))
-    start = found.course.at_borders[0]
+    start = found.solution.at_borders[0]
     u = np.linspace(0.0, math.tau, 50001)
     square = 2.0 * (start + 8.0 * (np.cos(u) - 1.0)) / (0.5 + 0.12 * np.sin(u) ** 2)
     assert found.extreme_speeds_rad_s[0] ** 2 == pytest.approx(square.max(), rel=1e-8)
@@ -108,19 +108,19 @@ def test_a_pushed_yoke_by_hand() -> None:
 def integrated(found: SteadyCycle) -> tuple[float, float]:
     """The energy after a cycle over that at its start, less 1, and the time of it, by DOP853 over
     the angle."""
-    machine, course = found.machine, found.course
+    machine, solution = found.machine, found.solution
 
     def rates(u: float, state: np.ndarray) -> tuple[float, float]:
         at = np.array([u])
-        inertia = machine.inertia(at)[0] + course.flywheel
+        inertia = machine.inertia(at)[0] + solution.flywheel
         speed = np.sqrt(2.0 * state[:1] / inertia)
-        return float((machine.torque(at, speed) + course.drive)[0]), float(1.0 / speed[0])
+        return float((machine.torque(at, speed) + solution.drive)[0]), float(1.0 / speed[0])
 
     done = solve_ivp(
-        rates, (0.0, machine.cycle_rad), (course.at_borders[0], 0.0),
+        rates, (0.0, machine.cycle_rad), (solution.at_borders[0], 0.0),
         method="DOP853", rtol=1e-7, atol=1e-12, max_step=0.2,
     )  # fmt: skip
-    return float(done.y[0, -1] / course.at_borders[0] - 1.0), float(done.y[1, -1])
+    return float(done.y[0, -1] / solution.at_borders[0] - 1.0), float(done.y[1, -1])
 
 
 def driven_by_a_motor() -> Scene:

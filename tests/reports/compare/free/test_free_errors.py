@@ -82,7 +82,7 @@ def test_errors_at_the_same_time_are_over_the_growth_of_their_own_time(
     truth: FreeTruth, done: Run
 ) -> None:
     growing = replace(
-        truth, let_go=_Steeper(truth.let_go, lambda time_s: 1.0 + 1e3 * time_s), known_rad=1.0
+        truth, free=_Steeper(truth.free, lambda time_s: 1.0 + 1e3 * time_s), known_rad=1.0
     )
     plain, over = (found(each, moved(done, late(truth, 2e-4))) for each in (truth, growing))
     assert over.free
@@ -100,7 +100,7 @@ def test_errors_at_the_same_time_are_over_the_growth_of_their_own_time(
 def test_samples_that_the_truth_does_not_know_well_enough_are_left_out_and_counted(
     truth: FreeTruth, done: Run
 ) -> None:
-    unsure = replace(truth, let_go=_Unsure(truth.let_go, from_s=0.1))
+    unsure = replace(truth, free=_Unsure(truth.free, from_s=0.1))
     errors = found(unsure, done)
     assert errors.free
     assert errors.free.until_s == pytest.approx(0.099)

@@ -38,7 +38,7 @@ def test_what_follows_a_table_that_ends_with_the_run_is_as_if_it_went_on(
 ) -> None:
     ends = free_truth(pushed(name, link), STEPS, DT_S)
     goes_on = free_truth(pushed(name, link, (2.0 * END_S, -0.1)), STEPS, DT_S)
-    assert ends.let_go.until_s == END_S < goes_on.let_go.until_s
+    assert ends.free.until_s == END_S < goes_on.free.until_s
     time_s = DT_S * (np.arange(STEPS + 1.0) + 0.5)  # as some engines have their velocities
     own, other = (truth.at(time_s).links[link] for truth in (ends, goes_on))
     np.testing.assert_allclose(own.omega, other.omega, rtol=0, atol=1e-7)
@@ -63,7 +63,7 @@ def test_what_is_drawn_is_what_was_compared() -> None:
         replace(load_scene("fourbar-swing"), loads={"push": Load("push", "crank", None, LEVEL)})
         for _ in range(2)
     )
-    motion = free_truth(scene, STEPS, DT_S).let_go
+    motion = free_truth(scene, STEPS, DT_S).free
     assert kept_motion(same, END_S * (1.0 + 1e-15)) is motion
     time_s = np.linspace(0.0, END_S, 5)
     theta = true_motion(same, time_s).links["crank"].theta

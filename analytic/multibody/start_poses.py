@@ -11,7 +11,7 @@ from models.joints import local_point, sliding_angle, sliding_body, turned
 from models.scene import GROUND, Point
 
 
-class Placing:
+class StartPoses:
     """Bodies placed one beside the other by the angles that are known."""
 
     def __init__(self, assembly: Assembly) -> None:

@@ -13,7 +13,7 @@ from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from analytic.multibody.assembly import Assembly, Configuration
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
-from analytic.multibody.release import release_multibody
+from analytic.multibody.release_multibody import release_multibody
 from analytic.multibody.rigid import RigidBodies
 from models.array import Array
 from models.characteristics import Tabulated
@@ -243,7 +243,7 @@ def test_within_a_passage_the_motion_is_smooth() -> None:
     turning = ChainMotion(Chain(1))
     near = turning.motion(np.zeros(1)).state()
     free = release_multibody(Chain(1).scene(), 0.75, Projection(1e-11), near=near)
-    (passage,) = free._course.passages
+    (passage,) = free._history.passages
     flat = np.linspace(passage.begin_s, passage.end_s, 9)
     theta, _, alpha = turning.at(flat)
     assert np.sin(theta).min() < 0.0 < np.sin(theta).max()

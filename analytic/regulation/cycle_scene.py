@@ -22,12 +22,12 @@ def with_flywheel(scene: Scene, inertia_kg_m2: float) -> Scene:
     return replace(scene, links={**scene.links, link.name: heavier})
 
 
-def let_go(cycle: SteadyCycle, cycles: float = 5.0, *, flywheel: bool = True) -> Scene:
+def cycle_scene(cycle: SteadyCycle, cycles: float = 5.0, *, flywheel: bool = True) -> Scene:
     """The scene of a cycle, with its flywheel if asked for, let go at its start with the speed that
     the cycle has there, for so many cycles; the constant torque of the drive is a load of it."""
     machine = cycle.machine
-    scene = with_flywheel(machine.scene, cycle.course.flywheel) if flywheel else machine.scene
-    start = machine.way * float(cycle.course.speed_at(np.zeros(1))[0])
+    scene = with_flywheel(machine.scene, cycle.solution.flywheel) if flywheel else machine.scene
+    start = machine.way * float(cycle.solution.speed_at(np.zeros(1))[0])
     law = Released(machine.start_rad, start, cycles * cycle.period_s)
     loads = dict(scene.loads)
     if cycle.drive_n_m:

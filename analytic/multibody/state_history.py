@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from analytic.multibody.passage import Passage
+from analytic.multibody.singular_passage import SingularPassage
 from models.array import Array
 
 
 @dataclass(frozen=True)
-class Course:
+class StateHistory:
     """The ``state`` at times [s], (2 n + 1, T); ``passages`` are the change points on the way."""
 
     state: Callable[[Array], Array]
     steps: int
-    passages: tuple[Passage, ...] = ()
+    passages: tuple[SingularPassage, ...] = ()

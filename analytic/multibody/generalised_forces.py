@@ -18,7 +18,7 @@ Strokes = Mapping[str, bool]
 
 
 @dataclass(frozen=True)
-class Stretch:
+class SpringDeflection:
     """The q of a spring [m or rad], its rate, and its derivatives by the coordinates, (T,), (T,)
     and (T, n)."""
 
@@ -38,7 +38,7 @@ class Slide:
     gradient: Array
 
 
-class Pushes:
+class GeneralisedForces:
     """What acts on an assembly from outside or between its bodies, but for weights.
 
     ``turns`` are the whole turns by which the angle of each spring in a pin is ahead of that
@@ -72,10 +72,10 @@ class Pushes:
                 angle = angle + now.place[:, self.assembly.frames[load.body], 2]
             force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
             right += (force[:, None] @ now.gradient[:, marker, :2])[:, 0]
-        for stretch in self.stretches(now):
-            spring = stretch.spring
-            pull = spring.rate * (stretch.q - spring.free) + spring.damping * stretch.rate
-            right -= pull[:, None] * stretch.gradient
+        for deflection in self.deflections(now):
+            spring = deflection.spring
+            pull = spring.rate * (deflection.q - spring.free) + spring.damping * deflection.rate
+            right -= pull[:, None] * deflection.gradient
         return right
 
     def _marker(self, load: Load) -> int:
@@ -120,7 +120,7 @@ class Pushes:
         speed = (gradient * now.rates).sum(axis=1)
         return Slide((along * away).sum(axis=1), speed, gradient)
 
-    def stretches(self, now: Configuration) -> Iterator[Stretch]:
+    def deflections(self, now: Configuration) -> Iterator[SpringDeflection]:
         """How far every spring is stretched."""
         for spring in self.scene.springs.values():
             if isinstance(spring, LineSpring):
@@ -129,16 +129,16 @@ class Pushes:
                 first, second = (self.assembly.frames[body] for body in spring.bodies)
                 gradient = now.gradient[:, second, 2] - now.gradient[:, first, 2]
                 q = self._turned(spring, now) - math.tau * self._turns[spring.name]
-                yield Stretch(spring, q, (gradient * now.rates).sum(axis=1), gradient)
+                yield SpringDeflection(spring, q, (gradient * now.rates).sum(axis=1), gradient)
             else:
                 slide = self.slide(spring.slider, now)
-                yield Stretch(spring, slide.displacement, slide.speed, slide.gradient)
+                yield SpringDeflection(spring, slide.displacement, slide.speed, slide.gradient)
 
     def _turned(self, spring: PinSpring, now: Configuration) -> Array:
         first, second = (now.place[:, self.assembly.frames[body], 2] for body in spring.bodies)
         return np.asarray(second - first)
 
-    def _line(self, spring: LineSpring, now: Configuration) -> Stretch:
+    def _line(self, spring: LineSpring, now: Configuration) -> SpringDeflection:
         a, b = (self.assembly.carriers[point][1] for point in spring.points)
         way = now.place[:, b, :2] - now.place[:, a, :2]
         length = np.hypot(way[:, 0], way[:, 1])
@@ -146,4 +146,4 @@ class Pushes:
         along = way / np.where(length > 0.0, length, 1.0)[:, None]
         drawn = now.gradient[:, b, :2] - now.gradient[:, a, :2]
         gradient = (along[:, None] @ drawn)[:, 0]
-        return Stretch(spring, length, (gradient * now.rates).sum(axis=1), gradient)
+        return SpringDeflection(spring, length, (gradient * now.rates).sum(axis=1), gradient)

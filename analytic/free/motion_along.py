@@ -10,8 +10,8 @@ from analytic.change_points.find import passed
 from analytic.change_points.smooth import Index
 from analytic.dyads.plane import AngleError
 from analytic.free.chart import Chart
+from analytic.free.coordinate_history import CoordinateHistory
 from analytic.free.doubt import Doubt
-from analytic.free.track import Track
 from analytic.kinematics import CHUNK, prepared
 from analytic.result import MotionArrays, Selection
 from analytic.turns.count import Counter
@@ -20,17 +20,19 @@ from models.motion import Bound, Crossing, Motion
 from models.scene import Scene
 
 
-def motion_along(scene: Scene, track: Track, doubt: Doubt | None, time_s: Array) -> Motion:
+def motion_along(
+    scene: Scene, history: CoordinateHistory, doubt: Doubt | None, time_s: Array
+) -> Motion:
     """The motion of a scene at times [s], (T,), in any order; certified where the doubt is given
     that there is about its coordinate."""
     order = np.argsort(time_s, kind="stable")
     ordered = time_s[order]
-    state = track.state(ordered)
+    state = history.state(ordered)
     errors = None if doubt is None else doubt.at(ordered)
     wanted = Selection.of(scene, None, None, None)
     result = MotionArrays(wanted, ordered, prepared(scene).steps, bound=doubt is not None)
-    window, crossings = track.windows_at(ordered), dict[Crossing, None]()
-    for chart, first, last in track.legs():
+    window, crossings = history.windows_at(ordered), dict[Crossing, None]()
+    for chart, first, last in history.legs():
         begin, end = np.searchsorted(window, [first, last])
         for at in range(begin, end, CHUNK):
             span = slice(at, min(at + CHUNK, end))
@@ -39,7 +41,7 @@ def motion_along(scene: Scene, track: Track, doubt: Doubt | None, time_s: Array)
             chunk = chart.chunk(u, v, a, error)
             result.write(span, chunk, LegCounter(chart, u, chunk.theta))
         if begin < end:
-            start = track.windows[first].u @ (-1.0) ** np.arange(len(track.windows[first].u))
+            start = history.windows[first].u @ (-1.0) ** np.arange(len(history.windows[first].u))
             driver = chart.driver(np.append(state[0][begin:end], start))[0]
             found = passed(prepared(chart.arc.scene).passages, driver.min(), driver.max())
             crossings.update(dict.fromkeys(found))

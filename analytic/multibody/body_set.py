@@ -14,7 +14,7 @@ from models.array import Array
 
 
 @dataclass(frozen=True)
-class Marked:
+class Markers:
     """K markers at T samples: x, y [m] and angle [rad] (T, K, 3), their derivatives by the n
     coordinates (T, K, 3, n), and their accelerations where the q'' are 0, (T, K, 3)."""
 
@@ -23,7 +23,7 @@ class Marked:
     drift: Array
 
 
-class Body(Protocol):
+class BodySet(Protocol):
     """One body, or several that are worked out together, with a slice of the coordinates: its own
     n, as its markers are its own K."""
 
@@ -31,7 +31,7 @@ class Body(Protocol):
     def size(self) -> int:
         """n."""
 
-    def mark(self, q: Array, rates: Array) -> Marked:
+    def mark(self, q: Array, rates: Array) -> Markers:
         """Its markers at coordinates and rates (T, n)."""
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:

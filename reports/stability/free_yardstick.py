@@ -25,7 +25,7 @@ LOOKS = 1001
 """Instants at which the largest kinetic energy is looked for."""
 
 
-def let_go(trial: Trial, run: Run) -> ErrorSeries:
+def free_series(trial: Trial, run: Run) -> ErrorSeries:
     """A run of a scene that loses no energy, beside its free motion.
 
     The error of place is the largest of three: that of phase and places at the same time, over the
@@ -39,7 +39,7 @@ def let_go(trial: Trial, run: Run) -> ErrorSeries:
     followed = int(np.searchsorted(motion.time_s, trial.followed_s * (1.0 + 1e-9), "right"))
     known = truth.beside(first_samples(run, followed))
     assert isinstance(known, FreeBeside)
-    whole = FreeBeside(truth, run, motion, whole_run=run, let_go=truth.let_go)
+    whole = FreeBeside(truth, run, motion, whole_run=run, free=truth.free)
     with np.errstate(all="ignore"):  # what has come apart is judged, not warned
         place = np.maximum(_geometry(whole), _energy(whole))
         place[: known.motion.time_s.size] = np.maximum(
@@ -62,7 +62,7 @@ def let_go(trial: Trial, run: Run) -> ErrorSeries:
     )
 
 
-def let_go_start(trial: Trial) -> State:
+def free_start(trial: Trial) -> State:
     """The state at time 0, with the accelerations that the masses and forces give."""
     return _truth(trial).start
 
@@ -107,8 +107,8 @@ def _energy(whole: FreeBeside) -> Array:
     if energy is None:
         return np.zeros_like(time_s)
     means = window_means(whole.scene, time_s, energy.total_j)
-    instants = np.linspace(0.0, whole.let_go.until_s, LOOKS)
-    largest = float(np.max(whole.let_go.energy(instants).kinetic))
+    instants = np.linspace(0.0, whole.free.until_s, LOOKS)
+    largest = float(np.max(whole.free.energy(instants).kinetic))
     if not np.isfinite(energy.total_j).all():
         return np.full_like(time_s, np.inf)
     whiles = np.flatnonzero(np.isfinite(means))  # none reaches beyond the log

@@ -33,7 +33,7 @@ OFF = 1e-9
 
 
 @dataclass(frozen=True)
-class Passage:
+class SingularPassage:
     """From ``begin_s`` to ``end_s`` through a change point at ``at_s`` [s]."""
 
     begin_s: float
@@ -56,7 +56,7 @@ def passage_ahead(
     clear_s: float,
     now_s: float,
     smallest: float,
-) -> Passage | None:
+) -> SingularPassage | None:
     """The passage that begins about now, if the motion goes through a change point.
 
     Parameters
@@ -89,7 +89,7 @@ def passage_ahead(
     states = solution(times)
     domain = [begin_s - window_s, begin_s]
     course = tuple(Chebyshev.fit(times, own, DEGREE, domain=domain) for own in states)
-    passage = Passage(begin_s, at_s, at_s + half_s, course)
+    passage = SingularPassage(begin_s, at_s, at_s + half_s, course)
     return passage if _closes(dynamics, passage) else None
 
 
@@ -100,7 +100,7 @@ def smallest_singular(dynamics: Dynamics, q: Array) -> float:
     return float(np.linalg.svd(rows, compute_uv=False)[dynamics.rank - 1])
 
 
-def _closes(dynamics: Dynamics, passage: Passage) -> bool:
+def _closes(dynamics: Dynamics, passage: SingularPassage) -> bool:
     """Whether the other end is on the constraints."""
     n, units = dynamics.assembly.size, dynamics.assembly.units
     state = passage.state(np.array([passage.end_s]))[:, 0]

@@ -7,9 +7,9 @@ import numpy as np
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import Method, MultibodyMotion, Projection
 from analytic.multibody.outset import Outset
-from analytic.multibody.pushes import Pushes
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import State
@@ -73,7 +73,7 @@ def _ready(scene: Scene, near: State | None) -> tuple[Dynamics, Array, Array]:
     outset = Outset(assembly)
     q, rates = outset.find(near)
     free = outset.freedoms(q)
-    dynamics = Dynamics(assembly, Pushes(assembly, q), assembly.size - len(free))
+    dynamics = Dynamics(assembly, GeneralisedForces(assembly, q), assembly.size - len(free))
     _check_start(dynamics, q, free)
     return dynamics, q, rates
 

@@ -10,7 +10,7 @@ from models.array import Array
 
 
 @dataclass(frozen=True)
-class Energies:
+class EnergyBalance:
     """Energies [J], (T,): of motion; of weights, over the ground's origin, and springs; and the
     ``work`` since time 0 of all that does not keep it: loads, dampers, friction."""
 

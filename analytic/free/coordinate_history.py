@@ -42,7 +42,7 @@ class Window:
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class CoordinateHistory:
     """Windows one after the other, from time 0."""
 
     windows: tuple[Window, ...]

@@ -42,7 +42,7 @@ COUNTS = (24, 32, 48, 64, 96, 128, 192, 256)
 
 
 @dataclass(frozen=True, eq=False)
-class Limit:
+class LimitPosition:
     """The limit ``driver_rad`` of the driver in the assembly of ``scene``, in which the dyad
     ``dyad`` is stretched or folded. ``side`` is 1 where the driver's range, of ``length_rad``,
     ends there, -1 where it begins."""
@@ -180,7 +180,7 @@ class _Bare:
 class _Passing:
     """The passage of a dyad through a limit at coordinates ``u`` (T,)."""
 
-    limit: Limit
+    limit: LimitPosition
     u: Array
     rates: Rates
 

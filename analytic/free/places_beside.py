@@ -15,9 +15,9 @@ import numpy as np
 from analytic.change_points.smooth import Index
 from analytic.dyads.plane import STEADY
 from analytic.free.chart import Chart
-from analytic.free.limit import REACH
-from analytic.free.places import reordered
-from analytic.free.track import Track
+from analytic.free.coordinate_history import CoordinateHistory
+from analytic.free.limit_position import REACH
+from analytic.free.motion_along import reordered
 from analytic.kinematics import prepared, solve_driven
 from analytic.result import MotionArrays, Selection
 from models.array import Array
@@ -30,13 +30,13 @@ ROUNDS = 8
 """Of Gauss' and Newton's method for the coordinate."""
 
 
-def beside(scene: Scene, track: Track, logged: Motion) -> Motion:
+def places_beside(scene: Scene, history: CoordinateHistory, logged: Motion) -> Motion:
     """The positions of the reference, without rates and bounds, beside a run (T,)."""
     theta = logged.links[scene.driver.link].theta
     still = np.zeros_like(theta)
-    if track.windows[0].chart.limit is None:
+    if history.windows[0].chart.limit is None:
         return solve_driven(scene, theta, still, still, logged.time_s, bound=False)
-    charts = _charts(track)
+    charts = _charts(history)
     chosen, coordinate = np.zeros(len(theta), dtype=np.intp), np.zeros_like(theta)
     least = np.full(len(theta), np.inf)
     for k, chart in enumerate(charts):
@@ -47,10 +47,10 @@ def beside(scene: Scene, track: Track, logged: Motion) -> Motion:
     return _positions(scene, charts, chosen, coordinate, logged)
 
 
-def _charts(track: Track) -> list[Chart]:
+def _charts(history: CoordinateHistory) -> list[Chart]:
     """The charts of a motion, each once, however often it comes back to it."""
     charts: dict[tuple[float, tuple[tuple[str, int], ...]], Chart] = {}
-    for chart, _, _ in track.legs():
+    for chart, _, _ in history.legs():
         assert chart.limit is not None
         branch = tuple(sorted(chart.arc.scene.branch.items()))
         charts.setdefault((chart.limit.driver_rad, branch), chart)

@@ -36,7 +36,7 @@ class StallError(CrankcheckError):
 
 
 @dataclass(frozen=True)
-class Course:
+class PeriodicSolution:
     """The energy T [J] at the nodes (C, NODES) and borders (C + 1,) of cells, the torque M there
     and the constant one of the drive, D [N m]; ``gain`` is what a change of T at the start becomes
     in a cycle."""
@@ -74,7 +74,7 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Asked:
+class WantedSpeed:
     """``mean_rad_s``, a mean speed to be kept by a constant torque, or None for a machine left to
     its torques; ``extremes`` are the angles of the largest and the smallest speed, where known."""
 
@@ -83,23 +83,28 @@ class Asked:
 
 
 def repeated(
-    machine: TurningMachine, cells: AngleCells, flywheel: float, guess: Course | float, asked: Asked
-) -> Course:
-    """The course that the machine repeats.
+    machine: TurningMachine,
+    cells: AngleCells,
+    flywheel: float,
+    guess: PeriodicSolution | float,
+    wanted: WantedSpeed,
+) -> PeriodicSolution:
+    """The solution that the machine repeats.
 
-    ``guess`` is a speed [rad/s] to begin with, or a course, in cells of its own. Raises StallError
-    where the energy runs out on the way, CrankcheckError for tables of loads that end before.
+    ``guess`` is a speed [rad/s] to begin with, or a solution, in cells of its own. Raises
+    StallError where the energy runs out on the way, CrankcheckError for tables of loads that end
+    before.
     """
-    return _Newton(machine, cells, flywheel, asked).solved(guess)
+    return _Newton(machine, cells, flywheel, wanted).solved(guess)
 
 
 class _Newton:
-    """The steps towards a course that repeats."""
+    """The steps towards a solution that repeats."""
 
     def __init__(
-        self, machine: TurningMachine, cells: AngleCells, flywheel: float, asked: Asked
+        self, machine: TurningMachine, cells: AngleCells, flywheel: float, wanted: WantedSpeed
     ) -> None:
-        self.machine, self.cells, self.flywheel, self.asked = machine, cells, flywheel, asked
+        self.machine, self.cells, self.flywheel, self.wanted = machine, cells, flywheel, wanted
         self.inertia = machine.inertia(cells.nodes)[0] + flywheel
         self.at_borders = machine.inertia(cells.borders)[0] + flywheel
         self.steady = machine.steady_torque(cells.nodes)
@@ -110,18 +115,18 @@ class _Newton:
                 "no energy carries the machine on; give masses, or a flywheel"
             )
 
-    def solved(self, guess: Course | float) -> Course:
-        course = self._begun(guess)
+    def solved(self, guess: PeriodicSolution | float) -> PeriodicSolution:
+        solution = self._begun(guess)
         last = np.inf
         for _ in range(MOST_STEPS):
-            full = self._step(course)
+            full = self._step(solution)
             change = max(
-                float(np.max(np.abs(full.energy - course.energy))),
-                float(np.max(np.abs(full.at_borders - course.at_borders))),
-            ) / float(np.max(np.abs(course.energy)))
+                float(np.max(np.abs(full.energy - solution.energy))),
+                float(np.max(np.abs(full.at_borders - solution.at_borders))),
+            ) / float(np.max(np.abs(solution.energy)))
             least = min(
-                float(np.min(full.energy / course.energy)),
-                float(np.min(full.at_borders / course.at_borders)),
+                float(np.min(full.energy / solution.energy)),
+                float(np.min(full.at_borders / solution.at_borders)),
             )
             if least >= LEFT:
                 if change <= DONE or (change < 1e-9 and change >= 0.5 * last):
@@ -130,48 +135,52 @@ class _Newton:
                     break
                 last = change
             share = 1.0 if least >= LEFT else (1.0 - LEFT) / (1.0 - least)
-            course = self._mixed(course, full, share)
-        raise StallError(self._stalled(course))
+            solution = self._mixed(solution, full, share)
+        raise StallError(self._stalled(solution))
 
-    def _begun(self, guess: Course | float) -> Course:
+    def _begun(self, guess: PeriodicSolution | float) -> PeriodicSolution:
         """What the steps begin with."""
         if isinstance(guess, float):
             square = 0.5 * guess**2
-            return self._course(square * self.inertia, square * self.at_borders, 0.0, 1.0)
+            return self._solution(square * self.inertia, square * self.at_borders, 0.0, 1.0)
         nodes = self.cells.nodes
         energy = guess.energy_at(nodes.ravel()).reshape(nodes.shape)
-        return self._course(energy, guess.energy_at(self.cells.borders), guess.drive, guess.gain)
+        return self._solution(energy, guess.energy_at(self.cells.borders), guess.drive, guess.gain)
 
-    def _holds(self, course: Course) -> bool:
-        """Whether a course is one of a machine that goes on, at the speed that was asked for; the
+    def _holds(self, solution: PeriodicSolution) -> bool:
+        """Whether a solution is one of a machine that goes on, at the speed that was asked for; the
         steps may come to rest where it all but stops as well."""
-        (_, *high), (_, *low) = self._extremes(course)
+        (_, *high), (_, *low) = self._extremes(solution)
         fast, slow = (math.sqrt(2.0 * energy / inertia) for energy, inertia in (high, low))
-        mean = self.asked.mean_rad_s
+        mean = self.wanted.mean_rad_s
         return slow > RESTING * fast and (
             mean is None or abs(0.5 * (fast + slow) - mean) <= 1e-9 * mean
         )
 
-    def _course(self, energy: Array, at_borders: Array, drive: float, gain: float) -> Course:
+    def _solution(
+        self, energy: Array, at_borders: Array, drive: float, gain: float
+    ) -> PeriodicSolution:
         """With the torque at the nodes that goes with the energy. Raises CrankcheckError."""
         torque = self.steady
         if self.machine.is_rated:
             speed = np.sqrt(2.0 * energy / self.inertia)
             torque = torque + self.machine.rated_torque(self.cells.nodes, speed)
-        return Course(
+        return PeriodicSolution(
             self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
             energy, at_borders, torque, drive, gain,
         )  # fmt: skip
 
-    def _mixed(self, course: Course, full: Course, share: float) -> Course:
+    def _mixed(
+        self, solution: PeriodicSolution, full: PeriodicSolution, share: float
+    ) -> PeriodicSolution:
         """A share of the way; less of it where a table of a load would end."""
         why: CrankcheckError | None = None
         for _ in range(40):
             try:
-                return self._course(
-                    course.energy + share * (full.energy - course.energy),
-                    course.at_borders + share * (full.at_borders - course.at_borders),
-                    course.drive + share * (full.drive - course.drive),
+                return self._solution(
+                    solution.energy + share * (full.energy - solution.energy),
+                    solution.at_borders + share * (full.at_borders - solution.at_borders),
+                    solution.drive + share * (full.drive - solution.drive),
                     full.gain,
                 )
             except CrankcheckError as error:
@@ -179,19 +188,19 @@ class _Newton:
         assert why is not None
         raise why
 
-    def _slope(self, course: Course) -> Array:
+    def _slope(self, solution: PeriodicSolution) -> Array:
         """dM/dT at the nodes [1]."""
         if not self.machine.is_rated:
-            return np.zeros_like(course.energy)
-        speed, nodes = course.speed, self.cells.nodes
+            return np.zeros_like(solution.energy)
+        speed, nodes = solution.speed, self.cells.nodes
         low = self.machine.rated_torque(nodes, speed * (1.0 - NUDGE))
-        by_speed = (course.torque - self.steady - low) / (NUDGE * speed)
+        by_speed = (solution.torque - self.steady - low) / (NUDGE * speed)
         return np.asarray(by_speed / (self.inertia * speed))
 
-    def _step(self, course: Course) -> Course:
-        """The solution of the equation that is linear about a course."""
-        slope, wide = self._slope(course), self.cells.widths[:, None]
-        left = course.torque - slope * course.energy  # M = left + slope T
+    def _step(self, solution: PeriodicSolution) -> PeriodicSolution:
+        """The solution of the equation that is linear about a solution."""
+        slope, wide = self._slope(solution), self.cells.widths[:, None]
+        left = solution.torque - slope * solution.energy  # M = left + slope T
         matrix = np.eye(INSIDE.shape[0]) - wide[:, :, None] * INSIDE * slope[:, None, :]
         right = np.stack([np.ones_like(left), wide * (left @ INSIDE.T),
                           wide * (np.ones_like(left) @ INSIDE.T)], axis=2)  # fmt: skip
@@ -206,7 +215,7 @@ class _Newton:
         for k, row in enumerate(over):
             start[k + 1] = start[k] * (1.0 + row[0])
             start[k + 1, 1:] += row[1:]
-        first, drive = self._open(course, start, torques)
+        first, drive = self._open(solution, start, torques)
         known = np.array([first, 1.0, drive])
         borders = start @ known
         energy = within[:, :, 0] * borders[:-1, None] + within[:, :, 1] + drive * within[:, :, 2]
@@ -215,20 +224,22 @@ class _Newton:
             + torques[:, :, 1]
             + drive * (torques[:, :, 2] - 1.0)
         )
-        return Course(
+        return PeriodicSolution(
             self.machine, self.cells, self.flywheel, self.inertia, self.at_borders,
             energy, borders, torque, drive, float(start[-1, 0]),
         )  # fmt: skip
 
-    def _open(self, course: Course, start: Array, torques: Array) -> tuple[float, float]:
+    def _open(
+        self, solution: PeriodicSolution, start: Array, torques: Array
+    ) -> tuple[float, float]:
         """T at the start and D, from what is to be periodic, and the mean speed."""
         gain, gained, driven = start[-1]
-        mean = self.asked.mean_rad_s
+        mean = self.wanted.mean_rad_s
         if mean is None:
             return float(gained / (1.0 - gain)), 0.0
         periodic = np.array([gain - 1.0, driven])
         row, right = np.zeros(2), mean
-        for u, energy, inertia in self._extremes(course):
+        for u, energy, inertia in self._extremes(solution):
             speed = np.sqrt(2.0 * energy / inertia)
             weights = self._weights(u, start, torques)
             row += 0.5 * weights[[0, 2]] / (inertia * speed)
@@ -244,24 +255,24 @@ class _Newton:
         found[1:] += inner[1:]
         return np.asarray(found)
 
-    def _extremes(self, course: Course) -> list[tuple[float, float, float]]:
+    def _extremes(self, solution: PeriodicSolution) -> list[tuple[float, float, float]]:
         """Angle, energy and inertia where the speed is largest, and where smallest."""
-        if self.asked.extremes is not None:
-            u = np.array(self.asked.extremes)
-            energy, inertia = course.energy_at(u), course.inertia_at(u)
+        if self.wanted.extremes is not None:
+            u = np.array(self.wanted.extremes)
+            energy, inertia = solution.energy_at(u), solution.inertia_at(u)
         else:
             u = self.cells.nodes.ravel()
-            energy, inertia = course.energy.ravel(), self.inertia.ravel()
+            energy, inertia = solution.energy.ravel(), self.inertia.ravel()
             square = energy / inertia
             at = [int(np.argmax(square)), int(np.argmin(square))]
             u, energy, inertia = u[at], energy[at], inertia[at]
         return list(zip(u.tolist(), energy.tolist(), inertia.tolist(), strict=True))
 
-    def _stalled(self, course: Course) -> str:
+    def _stalled(self, solution: PeriodicSolution) -> str:
         """Where the energy runs out."""
-        scene, worst = self.machine.scene, int(np.argmin(course.energy / self.inertia))
+        scene, worst = self.machine.scene, int(np.argmin(solution.energy / self.inertia))
         where = np.degrees(self.machine.theta(self.cells.nodes.ravel()[worst])) % 360.0
-        mean = self.asked.mean_rad_s
+        mean = self.wanted.mean_rad_s
         of = "" if mean is None else f" with a mean speed of {mean:.6g} rad/s"
         return (
             f"{scene.name}: no steady cycle{of}: its masses hold too little energy, and it comes "
