@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.errors import SceneError
 from models.free_faults import faults_of_free_motion
 from models.friction import ConstantFriction, CoulombFriction, Friction
@@ -38,6 +38,7 @@ from models.schema import (
 from models.spring_tables import springs_of
 from models.staircase import Staircase
 from models.start_table import start_of
+from models.tabulated import Tabulated
 from models.waves import FourierSum, Pulse
 
 ROD_KG_PER_M = 1.0

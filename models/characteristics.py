@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
 from models.array import Array
-from models.interpolation import largest_near, slopes, spline
 
-Interpolation = Literal["linear", "pchip"]
 EPS = float(np.finfo(np.float64).eps)
-END = 1e-9
-"""By how much of its length a table may be left behind: a stroke ends where rounding has it."""
 
 
 class Characteristic(ABC):
@@ -44,6 +37,11 @@ class Characteristic(ABC):
     def kinks(self) -> tuple[float, ...]:
         """The places, within a period where it has one, in which it is not smooth."""
         return ()
+
+    @property
+    def repeats_after(self) -> float | None:
+        """Its period; None for one that goes on and never repeats."""
+        return None
 
     def kinks_between(self, first: float, last: float) -> Iterator[float]:
         """The places from ``first`` to ``last`` in which it is not smooth, in order, those of all
@@ -98,6 +96,10 @@ class Sine(Characteristic):
         if not self.period > 0.0:
             raise ValueError(f"found a period of {self.period:g}; give one above 0")
 
+    @property
+    def repeats_after(self) -> float | None:
+        return self.period
+
     def at(self, x: Array) -> Array:
         return np.asarray(self.amplitude * np.sin(math.tau / self.period * x + self.phase_rad))
 
@@ -151,168 +153,3 @@ class Polynomial(Characteristic):
             for j in range(len(c))
         )
         return Polynomial(tuple(moved))
-
-
-@dataclass(frozen=True)
-class Tabulated(Characteristic):
-    """Values at places; in between straight (``linear``) or cubics without overshoot (``pchip``).
-
-    With ``period`` it goes on for ever; the places then lie within one period, and where they fill
-    it the last value is the first. Without, there is nothing before its first place and after its
-    last.
-    """
-
-    places: tuple[float, ...]
-    values: tuple[float, ...]
-    interpolation: Interpolation = "linear"
-    period: float | None = None
-
-    def __post_init__(self) -> None:
-        if len(self.places) != len(self.values):
-            raise ValueError(
-                f"found {len(self.places)} places and {len(self.values)} values; give one each"
-            )
-        if len(self.places) < 2:
-            raise ValueError(f"found {len(self.places)} rows; a table needs two or more")
-        steps = np.diff(self.places)
-        if np.min(steps) <= 0.0:
-            k = int(np.argmin(steps > 0.0))
-            raise ValueError(
-                f"found {self.places[k + 1]:g} after {self.places[k]:g}; the places of a table "
-                "have to increase from row to row"
-            )
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-            steep = ~np.isfinite(np.diff(self.values) / steps)
-        if steep.any():
-            k = int(np.argmax(steep))
-            raise ValueError(
-                f"found {self.values[k]:g} and {self.values[k + 1]:g} in rows {steps[k]:.3g} "
-                "apart, a rise beyond all numbers; set the rows further apart"
-            )
-        if self.period is not None:
-            self._check_period(self.period)
-
-    def _check_period(self, period: float) -> None:
-        span = self.places[-1] - self.places[0]
-        if span > period * (1.0 + END):
-            raise ValueError(
-                f"found rows over {span:g}, more than the period, {period:g}; leave out what is "
-                "there twice, or give the period"
-            )
-        if span > period * (1.0 - END) and self.values[0] != self.values[-1]:
-            raise ValueError(
-                f"found {self.values[0]:g} in the first row and {self.values[-1]:g} in the last, "
-                "a period later; give them one value, or leave out the last row"
-            )
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        return self.places
-
-    def kinks_between(self, first: float, last: float) -> Iterator[float]:
-        if self.period is None:
-            yield from super().kinks_between(first, last)
-            return
-        closed = self.places[-1] - self.places[0] > self.period * (1.0 - END)
-        own = self.places[:-1] if closed else self.places
-        # A period more on both sides, as quotients round.
-        earliest = math.floor((first - own[0]) / self.period) - 1
-        latest = math.ceil((last - own[0]) / self.period) + 1
-        for turn in range(earliest, latest + 1):
-            repeated = (kink + turn * self.period for kink in own)
-            yield from (kink for kink in repeated if first <= kink <= last)
-
-    @cached_property  # asked for at every step of an engine
-    def _knots(self) -> tuple[Array, Array]:
-        """Places and values, those of a period closed by the first row of the next."""
-        x, y = np.array(self.places), np.array(self.values)
-        if self.period is not None and x[-1] - x[0] <= self.period * (1.0 - END):
-            x, y = np.append(x, x[0] + self.period), np.append(y, y[0])
-        return x, y
-
-    @cached_property  # as the knots
-    def _slopes(self) -> Array:
-        return slopes(*self._knots, closed=self.period is not None)
-
-    @cached_property  # as the knots
-    def _rows(self) -> tuple[list[float], list[float], list[float]]:
-        """Places, values and slopes, as numbers: those of an array are read ten times as slowly."""
-        places, values = self._knots
-        return places.tolist(), values.tolist(), self._slopes.tolist()
-
-    def at(self, x: Array) -> Array:
-        knots, values = self._knots
-        if self.period is None:
-            self._check_within(x)
-        x = np.clip(self._folded(x), knots[0], knots[-1])
-        if self.interpolation == "linear":
-            return np.interp(x, knots, values)
-        return spline(x, knots, values, self._slopes)
-
-    def at_one(self, x: float) -> float:
-        places, values, slope = self._rows
-        if self.period is None:
-            if not places[0] <= x <= places[-1]:
-                self._check_within(np.array([x]))
-        else:
-            x = self.places[0] + (x - self.places[0]) % self.period
-        x = min(max(x, places[0]), places[-1])
-        k = min(bisect_right(places, x), len(places) - 1) - 1
-        h, rise = places[k + 1] - places[k], values[k + 1] - values[k]
-        if self.interpolation == "linear":
-            return values[k + 1] if x == places[k + 1] else rise / h * (x - places[k]) + values[k]
-        t, d0, d1 = (x - places[k]) / h, h * slope[k], h * slope[k + 1]  # as `spline`
-        return values[k] + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
-
-    def _folded(self, x: Array) -> Array:
-        """``x`` without whole periods."""
-        if self.period is None:
-            return x
-        return np.asarray(self.places[0] + np.mod(x - self.places[0], self.period))
-
-    def nearest(self, x: float) -> float:
-        return x if self.period is not None else min(max(x, self.places[0]), self.places[-1])
-
-    def _check_within(self, x: Array) -> None:
-        first, last = self.places[0], self.places[-1]
-        slack = END * (last - first)
-        off = (x < first - slack) | (x > last + slack)
-        if off.any():
-            beyond = np.where(off, np.maximum(first - x, x - last), 0.0)
-            k = int(np.argmax(beyond))
-            raise ValueError(
-                f"the table goes from {first:.9g} to {last:.9g}, and {x[k]:.9g} is asked for, "
-                f"{beyond[k]:.3g} beyond; give it rows up to there"
-            )
-
-    def steepest(self, x: Array, by: Array | float) -> Array | float:
-        knots, values = self._knots
-        # A cubic without overshoot is nowhere steeper than three times its chord.
-        factor = 1.0 if self.interpolation == "linear" else 3.0
-        steep = factor * np.abs(np.diff(values) / np.diff(knots))
-        near = largest_near(knots, steep, self._folded(x), by)
-        if self.period is None:
-            return near
-        # Over the end of a period the next one begins.
-        folded = self._folded(x)
-        over = (folded - by <= knots[0]) | (folded + by >= knots[-1])
-        return np.where(over, np.max(steep), near)
-
-    def rounding(self, x: Array) -> Array | float:
-        knots, values = self._knots
-        sizes = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
-        # Whole periods are taken off the argument, and one is added to the first place.
-        reach = np.abs(x) + max(abs(self.places[0]), abs(self.places[-1])) + (self.period or 0.0)
-        moved = 4 * EPS * reach if self.period is not None else 0.0
-        size = largest_near(knots, sizes, self._folded(x), moved)
-        own = size * (16 * EPS if self.interpolation == "linear" else 128 * EPS)
-        return np.asarray(own + moved * self.steepest(x, moved))
-
-    def carried(self, size: float, *, stretch: float = 1.0, shift: float = 0.0) -> Tabulated:
-        rows = [
-            (stretch * place + shift, size * value)
-            for place, value in zip(self.places, self.values, strict=True)
-        ]
-        places, values = zip(*(rows if stretch > 0.0 else rows[::-1]), strict=True)
-        period = None if self.period is None else abs(stretch) * self.period
-        return Tabulated(places, values, self.interpolation, period)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from models.characteristics import Tabulated
 from models.released import Released
 from models.scene import Scene
+from models.tabulated import Tabulated
 
 SAME = 1e-9
 """Numbers that a file says twice, in degrees once and once in radians, agree to so much."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Constant, Polynomial, Sine
 from models.errors import CrankcheckError
 from models.load_tables import UNIT
 from models.loads import Load
 from models.staircase import Staircase
+from models.tabulated import Tabulated
 from models.waves import FourierSum, Pulse
 
 

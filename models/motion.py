@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
+
+import numpy as np
 
 from models.array import Array
 from models.forces import Forces
@@ -54,6 +56,15 @@ class Bound:
     points: Mapping[str, PointMotion]
     sliders: Mapping[str, SliderMotion]
 
+    @staticmethod
+    def joined(parts: Sequence[Bound]) -> Bound:
+        """Bounds of motions one after the other."""
+        return Bound(
+            _joined([part.links for part in parts]),
+            _joined([part.points for part in parts]),
+            _joined([part.sliders for part in parts]),
+        )
+
 
 @dataclass(frozen=True)
 class Crossing:
@@ -95,6 +106,30 @@ class Motion:
             self, links=links, points=points, sliders=_each(self.sliders, change), forces=forces
         )
 
+    @staticmethod
+    def joined(parts: Sequence[Motion]) -> Motion:
+        """Motions one after the other; what one of them lacks is left out."""
+        first = parts[0]
+        if len(parts) == 1:
+            return first
+        bounds = [part.bound for part in parts if part.bound]
+        forces = [part.forces for part in parts if part.forces]
+        whole = len(parts)
+        return Motion(
+            np.concatenate([part.time_s for part in parts]),
+            _joined([part.links for part in parts]),
+            _joined([part.points for part in parts]),
+            _joined([part.sliders for part in parts]),
+            {
+                dyad: np.concatenate([part.conditioning[dyad] for part in parts])
+                for dyad in first.conditioning
+                if all(dyad in part.conditioning for part in parts)
+            },
+            Bound.joined(bounds) if len(bounds) == whole else None,
+            tuple(dict.fromkeys(one for part in parts for one in part.crossings)),
+            Forces.joined(forces) if len(forces) == whole else None,
+        )
+
     def state(self, index: int = 0) -> State:
         """The sample ``index`` as a state."""
         return State(
@@ -119,6 +154,17 @@ def _each(
     return {
         name: type(body)(**{key: change(series) for key, series in vars(body).items()})
         for name, body in bodies.items()
+    }
+
+
+def _joined(parts: Sequence[Mapping[str, BodyMotion]]) -> dict[str, BodyMotion]:
+    """The series of bodies one after the other, of those that are in every part."""
+    return {
+        name: type(body)(
+            **{key: np.concatenate([vars(part[name])[key] for part in parts]) for key in vars(body)}
+        )
+        for name, body in parts[0].items()
+        if all(name in part for part in parts)
     }
 
 

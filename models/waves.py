@@ -69,6 +69,10 @@ class FourierSum(Characteristic):
                 "where there is none"
             )
 
+    @property
+    def repeats_after(self) -> float | None:
+        return self.period
+
     def _phases(self, x: Array) -> Array:
         orders = np.arange(1, len(self.cosines) + 1)
         return np.asarray(math.tau / self.period * orders * np.asarray(x)[..., None])

@@ -14,12 +14,7 @@ import numpy as np
 
 from analytic.free.machine import Machine
 from models.array import Array
-from models.characteristics import Characteristic, Tabulated
 from models.scene import Scene
-
-
-def _period(characteristic: Characteristic) -> float | None:
-    return characteristic.period if isinstance(characteristic, Tabulated) else None
 
 
 def heeds_direction(scene: Scene) -> bool:
@@ -96,5 +91,5 @@ def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
             assert sliding is not None
             x = sliding.s if load.over == "displacement" else sliding.speed
         kinks = np.array(load.characteristic.kinks)
-        rows.append(Kinked(whole(x), kinks, _period(load.characteristic)))
+        rows.append(Kinked(whole(x), kinks, load.characteristic.repeats_after))
     return rows

@@ -109,7 +109,7 @@ class MultibodyMotion:
                 np.zeros_like(some),
             )  # fmt: skip
             parts.append(replace(motion, forces=forces))
-        return _joined(parts)
+        return Motion.joined(parts)
 
     def outside(self, time_s: Array) -> Motion:
         """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
@@ -245,27 +245,3 @@ class MultibodyMotion:
                 far = self._integrated(*start, rough).state(time_s)[:n]
                 growth = np.maximum(growth, np.abs((far - near) / unit).max(axis=0) / NUDGE)
         return time_s, np.maximum.accumulate(growth)
-
-
-def _joined(parts: list[Motion]) -> Motion:
-    """Motions one after the other."""
-    if len(parts) == 1:
-        return parts[0]
-    first = parts[0]
-
-    def own(kind: str) -> dict[str, object]:
-        return {
-            name: type(body)(
-                *(
-                    np.concatenate([getattr(getattr(p, kind)[name], key) for p in parts])
-                    for key in vars(body)
-                )
-            )
-            for name, body in getattr(first, kind).items()
-        }
-
-    forces = type(first.forces).joined([p.forces for p in parts])  # type: ignore[union-attr,misc]
-    return Motion(
-        np.concatenate([p.time_s for p in parts]),
-        own("links"), own("points"), own("sliders"), forces=forces,  # type: ignore[arg-type]
-    )  # fmt: skip

@@ -11,7 +11,6 @@ import numpy as np
 from analytic.multibody.assembly import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
-from models.characteristics import Tabulated
 from models.loads import Load
 from models.scene import Scene
 
@@ -68,8 +67,7 @@ def _switches(forces: GeneralisedForces) -> Iterator[Switch]:
     for load in forces.scene.loads.values():
         kinks = load.characteristic.kinks
         if load.over != "time" and kinks:
-            own = load.characteristic
-            period = own.period if isinstance(own, Tabulated) else None
+            period = load.characteristic.repeats_after
             if period is not None and kinks[-1] - kinks[0] > period * (1.0 - 1e-9):
                 kinks = kinks[:-1]  # the first of the next period
             yield Switch(load, kinks, period, turning=False)

@@ -8,11 +8,12 @@ import numpy as np
 
 from analytic.forces.springs import spring_lengths
 from analytic.kinematics import reach, repeats_after, unit_chunk
-from models.characteristics import Constant, Tabulated
+from models.characteristics import Constant
 from models.errors import CrankcheckError, few
 from models.laws import ConstantSpeed
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 
 MOST_TURNS = 12
 """Of the mechanism's own cycle, within which that of the loads has to come round."""
@@ -80,13 +81,12 @@ def _period(scene: Scene, load: Load) -> float | None:
         )
     if load.over != "angle":
         return None
-    period: float | None = getattr(own, "period", None)
-    if period is None:
+    if own.repeats_after is None:
         key = "period_deg" if isinstance(own, Tabulated) else "a table or a sum of waves"
         raise CrankcheckError(
             f"{scene.name}: loads.{load.name} follows the angle and never repeats; give {key}"
         )
-    return period
+    return own.repeats_after
 
 
 def _check_springs(scene: Scene, whole_rad: float) -> None:

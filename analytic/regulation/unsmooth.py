@@ -84,8 +84,8 @@ def _slider(machine: TurningMachine, load: Load, what: str) -> Callable[[Array],
 
 def _rows(machine: TurningMachine, load: Load) -> Array:
     """Where the driver's angle is that of a row of a table that repeats."""
-    rows, period = np.array(load.characteristic.kinks), getattr(load.characteristic, "period", 0.0)
-    if not rows.size or not period:
+    rows, period = np.array(load.characteristic.kinks), load.characteristic.repeats_after
+    if not rows.size or period is None:
         return np.zeros(0)
     first = np.mod(machine.way * (rows - machine.start_rad), period)
     count = round(machine.cycle_rad / period)

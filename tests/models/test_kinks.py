@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from models.characteristics import Tabulated
 from models.staircase import Staircase
+from models.tabulated import Tabulated
 
 
 @pytest.mark.parametrize("last_row", [0.03, 0.05], ids=["open period", "closed period"])

@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.errors import CrankcheckError, SceneError
 from models.files import load_scene, parse_scene, shipped
 from models.interpolation import slopes, spline
 from models.loads import Load
 from models.scene_text import scene_text
 from models.staircase import Staircase
+from models.tabulated import Tabulated
 
 PRESS = """
 name = "press"

@@ -9,18 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from analytic.kinematics import reach
-from models.characteristics import (
-    Characteristic,
-    Constant,
-    Interpolation,
-    Polynomial,
-    Sine,
-    Tabulated,
-)
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.joints import block_name
 from models.laws import Accelerating, Oscillating
 from models.loads import Load, Over
 from models.scene import GROUND, Driver, Point, Scene
+from models.tabulated import Interpolation, Tabulated
 from tests.worlds.layouts import Layout
 from tests.worlds.strategies import FORMS, SWINGS, Designed, swinging, with_dyads
 

@@ -15,7 +15,6 @@ from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.kept_motion import kept_motion
-from reports.compare.free.motion_parts import one_after_another
 from reports.compare.free.some_samples import first_samples
 from reports.quantities.free import PHASE
 from sim.engine import Run
@@ -60,11 +59,11 @@ class FreeTruth(Truth):
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
             early = self.free.outside(time_s[time_s < 0.0], bound=self.bound)
-            return one_after_another(early, self.at(time_s[time_s >= 0.0]))
+            return Motion.joined([early, self.at(time_s[time_s >= 0.0])])
         after = time_s > self.free.until_s
         if after.any():
             late = self.free.outside(time_s[after], bound=self.bound)
-            return late if after.all() else one_after_another(self.at(time_s[~after]), late)
+            return late if after.all() else Motion.joined([self.at(time_s[~after]), late])
         return self.free.at(time_s, bound=self.bound)
 
     def with_forces_at(self, time_s: Array) -> Motion:

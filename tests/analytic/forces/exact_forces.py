@@ -15,11 +15,12 @@ import numpy as np
 from mpmath import matrix, mp, mpf
 
 from analytic.kinematics import solve
-from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.joints import block_name, local_point, sliding_body
 from models.loads import Load
 from models.scene import GROUND, Point, Scene, Slider
 from models.springs import PinSpring, SlideSpring, Spring
+from models.tabulated import Tabulated
 from tests.analytic.chain import Solved, law_at
 from tests.analytic.change_points.jets import Number
 

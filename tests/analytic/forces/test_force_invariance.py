@@ -16,11 +16,12 @@ import pytest
 from analytic.check import moved_scene
 from analytic.forces import kinetostatics
 from models.array import Array
-from models.characteristics import Characteristic, Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Characteristic, Constant, Polynomial, Sine
 from models.files import load_scene, shipped
 from models.forces import Forces
 from models.friction import ConstantFriction, CoulombFriction
 from models.scene import Scene
+from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, turn, unlocked
 from tests.worlds.loading import loaded
 from tests.worlds.other_way import sped_up

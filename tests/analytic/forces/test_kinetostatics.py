@@ -12,10 +12,11 @@ from analytic.check.moved_scene import moved, rotated
 from analytic.dyads.plane import Vec
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve, solve_driven
-from models.characteristics import Constant, Polynomial, Tabulated
+from models.characteristics import Constant, Polynomial
 from models.errors import CrankcheckError
 from models.files import load_scene, parse_scene
 from models.loads import Load
+from models.tabulated import Tabulated
 from tests.analytic.forces.beside import apart, series, turn
 from tests.worlds.loading import loaded
 

@@ -17,7 +17,7 @@ from analytic.free.period import period
 from analytic.free.release import release
 from analytic.kinematics import reach
 from models.array import Array
-from models.characteristics import Constant, Tabulated
+from models.characteristics import Constant
 from models.errors import CrankcheckError
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
@@ -26,6 +26,7 @@ from models.scene import Scene
 from models.springs import LineSpring, PinSpring
 from models.staircase import Staircase
 from models.start import Start
+from models.tabulated import Tabulated
 from models.waves import Pulse
 from tests.analytic.free.mechanisms import fourbar, past_limits, slider_crank, weightless
 from tests.analytic.free.second_method import driver_by_steps

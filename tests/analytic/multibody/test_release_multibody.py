@@ -16,11 +16,11 @@ from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release_multibody import release_multibody
 from analytic.multibody.rigid import RigidBodies
 from models.array import Array
-from models.characteristics import Tabulated
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 from models.window_chain import Chain
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,

@@ -14,7 +14,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
 from analytic.regulation.turning_machine import TurningMachine
-from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Constant, Polynomial, Sine
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.friction import ConstantFriction, CoulombFriction
@@ -22,6 +22,8 @@ from models.laws import Accelerating, ConstantSpeed
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring
 from models.staircase import Staircase
+from models.tabulated import Tabulated
+from models.waves import Pulse
 from tests.analytic.regulation.worked import shaft, yoke
 
 
@@ -230,6 +232,7 @@ REFUSED = {
     "time": (shaft({"pull": (Sine(3.0, 1.0), "time")}), "loads.pull follows time"),
     "steps": (shaft({"pull": (Staircase((1.0,), (3.0,)), "time")}), "loads.pull follows time"),
     "no period": (shaft({"pull": (Polynomial((1.0, 1.0)), "angle")}), "never repeats"),
+    "one pulse": (shaft({"pull": (Pulse(1.0, 3.0), "angle")}), "never repeats"),
     "no common cycle": (shaft(TWO), "repeat after 114.592 deg, 171.887 deg"),
     "a wound spring": (replace(shaft({}), springs={"main": SPRUNG}),
                        "springs.main is wound up by 360 deg"),

@@ -8,11 +8,12 @@ import numpy as np
 
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
-from models.characteristics import Constant, Tabulated
+from models.characteristics import Constant
 from models.files import load_scene
 from models.friction import ConstantFriction
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.compare.jumps import NEAR, near_jumps
 
 SLIDER = load_scene("slider-crank-offset")

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Constant, Polynomial, Sine
 from models.files import load_scene
 from models.loads import Load
 from models.motion import Motion
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.compare.loading import inertia_share, load_slopes, loading
 
 SLIDER = load_scene("slider-crank-offset")

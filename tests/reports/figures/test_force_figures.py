@@ -11,12 +11,12 @@ import pytest
 from matplotlib.transforms import Bbox
 
 from analytic.forces.kinetostatics import forces
-from models.characteristics import Tabulated
 from models.files import load_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.laws import ConstantSpeed
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.figures.forces.all_figures import FORCE_FIGURES
 from reports.figures.forces.force_turn import force_turn
 from reports.figures.forces.torque import mean_torque

@@ -14,13 +14,14 @@ import pytest
 from analytic.forces import kinetostatics
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Constant, Polynomial, Sine
 from models.errors import EngineError
 from models.files import load_scene, shipped
 from models.forces import Forces
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.contract.clauses.reactions import named
 from sim.engine import Drive, Log, Settings
 from sim.exudyn.engine import ENGINE

@@ -11,11 +11,12 @@ import pytest
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
 from models.array import Array
-from models.characteristics import Characteristic, Polynomial, Sine, Tabulated
+from models.characteristics import Characteristic, Polynomial, Sine
 from models.files import load_scene
 from models.loads import Load
 from models.scene import Scene
 from models.staircase import Staircase
+from models.tabulated import Tabulated
 from models.waves import Pulse
 from models.window_chain import Chain
 from sim.mujoco.load_stages import LoadStages, stage_sizes

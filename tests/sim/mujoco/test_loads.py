@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from analytic.kinematics import solve
-from models.characteristics import Constant, Sine, Tabulated
+from models.characteristics import Constant, Sine
 from models.errors import EngineError
 from models.files import load_scene
 from models.joints import block_name
 from models.loads import Load
 from models.mjcf import build
 from models.scene import Scene
+from models.tabulated import Tabulated
 from sim.run import run
 from tests.sim.mujoco.test_reactions import acting, opened, worst_of
 from tests.worlds.loading import loaded_mechanism

@@ -14,7 +14,7 @@ from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.kinematics import solve, solve_driven
 from models.array import Array
-from models.characteristics import Constant, Polynomial, Sine, Tabulated
+from models.characteristics import Constant, Polynomial, Sine
 from models.errors import EngineError
 from models.files import load_scene
 from models.loads import Load
@@ -23,6 +23,7 @@ from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from models.staircase import Staircase
+from models.tabulated import Tabulated
 from models.window_chain import Chain
 from sim.engine import Run
 from sim.pymunk.engine import ENGINE

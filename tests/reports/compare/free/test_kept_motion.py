@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.characteristics import Constant, Tabulated
+from models.characteristics import Constant
 from models.files import load_scene
 from models.loads import Load
 from models.scene import Scene
+from models.tabulated import Tabulated
 from reports.compare.compare import compare
 from reports.compare.free.free_truth import free_truth
 from reports.compare.free.kept_motion import kept_motion
