@@ -60,7 +60,7 @@ def test_class_is_what_the_links_do() -> None:
     """Which of driver and rocker turn fully, seen in the motion of random Grashof chains."""
     rng, seen = np.random.default_rng(1), set()
     theta = np.linspace(0.0, math.tau, 721)
-    for _ in range(120):
+    for _ in range(50):
         lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
         if 2.0 * max(lengths) > sum(lengths):
             continue

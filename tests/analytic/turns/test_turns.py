@@ -158,7 +158,7 @@ def test_turns_are_counted_through_change_points_and_past_near_ones(name: str) -
         assert np.abs(found[link] - steps[near]).max() < 0.01
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@settings(max_examples=25, deadline=None, derandomize=True, database=None)
 @given(designed=mechanisms())
 def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
     scene = designed.scene
@@ -168,7 +168,7 @@ def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> N
         assert np.allclose(found[link], wanted[link], rtol=0, atol=1e-9)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True, database=None)
+@settings(max_examples=15, deadline=None, derandomize=True, database=None)
 @given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
 def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: int) -> None:
     """Also in cells that are too wide to be sure, and where the mechanism is open in the middle;
