@@ -386,7 +386,7 @@ def dyadic(low: int, high: int) -> st.SearchStrategy[float]:
     return st.integers(low, high).map(lambda k: k / 1024)
 
 
-@settings(max_examples=8, deadline=None, derandomize=True, database=None)
+@settings(max_examples=20, deadline=None, derandomize=True, database=None)
 @given(crank=dyadic(50, 2000), coupler=dyadic(50, 2000), branch=st.sampled_from([1, -1]))
 def test_random_parallelograms_and_their_contrary_mates(
     crank: float, coupler: float, branch: int
@@ -401,7 +401,7 @@ def test_random_parallelograms_and_their_contrary_mates(
     assert found.max() <= 1.0
 
 
-@settings(max_examples=8, deadline=None, derandomize=True, database=None)
+@settings(max_examples=20, deadline=None, derandomize=True, database=None)
 @given(
     short=dyadic(50, 1000),
     first=dyadic(20, 1000),
