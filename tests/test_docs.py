@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Sequence
+import subprocess
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ import pytest
 import crankcheck
 from crankcheck import engine, testing
 from tests.worlds.command import PYTHON
-from tests.worlds.documents import blocks, commands, follows, ran, scripts, words
+from tests.worlds.documents import blocks, commands, follows, ran, scripts, started, words
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
@@ -22,6 +23,7 @@ OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
 OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
 FORCES = (DOCS / "forces.md").read_text(encoding="utf-8")
 FREE = (DOCS / "free.md").read_text(encoding="utf-8")
+Run = Callable[[Sequence[str], Path], "subprocess.CompletedProcess[str]"]
 END = "--- end of example {} ---"
 
 
@@ -73,10 +75,11 @@ def test_what_is_said_of_free_motion_is_true(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:
-    """In the folder of the example: some 10 s, most of them for the whole contract."""
+    """In the folder of the example, which a process of its own finds its engine in: some 10 s, most
+    of them for the whole contract."""
     for path in (DOCS.parent / "examples" / "engine").glob("*.*"):
         (tmp_path / path.name).write_bytes(path.read_bytes())
-    assert not told_otherwise(OWN_ENGINE, tmp_path)
+    assert not told_otherwise(OWN_ENGINE, tmp_path, started)
 
 
 def test_what_is_said_of_own_models_is_true(tmp_path: Path) -> None:
@@ -90,11 +93,11 @@ def test_what_is_said_of_own_models_is_true(tmp_path: Path) -> None:
     assert written == {name for name in written if f"`{name}`" in OWN_MODEL}
 
 
-def told_otherwise(page: str, folder: Path) -> str:
+def told_otherwise(page: str, folder: Path, run: Run = ran) -> str:
     """The commands of a page that end or print otherwise, "" where there are none."""
     faults = []
     for command, shown, code in commands(page):
-        done = ran(words(command), folder)
+        done = run(words(command), folder)
         printed = [line.rstrip() for line in done.stdout.splitlines()]
         fault = follows([line.rstrip() for line in shown], printed)
         if done.returncode != code or fault:

@@ -81,26 +81,29 @@ def random_times(scene: Scene, count: int, turns: float, seed: int = 1) -> Array
     return np.sort(np.random.default_rng(seed).uniform(-0.1 * span, span, count))
 
 
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", shipped())
-def test_error_stays_below_the_bound_in_every_scene(name: str) -> None:
+def test_error_stays_below_the_bound_in_every_scene(name: str, count: int) -> None:
     scene = load_scene(name)
-    found = shares(scene, random_times(scene, 50, 1.0))
+    found = shares(scene, random_times(scene, count, 1.0))
     assert found.max() <= 1.0
     assert found.max() > 1e-3, "a bound a thousand times the largest error says little"
 
 
+@pytest.mark.parametrize("count", [8, pytest.param(100, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", shipped())
-def test_error_stays_below_the_bound_after_ten_thousand_turns(name: str) -> None:
+def test_error_stays_below_the_bound_after_ten_thousand_turns(name: str, count: int) -> None:
     scene = load_scene(name)
-    assert shares(scene, random_times(scene, 25, 1e4)).max() <= 1.0
+    assert shares(scene, random_times(scene, count, 1e4)).max() <= 1.0
 
 
+@pytest.mark.parametrize("count", [8, pytest.param(100, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", shipped())
-def test_error_stays_below_the_bound_a_million_lengths_away(name: str) -> None:
+def test_error_stays_below_the_bound_a_million_lengths_away(name: str, count: int) -> None:
     scene = load_scene(name)
     far = 1e6 * scene.longest_m
     scene = moved(scene, (far, -0.7 * far))
-    found = shares(scene, random_times(scene, 25, 1.0))
+    found = shares(scene, random_times(scene, count, 1.0))
     assert found.max() <= 1.0
 
 
@@ -124,12 +127,12 @@ def test_error_stays_below_the_bound_under_every_law(
 ) -> None:
     scene = load_scene("sixbar-watt")
     scene = replace(scene, driver=Driver(scene.driver.link, law))
-    found = shares(scene, random_times(scene, 30, 2.0))
+    found = shares(scene, random_times(scene, 12, 2.0))
     assert found.max() <= 1.0
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=6, deadline=None, derandomize=True, database=None)
+@settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_error_stays_below_the_bound_in_every_form_of_dyad(form: str, data: st.DataObject) -> None:
     designed = data.draw(
@@ -144,7 +147,7 @@ def _hold(designed: Designed) -> None:
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=5, deadline=None, derandomize=True, database=None)
+@settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_error_stays_below_the_bound_where_frames_lie_far_off(
     form: str, data: st.DataObject
@@ -154,8 +157,22 @@ def test_error_stays_below_the_bound_where_frames_lie_far_off(
     assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@given(data=st.data())
+def test_error_stays_below_the_bound_in_many_mechanisms_of_every_form(
+    form: str, data: st.DataObject
+) -> None:
+    """And where their frames lie far off."""
+    designed = data.draw(mechanisms([form]))
+    _hold(designed)
+    scene = with_far_frames(designed.scene, (700.0, -3000.0))
+    assert shares(scene, random_times(scene, 4, 1.0)).max() <= 1.0
+
+
 @pytest.mark.parametrize("form", [form for form in FORMS if form != "RRR"])
-@settings(max_examples=3, deadline=None, derandomize=True, database=None)
+@settings(max_examples=2, deadline=None, derandomize=True, database=None)
 @given(data=st.data(), turns=st.sampled_from([-2775, 777, 2775]))
 def test_error_stays_below_the_bound_where_angles_hold_many_turns(
     form: str, data: st.DataObject, turns: int

@@ -22,7 +22,8 @@ SAME = 1e-9
 """m, rad: what a solver leaves that stops at 1e-12."""
 COARSEST = 1.0
 """rad, above which no target is."""
-STEPS = (90.0, 360.0)
+STEPS = (90.0, pytest.param(360.0, marks=pytest.mark.slow))
+"""A snippet at another step has other numbers in it, and the same words."""
 ENGINES = offering("snippet")
 OTHER: dict[str, SettingValue] = {
     "integrator": "RK4",

@@ -131,7 +131,7 @@ def _hold_to_newton(designed: Designed) -> None:
 
 
 @pytest.mark.parametrize("form", FORMS)
-@settings(max_examples=10, deadline=None, derandomize=True, database=None)
+@settings(max_examples=4, deadline=None, derandomize=True, database=None)
 @given(data=st.data())
 def test_every_form_of_dyad_agrees_with_newton(form: str, data: st.DataObject) -> None:
     designed = data.draw(mechanisms([form]))
@@ -139,7 +139,7 @@ def test_every_form_of_dyad_agrees_with_newton(form: str, data: st.DataObject) -
     _hold_to_newton(designed)
 
 
-@settings(max_examples=30, deadline=None, derandomize=True, database=None)
+@settings(max_examples=12, deadline=None, derandomize=True, database=None)
 @given(mechanisms())
 def test_chains_of_random_dyads_agree_with_newton(designed: Designed) -> None:
     _hold_to_newton(designed)

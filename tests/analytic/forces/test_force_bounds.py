@@ -26,7 +26,7 @@ from tests.worlds.wide_angles import made, times
 
 NOTHING = 1e-38
 """What is left of an error of the oracle itself, over its largest force."""
-COUNT = 20
+COUNT = 10
 LOOSE = 4000.0
 """What the median of bound over error may be: those of accelerations alone are a few hundred."""
 

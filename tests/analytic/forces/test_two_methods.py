@@ -22,7 +22,7 @@ from models.scene import Scene
 from tests.analytic.forces.beside import series
 from tests.worlds.loading import loaded_mechanism
 
-COUNT = 80
+COUNT = 30
 SAMPLES = 3
 ROUNDINGS = 1.0
 """Of the entries of a matrix and of its elimination, in units of Skeel's bound."""

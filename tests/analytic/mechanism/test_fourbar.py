@@ -56,11 +56,12 @@ def test_grashof_class(lengths: tuple[float, float, float, float], wanted: str) 
     assert FourBar(*(1e3 * x for x in lengths)).grashof_class == wanted
 
 
-def test_class_is_what_the_links_do() -> None:
+@pytest.mark.parametrize("count", [50, pytest.param(1000, marks=pytest.mark.slow)])
+def test_class_is_what_the_links_do(count: int) -> None:
     """Which of driver and rocker turn fully, seen in the motion of random Grashof chains."""
     rng, seen = np.random.default_rng(1), set()
     theta = np.linspace(0.0, math.tau, 721)
-    for _ in range(120):
+    for _ in range(count):
         lengths = [float(x) for x in rng.uniform(0.2, 1.0, 4)]
         if 2.0 * max(lengths) > sum(lengths):
             continue

@@ -158,9 +158,7 @@ def test_turns_are_counted_through_change_points_and_past_near_ones(name: str) -
         assert np.abs(found[link] - steps[near]).max() < 0.01
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms())
-def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
+def _turns_as_it_does_step_by_step(designed: Designed) -> None:
     scene = designed.scene
     time_s = np.random.default_rng(5).uniform(0.0, 2.0 * scene.driver.law.period_s, 20)
     found, wanted = sampled(scene, time_s), followed(scene, time_s)
@@ -168,9 +166,20 @@ def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> N
         assert np.allclose(found[link], wanted[link], rtol=0, atol=1e-9)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True, database=None)
-@given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
-def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: int) -> None:
+@settings(max_examples=25, deadline=None, derandomize=True, database=None)
+@given(designed=mechanisms())
+def test_random_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
+    _turns_as_it_does_step_by_step(designed)
+
+
+@pytest.mark.slow
+@settings(max_examples=1_000, deadline=None, derandomize=True, database=None)
+@given(designed=mechanisms())
+def test_a_thousand_mechanisms_turn_as_they_do_step_by_step(designed: Designed) -> None:
+    _turns_as_it_does_step_by_step(designed)
+
+
+def _no_angle_is_farther_off_than_said(designed: Designed, seed: int) -> None:
     """Also in cells that are too wide to be sure, and where the mechanism is open in the middle;
     and one that is said to be open all over does not close anywhere."""
     scene = designed.scene
@@ -185,6 +194,19 @@ def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: i
         off = inside.angles[link] - angle
         off -= math.tau * np.round(off / math.tau)
         assert np.all(np.abs(off)[closed] <= cells.spread[closed])
+
+
+@settings(max_examples=15, deadline=None, derandomize=True, database=None)
+@given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
+def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: int) -> None:
+    _no_angle_is_farther_off_than_said(designed, seed)
+
+
+@pytest.mark.slow
+@settings(max_examples=1_000, deadline=None, derandomize=True, database=None)
+@given(designed=mechanisms(), seed=st.integers(0, 2**32 - 1))
+def test_no_angle_in_many_cells_is_farther_off_than_said(designed: Designed, seed: int) -> None:
+    _no_angle_is_farther_off_than_said(designed, seed)
 
 
 def test_two_reachable_ranges_are_counted_each_for_itself() -> None:

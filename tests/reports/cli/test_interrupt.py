@@ -130,8 +130,10 @@ def started(module: str, number: int, program: str, start: Start) -> tuple[int, 
     return running.returncode, complaint
 
 
-@pytest.mark.parametrize("program", [COMMAND, "-m"], ids=["crankcheck", "-m"])
-@pytest.mark.parametrize("module", [*EARLY, *LATE])
+@pytest.mark.parametrize(
+    ("module", "program"),
+    [*((module, COMMAND) for module in (*EARLY, *LATE)), (EARLY[0], "-m"), (LATE[-1], "-m")],
+)
 def test_ctrl_c_during_an_import_ends_in_one_line(
     module: str, program: str, programs: Start
 ) -> None:

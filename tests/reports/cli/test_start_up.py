@@ -37,12 +37,13 @@ def start(*args: str) -> tuple[int, float, list[str], str]:
 
 @pytest.mark.parametrize("args", [["--help"], ["verify", "--help"], ["solve", "-h"], ["--version"]])
 def test_help_is_shown_in_half_a_second_and_loads_no_engine(args: list[str]) -> None:
-    attempts = [start(*args) for _ in range(3)]
-    code, _, loaded, output = attempts[0]
+    code, spent, loaded, output = start(*args)
     assert code == 0
     assert loaded == []
     assert "crankcheck" in output
-    assert min(spent for _, spent, _, _ in attempts) < 0.5
+    for _ in range(2):  # a machine with much to do may take longer, once
+        spent = spent if spent < 0.5 else start(*args)[1]
+    assert spent < 0.5
 
 
 def test_the_help_names_every_command() -> None:

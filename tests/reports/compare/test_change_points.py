@@ -39,7 +39,7 @@ def errors_of(found: Checked) -> Errors:
     return found.errors
 
 
-@pytest.mark.parametrize("steps", [360, 720])
+@pytest.mark.parametrize("steps", [360, pytest.param(720, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
 @pytest.mark.parametrize("name", SCENES)
 def test_tuned_engines_go_through_change_points_within_the_limits(

@@ -29,8 +29,11 @@ LABELS = {
 
 @pytest.fixture(scope="module")
 def drawn(free_store: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """As SVG alone: that a figure is written as PDF too, `test_files` says."""
     folder = tmp_path_factory.mktemp("drawn") / "figs"
-    assert run_figures(free_store, folder, Console(file=io.StringIO())) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.cli.commands.figures.FORMATS", ("svg",))
+        assert run_figures(free_store, folder, Console(file=io.StringIO())) == 0
     return folder
 
 

@@ -224,7 +224,9 @@ def clocked(*late: int) -> Try:
     return attempt
 
 
-@pytest.mark.parametrize("late", [(0,), (1,), (9,), (0, 5, 13)])
+@pytest.mark.parametrize(
+    "late", [(0,), *(pytest.param((k,), marks=pytest.mark.slow) for k in (1, 9)), (0, 5, 13)]
+)
 def test_what_the_clock_ended_is_not_kept_and_tried_again(
     tmp_path: Path, late: tuple[int, ...]
 ) -> None:
