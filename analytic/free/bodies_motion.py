@@ -71,6 +71,10 @@ class BodiesMotion:
         return False
 
     @property
+    def driver_tells(self) -> bool:
+        return False
+
+    @property
     def peak_speed_rad_s(self) -> float:
         return max(float(np.abs(one.omega).max()) for one in self._looks[1].links.values())
 

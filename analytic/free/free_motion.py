@@ -50,6 +50,10 @@ class FreeMotion(Protocol):
     def by_dyads(self) -> bool: ...
 
     @property
+    def driver_tells(self) -> bool:
+        """Whether the driver's angle alone says where the mechanism is, all along the motion."""
+
+    @property
     def peak_speed_rad_s(self) -> float:
         """The largest angular velocity of the driver; with several freedoms of any link."""
 

@@ -47,6 +47,10 @@ class MachineMotion:
         return True
 
     @property
+    def driver_tells(self) -> bool:
+        return self.history.windows[0].chart.limit is None
+
+    @property
     def peak_speed_rad_s(self) -> float:
         """The largest angular velocity of the driver."""
         return float(np.abs(self._looks[1]).max())

@@ -50,7 +50,8 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
     elif law_speed == 0.0:
         raise CrankcheckError(
             f"{scene.name}: no load follows the speed, and it starts from rest: any speed would "
-            "do; give speed_rad_s, the mean one"
+            "do, and it has no cycle of its own; give the mean one as speed_rad_s in [driver], or "
+            "a load over the speed, such as that of a motor"
         )
     else:
         wanted, speed = WantedSpeed(law_speed), law_speed

@@ -60,6 +60,10 @@ StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]
 Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
+Duration = Annotated[
+    float | None,
+    typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
+]
 Forces = Annotated[
     bool, typer.Option("--forces", help="Reactions, moments and driving torque as well.")
 ]

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from models.errors import CrankcheckError
-from reports.cli.application import Engines, Forces, Jobs, StepS, StepsPerTurn, command
+from reports.cli.application import Duration, Engines, Forces, Jobs, StepS, StepsPerTurn, command
 from reports.output.console import terminal
 
 PRESCRIBED = "prescribed"
@@ -70,10 +70,7 @@ class VerifyRequest:
     free: Annotated[
         bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
     ] = False
-    duration_s: Annotated[
-        float | None,
-        typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
-    ] = None
+    duration_s: Duration = None
     mjcf: Annotated[
         Path | None,
         typer.Option(

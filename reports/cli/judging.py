@@ -53,6 +53,9 @@ class JudgeRequest:
     output: Annotated[Path | None, typer.Option("-o", "--output", help="Write a page, .html.")] = (
         None
     )
+    free: Annotated[
+        bool, typer.Option("--free", help="It is of the driven scene, let go at time 0.")
+    ] = False
     forces: Annotated[
         bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
     ] = False

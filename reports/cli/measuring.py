@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Engines, Forces, Jobs, app, command, guarded, seconds
+from reports.cli.application import Duration, Engines, Forces, Jobs, app, command, guarded, seconds
 from reports.output.console import terminal
 
 
@@ -57,10 +57,7 @@ class SweepRequest:
     dt_s: Annotated[
         str | None, typer.Option("--dt", metavar="S,S,...", help="Steps of free motion, seconds.")
     ] = None
-    duration_s: Annotated[
-        float | None,
-        typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),
-    ] = None
+    duration_s: Duration = None
 
 
 @command

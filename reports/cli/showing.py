@@ -10,7 +10,16 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Forces, Jobs, StepS, StepsPerTurn, Turns, app, command, guarded
+from reports.cli.application import (
+    Duration,
+    Forces,
+    Jobs,
+    StepS,
+    StepsPerTurn,
+    app,
+    command,
+    guarded,
+)
 from reports.output.console import terminal
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A shipped name, or a scene file.")]
@@ -82,7 +91,8 @@ class RunRequest:
     profile: Annotated[str, typer.Option(help="Profile of the engine.")] = "tuned"
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Turns = 2.0
+    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
+    duration_s: Duration = None
     every: Annotated[int, typer.Option(metavar="N", help="Log every N-th step.")] = 1
     drive: Annotated[
         str | None,

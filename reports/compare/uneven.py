@@ -41,7 +41,7 @@ def uneven(scene: Scene, reference: Motion, driver_rad: Array) -> dict[tuple[Bod
         for name, slider in reference.sliders.items()
     }
     round_: Series = {
-        ("point", name): (point.position @ np.array([1.0, 1j])) / scene.longest_m
+        ("point", name): (point.position[:, 0] + 1j * point.position[:, 1]) / scene.longest_m
         for name, point in reference.points.items()
     }
     far = {

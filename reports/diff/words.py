@@ -145,7 +145,8 @@ def ratio(change: ErrorChange) -> str:
 def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -> PrintedRow:
     """Pairs of one line, the largest change first, as a row."""
     first, change = members[0], members[0].worst
-    steps = _steps([pair.name.steps_per_turn for pair in members], compared)
+    unit = "/s" if first.name.is_free else ""
+    steps = _steps([pair.name.steps_per_turn for pair in members], compared, unit)
     if first.turned or change is None:
         failed = first.old if first.new.ok else first.new
         was, now = first.old.status, first.new.status
@@ -155,11 +156,12 @@ def _line(members: Sequence[CellPair], compared: Sequence[float], engine: str) -
     return PrintedRow(first.name.scene, engine, steps, change.quantity, *numbers)
 
 
-def _steps(changed: Sequence[float], compared: Sequence[float]) -> str:
-    """The step of the largest change, and which others changed too."""
-    first, *others = [f"{each:g}" for each in changed]
+def _steps(changed: Sequence[float], compared: Sequence[float], unit: str) -> str:
+    """The step of the largest change, and which others changed too; those in a ``unit`` where it is
+    not a turn."""
+    first, *others = [f"{each:g}{unit}" for each in changed]
     if len(changed) > 2 and len(changed) == len(compared):
-        return f"{first} (all {len(changed)}: {min(changed):g} to {max(changed):g})"
+        return f"{first} (all {len(changed)}: {min(changed):g}{unit} to {max(changed):g}{unit})"
     return f"{first} (also {', '.join(others)})" if others else first
 
 
@@ -172,7 +174,7 @@ def _engine(pair: CellPair, several: frozenset[str]) -> str:
 def _called(name: CellName, turns: bool = False) -> str:
     parts = [f"{name.engine} {name.variant}"]
     parts += [f"drive {name.drive}"] if name.drive != "prescribed" else []
-    parts += [f"{name.turns:g} turns"] if turns else []
+    parts += [f"{name.turns:g} {'s' if name.is_free else 'turns'}"] if turns else []
     return ", ".join(parts)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from models.errors import CrankcheckError
 from models.motion import Motion
+from models.released import let_go
 from models.scene import Scene
 from reports.face.arguments import kind_of, path_of
 from reports.face.simulation import Simulation
@@ -61,16 +62,21 @@ def log_of(scene: Scene, log: object, map_: MapLike = None, *, forces: bool = Fa
 
 
 def refuse_other_scene(scene: Scene, run: Run) -> None:
-    """Refuse a run that is not of the scene, or that nothing drove. Raises CrankcheckError."""
+    """Refuse a run that is not of the scene. Raises CrankcheckError."""
     mechanism = run.mechanism if isinstance(run, Simulation) else None
-    if run.scene != scene.name or mechanism not in (None, scene):
+    if run.scene != scene.name or mechanism not in (None, scene_of_run(scene, run)):
         other = f"another {run.scene}" if run.scene == scene.name else run.scene
         raise CrankcheckError(f"the run is of {other}, not of {scene.name}; give the scene of both")
-    if run.drive == "free":
+    if scene.is_free and run.drive != "free":
         raise CrankcheckError(
-            f"the run of {run.scene} is of drive free: nothing says where it should be; run it "
-            "prescribed, or servo"
+            f"the run of {run.scene} is of drive {run.drive}, and the scene is let go; run it with "
+            "drive free"
         )
+
+
+def scene_of_run(scene: Scene, run: Run) -> Scene:
+    """The scene as the run has it: let go where that was."""
+    return let_go(scene) if run.drive == "free" else scene
 
 
 def _refuse_other(scene: Scene, motion: Motion) -> None:

@@ -24,6 +24,7 @@ from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
 from reports.plan.forces import refuse_forceless
+from reports.plan.free import refuse_unreleased
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
 from reports.plan.steps import counted
@@ -132,6 +133,8 @@ def check(
 def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> CellVerdict:
     """The verdict on a run that was made before; it is run at no other step."""
     check_names(scene)
+    if run.drive == "free":
+        refuse_unreleased(scene, run.dt_s * run.steps)
     cell = Cell(
         scene=scene,
         engine=run.engine,

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 from models.errors import CrankcheckError
 from models.scene import Same, Scene
 from reports.compare import compare as comparing
-from reports.compare.beside import Beside, truth_of
+from reports.compare.beside import Truth, truth_of
 from reports.compare.errors import Error, Errors
-from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
+from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
 from reports.judge.tolerance import check_names
+from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
 from sim.engine import Run
@@ -102,7 +103,7 @@ def compare(
         refuse_options(what, step_s=step_s, drive=drive, map=map)
         refuse_other_scene(scene, what)
         refuse_without_forces(what, forces=is_true(forces, "forces"))
-        errors = comparing.compare(Beside.of(truth_of(Same(scene)), what))
+        errors = comparing.compare(_truth_of_run(scene, what).beside(what))
         if errors is None:
             raise CrankcheckError(
                 f"the run of {scene.name} in {what.engine} logged nothing: {what.status}: "
@@ -111,15 +112,32 @@ def compare(
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.beside_truth import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone, truth_of_log
+    from reports.own_log.let_go import known_log, refuse_drives
 
     chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))
     log = log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
-    truth, _ = truth_of_log(log, chosen)
+    truth: Truth
+    if scene.is_free:
+        refuse_drives(scene.name, chosen)
+        log, truth = known_log(log, step, {})
+    else:
+        truth, _ = truth_of_log(log, chosen)
     errors = comparing.compare(beside_truth(log, truth, step_s=step))
     assert errors is not None
     return Comparison(scene, log.source, errors)
+
+
+def _truth_of_run(scene: Scene, run: Run) -> Truth:
+    """The truth of a scene as a run has it. Raises CrankcheckError."""
+    if run.drive != "free":
+        return truth_of(Same(scene))
+    from reports.compare.free.free_truth import free_truth  # for what is let go alone
+
+    scene = scene_of_run(scene, run)
+    refuse_unreleased(scene, run.dt_s * run.steps)
+    return free_truth(scene, run.steps, run.dt_s)
 
 
 def refuse_without_forces(run: Run, *, forces: bool) -> None:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from models.one_or_more import names_in
-from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene
+from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.face.cell_verdict import CellVerdict, verdict_of_run
 from reports.face.comparison import LOG_DRIVES, refuse_options, refuse_without_forces
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import in_python, parts_in_python, told_at_the_call
-from reports.judge.tolerance import DEFAULTS, check_names
+from reports.judge.tolerance import DEFAULTS, FREE, check_names, refuse_of_other_motion
 from reports.output.provenance import provenance
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
@@ -153,8 +153,11 @@ def judged(
         refuse_other_scene(scene, log)
         refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
-        named = limits if every is None else {name: limits.get(name, every) for name in DEFAULTS}
+        scene = scene_of_run(scene, log)
+        every_name = FREE if scene.is_free else DEFAULTS
+        named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
+    refuse_of_other_motion("--target", [*limits.keys() - {EVERY}], [scene.is_free])
     request = LogRequest(
         target=limits,
         step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from models.errors import CrankcheckError
+from models.released import let_go
 from models.scene import Same, Scene
 from reports.compare.beside import truth_of
+from reports.compare.free.kept_motion import released_state
 from reports.face.arguments import (
     SceneLike,
     engine_of,
@@ -21,7 +23,7 @@ from reports.face.arguments import (
 from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
-from reports.plan.steps import counted
+from reports.plan.steps import TURNS, counted, counted_free
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
 from sim.registry import FIRST
@@ -37,7 +39,7 @@ DRIVES = ("prescribed", "servo", "free")
 class Simulation(Shown, Run):
     """A run of a scene in an engine: how it moved and ended, with which settings (`Run`).
 
-    ``mechanism`` is the scene, and ``scene`` its name.
+    ``mechanism`` is the scene, let go where the run was, and ``scene`` its name.
     """
 
     mechanism: Scene
@@ -70,14 +72,19 @@ class Simulation(Shown, Run):
 
     def _heading(self) -> str:
         """What was run."""
-        per_turn = self.mechanism.driver.law.period_s / self.dt_s
-        turns = self.steps / per_turn
         logged = "" if self.every == 1 else f", logged every {self.every} steps"
         return (
             f"{self.scene}: {self.engine} {self.version}, profile {self.profile}, drive "
-            f"{self.drive}\ndt {self.dt_s:.4g} s, {per_turn:.6g} steps a turn, {turns:.6g} "
-            f"turn{'s' * (turns != 1.0)}{logged}\n"
+            f"{self.drive}\ndt {self.dt_s:.4g} s, {self._length()}{logged}\n"
         )
+
+    def _length(self) -> str:
+        """How long it is: in turns of what drives it, or in time."""
+        if self.mechanism.is_free:
+            return f"{self.steps} steps, {self.steps * self.dt_s:.6g} s"
+        per_turn = self.mechanism.driver.law.period_s / self.dt_s
+        turns = self.steps / per_turn
+        return f"{per_turn:.6g} steps a turn, {turns:.6g} turn{'s' * (turns != 1.0)}"
 
     def ending(self) -> str:
         """What came of it, in a line."""
@@ -99,7 +106,8 @@ def run(
     *,
     steps_per_turn: float | None = None,
     dt_s: float | None = None,
-    turns: float = 2.0,
+    turns: float | None = None,
+    duration_s: float | None = None,
     every: int = 1,
     drive: str | None = None,
     settings: Mapping[str, SettingValue] | None = None,
@@ -114,15 +122,18 @@ def run(
     engine, profile : str
         As `crankcheck engines` lists them.
     steps_per_turn, dt_s : float or None
-        The step, by one of the two: steps in a turn of the driver (720), or seconds.
-    turns : float
-        Turns (periods) of the driver.
+        The step, by one of the two: steps in a turn of the driver (720), or seconds; of a run that
+        is let go in seconds alone (a millisecond, or a 5000th of what the scene says).
+    turns : float or None
+        Turns (periods) of the driver (2), where one drives it.
+    duration_s : float or None
+        Of a run that is let go: for how long (what the scene says; 10 turns of a driven one's law).
     every : int
         Log every so many steps.
     drive : str or None
         ``prescribed``: the driver follows its law exactly; ``servo``: a motor of limited gain
-        drives it; ``free``: nothing does, after its start. None: ``free`` for a scene that is let
-        go, which has no other, and ``prescribed`` for one that is driven.
+        drives it; ``free``: nothing does, after its start, as of `verify --free`. None: ``free``
+        for a scene that is let go, which has no other, and ``prescribed`` for one that is driven.
     settings : Mapping or None
         Settings of the engine in place of the profile's.
     forces : bool
@@ -147,6 +158,7 @@ def run(
         steps_per_turn=steps_per_turn,
         dt_s=dt_s,
         turns=turns,
+        duration_s=duration_s,
         every=every,
         drive=drive,
         settings=settings,
@@ -161,7 +173,8 @@ def simulated(
     *,
     steps_per_turn: float | None,
     dt_s: float | None,
-    turns: float,
+    turns: float | None,
+    duration_s: float | None,
     every: int,
     drive: str | None,
     settings: Mapping[str, SettingValue] | None = None,
@@ -172,8 +185,17 @@ def simulated(
     name, profile = engine_of(engine, profile, settings)
     driven = _drive(scene, drive)
     every = whole_of(every, "--every")
-    dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
-    state = truth_of(Same(scene)).start
+    _refuse_other_length(scene, driven, turns, steps_per_turn, duration_s)
+    if driven == "free" and turns is None and steps_per_turn is None:
+        dt_s, steps = counted_free(let_go(scene), dt_s, duration_s, every=every, least=1)
+    else:
+        turns = TURNS if turns is None else turns
+        dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
+    if driven == "free":
+        scene = let_go(scene)
+        state = released_state(scene)
+    else:
+        state = truth_of(Same(scene)).start
     done = stepping.run(
         scene,
         state,
@@ -187,6 +209,34 @@ def simulated(
         with_forces=is_true(forces, "forces"),
     )
     return Simulation(**vars(done), mechanism=scene)
+
+
+def _refuse_other_length(
+    scene: Scene,
+    driven: Drive,
+    turns: float | None,
+    steps_per_turn: float | None,
+    duration_s: float | None,
+) -> None:
+    """Refuse a length that the run has no use for: turns of a scene that has no law, a duration of
+    what is driven, or both. Raises CrankcheckError."""
+    in_turns = {"--turns": turns, "--steps-per-turn": steps_per_turn}
+    for option in (name for name, value in in_turns.items() if value is not None):
+        if scene.is_free:
+            raise CrankcheckError(
+                f"{option}: {scene.name} is let go, and has no turns; give --dt and --duration, in "
+                "seconds"
+            )
+        if duration_s is not None:
+            raise CrankcheckError(
+                f"--duration and {option}: a run that is let go has its length in seconds, or that "
+                "of turns of the law that drove it; give one of them"
+            )
+    if duration_s is not None and driven != "free":
+        raise CrankcheckError(
+            f"--duration: it is of runs that are let go, and {scene.name} is driven; give --turns, "
+            "or let it go with --drive free"
+        )
 
 
 def _drive(scene: Scene, drive: str | None) -> Drive:

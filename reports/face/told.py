@@ -20,6 +20,7 @@ Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 ARGUMENTS: Mapping[str, str] = {
     "--dt": "dt_s",
+    "--duration": "duration_s",
     "--steps-per-turn": "steps_per_turn",
     "--turns": "turns",
     "--every": "every",

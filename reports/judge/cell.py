@@ -48,11 +48,18 @@ class Cell:
 
     @property
     def turns(self) -> float:
-        return self.steps * self.dt_s / self.scene.driver.law.period_s
+        """How long it is: in turns of the driver, of what is let go in seconds."""
+        return self.steps * self.dt_s / self._turn_s
 
     @property
     def steps_per_turn(self) -> float:
-        return self.scene.driver.law.period_s / self.dt_s
+        """Steps in a turn, or in a second of what is let go: scenes of the same step stand side by
+        side, however long each is left free."""
+        return self._turn_s / self.dt_s
+
+    @property
+    def _turn_s(self) -> float:
+        return 1.0 if self.drive == "free" else self.scene.driver.law.period_s
 
     @property
     def truth(self) -> Truth:

@@ -8,7 +8,7 @@ is right, and so of a force.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,11 +16,13 @@ import numpy as np
 
 from analytic.kinematics import solve_driven
 from models.array import Array
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import Motion
+from models.scene import Scene
 from reports.compare.beside import Beside, Truth
+from reports.compare.free.free_truth import FreeTruth
 from reports.compare.tracks import Track, tracks
-from reports.logs.channel import OwnLog, Reading
-from reports.logs.kinds import Kind
+from reports.logs.channel import Channel, OwnLog, Reading
+from reports.logs.logged_motion import logged_motion
 from reports.logs.whole_pins import whole_pins
 from reports.quantities import QUANTITIES, named
 from reports.quantities.moving import Order
@@ -128,28 +130,18 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
     """The log beside the truth, and the run that it amounts to. Raises CrankcheckError."""
     scene = log.scene
     instants = {order: _instants(log, order) for order in (0, 1, 2)}
-    bodies: dict[str, dict[str, dict[str, Array]]] = {"links": {}, "points": {}, "sliders": {}}
-    for (kind, body), several in _slots(log).items():
-        right = kind.of(truth.at(instants[kind.order]), body)
-        wrong = _largest([reading.error(truth) for reading in several], kind.order)
-        fields = bodies[f"{kind.body_kind}s"].setdefault(body, {})
-        if kind.axis is None:
-            fields[kind.field] = right + wrong
-            continue
-        if kind.field not in fields:
-            motion = truth.at(instants[kind.order]).points[body]
-            fields[kind.field] = getattr(motion, kind.field).copy()
-        fields[kind.field][:, kind.axis] += wrong
+    moved = logged_motion(
+        log, lambda order: truth.at(instants[order]), lambda reading: reading.error(truth)
+    )
     alone = isinstance(truth, AtCrank)
     borne = None if alone else log.forces
-    moved = _motion(log.time_s, bodies)
     steps = round((log.time_s[-1] - log.time_s[0]) / step_s) if step_s else 0
     run = Run(
         scene=scene.name,
         engine="",
         version="",
         profile="",
-        drive="prescribed",
+        drive="free" if isinstance(truth, FreeTruth) else "prescribed",
         dt_s=step_s,
         status="ok",
         reason="",
@@ -166,28 +158,11 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         forces_of="steps" if borne and borne.of_steps else "states",
     )
     assert run.motion is not None
+    if isinstance(truth, FreeTruth):
+        from reports.logs.free_log_beside import FreeLogBeside  # for what is let go alone
+
+        return FreeLogBeside.of_log(log, truth, run)
     return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
-
-
-def _slots(log: OwnLog) -> dict[tuple[Kind, str], list[Reading]]:
-    """The readings by what of a motion they are of: one, but for rates of a point on several
-    bodies, and for angles of a link that are relative to others as well."""
-    slots: dict[tuple[Kind, str], list[Reading]] = {}
-    for reading in log.readings:
-        slots.setdefault((reading.channel.kind, reading.channel.of), []).append(reading)
-    return slots
-
-
-def _largest(errors: Sequence[Array], order: Order) -> Array:
-    """What a place or rate is off by, of which there are several readings, so that no right one
-    hides a wrong one: of rates the largest at every sample; of places, which are differenced and
-    must not jump from one to another, those of the reading whose largest is."""
-    if len(errors) == 1:
-        return errors[0]
-    if order == 0:
-        return max(errors, key=lambda error: float(np.max(np.abs(error))))
-    every = np.stack(errors)
-    return np.asarray(every[np.argmax(np.abs(every), axis=0), np.arange(every.shape[1])])
 
 
 def _instants(log: OwnLog, order: Order) -> Array:
@@ -196,31 +171,6 @@ def _instants(log: OwnLog, order: Order) -> Array:
     if order and own and all(np.array_equal(each, own[0]) for each in own):
         return own[0]
     return log.time_s
-
-
-def _motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Array]]]) -> Motion:
-    """What is known of bodies, as a motion; the rest is NaN."""
-    nothing = np.full(time_s.shape, np.nan)
-    nowhere = np.full((time_s.size, 2), np.nan)
-    return Motion(
-        time_s,
-        {
-            name: LinkMotion(*(each.get(key, nothing) for key in ("theta", "omega", "alpha")))
-            for name, each in bodies["links"].items()
-        },
-        {
-            name: PointMotion(
-                *(each.get(key, nowhere) for key in ("position", "velocity", "acceleration"))
-            )
-            for name, each in bodies["points"].items()
-        },
-        {
-            name: SliderMotion(
-                *(each.get(key, nothing) for key in ("displacement", "speed", "acceleration"))
-            )
-            for name, each in bodies["sliders"].items()
-        },
-    )
 
 
 def _gaps(log: OwnLog) -> dict[str, Array]:
@@ -241,8 +191,9 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     """What of the scene's places, rates and, where they were asked for, forces the log does not
     hold, quantity by quantity."""
     held, there = list[tuple[str, str]](), list[tuple[str, str]]()
+    other_role = "drive" if beside.run.drive == "free" else "free"
     for name, entry in QUANTITIES.items():
-        if entry.role == "force" and not beside.run.with_forces:
+        if (entry.role == "force" and not beside.run.with_forces) or entry.role == other_role:
             continue
         reference, whole = beside.reference, beside.whole
         if entry.role == "force":
@@ -252,20 +203,26 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
         held += [(name, track.body) for track in beside.tracks((name,), reference)]
         every = (measure.truth(beside.scene, whole) for measure in entry.measures)
         there += [(name, body) for bodies in every for body in bodies]
+    if beside.run.drive == "free":
+        there.append(("energy", beside.scene.name))  # which no column tells
     return tuple(f"{name} of {body}" for name, body in there if (name, body) not in held)
 
 
 def readings_of(log: OwnLog, quantity: str, body: str) -> tuple[Reading, ...]:
     """The readings that a quantity of a body is judged by."""
-    scene = log.scene
     return tuple(
         each
         for each in log.readings
-        if each.channel.of == body
-        and (
-            "drive"
-            if (each.channel.kind.name, body) == ("angle", scene.driver.link)
-            else each.channel.kind.quantity
-        )
-        == quantity
+        if each.channel.of == body and quantity in _judged_as(log.scene, each.channel)
     )
+
+
+def _judged_as(scene: Scene, channel: Channel) -> tuple[str, ...]:
+    """The quantities that a column is judged as: of what is let go, places at the same time and at
+    its own angle."""
+    kind = channel.kind
+    if kind.order or not scene.is_free:
+        is_drive = (kind.name, channel.of) == ("angle", scene.driver.link)
+        return ("drive",) if is_drive else (kind.quantity,)
+    is_phase = (kind.name, channel.of) == ("angle", scene.driver.link)
+    return ("phase" if is_phase else kind.quantity, "geometry")

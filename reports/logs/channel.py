@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,6 +69,10 @@ class Reading:
     values: Array
     instants: Array
 
+    def first(self, rows: int) -> Reading:
+        """That of the first rows alone."""
+        return replace(self, values=self.values[:rows], instants=self.instants[:rows])
+
     def expected(self, truth: Truth) -> Array:
         """What the truth says of it at its instants (T,). Raises CrankcheckError."""
         return self.channel.expected(truth.at(self.instants))
@@ -100,6 +104,7 @@ class OwnLog:
     ``copies`` are readings of a point's place as further bodies have it, which the gap is taken of;
     ``gaps`` are those that the log itself tells. ``unused`` names
     columns that nothing was made of, with the reason. ``forces`` are read where they are asked for.
+    ``left_out`` rows after the last were cut off, as the truth of them is not known.
     """
 
     source: str
@@ -112,3 +117,18 @@ class OwnLog:
     gaps: tuple[Gap, ...] = ()
     unused: tuple[tuple[str, str], ...] = ()
     forces: LogForces | None = None
+    left_out: int = 0
+
+    def first(self, rows: int) -> OwnLog:
+        """The log with its first rows alone; itself where these are all."""
+        if rows >= self.time_s.size:
+            return self
+        return replace(
+            self,
+            time_s=self.time_s[:rows],
+            readings=tuple(each.first(rows) for each in self.readings),
+            copies=tuple(each.first(rows) for each in self.copies),
+            gaps=tuple(replace(gap, opening_m=gap.opening_m[:rows]) for gap in self.gaps),
+            forces=self.forces and self.forces.first(rows),
+            left_out=self.left_out + self.time_s.size - rows,
+        )

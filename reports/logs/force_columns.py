@@ -29,6 +29,11 @@ class LogForces:
     columns: Mapping[tuple[str, str], tuple[str, ...]]
     of_steps: bool
 
+    def first(self, rows: int) -> LogForces:
+        """Those of the first rows alone."""
+        some = self.forces.each_series(lambda series: series[:rows])
+        return replace(self, forces=replace(some, time_s=some.time_s[:rows]))
+
 
 def log_forces(
     columns: Columns, scene: Scene, time_s: Array, acting_s: Array | None, ignored: set[str]

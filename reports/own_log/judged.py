@@ -13,16 +13,26 @@ from models.errors import CrankcheckError, few
 from models.scene import Scene
 from reports.causes.cause import Case, Cause
 from reports.causes.find import causes
+from reports.compare.beside import Truth
 from reports.compare.compare import compare
-from reports.compare.errors import Error, Errors, largest
+from reports.compare.errors import Errors, largest
+from reports.compare.free.free_truth import FreeTruth
 from reports.judge.cell import left_words
 from reports.judge.rules import RULES, judge
+from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.rule import Evidence, Finding
 from reports.judge.tolerance import refuse_forces_unasked
 from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
+from reports.own_log.let_go import (
+    known_log,
+    refuse_drives,
+    told_apart,
+    told_of_no_limit,
+    told_of_start,
+)
 from reports.own_log.log_limits import limits_by_column, log_limits
 from reports.own_log.no_cause import of_no_cause, seldom
 from reports.own_log.required import absent_names, required_name
@@ -31,6 +41,9 @@ from sim.engine import Placing
 NO_FIT = (
     "no speed and start of the driver were found that explain the places: errors are those beside "
     "the nearest that was tried; log the driver's angle, or use --drive scene"
+)
+ITSELF = (
+    "every reading is that of the reference to the last bit: it may have been compared with itself"
 )
 STEPPED = ("CC116", "CC118")
 """Rules that need a step; the others of `_RULES` need none."""
@@ -60,6 +73,11 @@ class JudgedLog(Evidence):
     @property
     def scene(self) -> Scene:
         return self.log.scene
+
+    @property
+    def truth_name(self) -> str:
+        """What it is held to, in words."""
+        return "free motion" if self.scene.is_free else "closed form"
 
     @property
     def failures(self) -> tuple[Finding, ...]:
@@ -96,7 +114,13 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
     if log.forces is None:
         refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
         refuse_forces_unasked("--target", request.target)
-    truth, fit = truth_of_log(log, request.drive)
+    truth: Truth
+    if log.scene.is_free:
+        refuse_drives(log.scene.name, request.drive)
+        log, truth = known_log(log, request.step_s, request.target)
+        fit = None
+    else:
+        truth, fit = truth_of_log(log, request.drive)
     beside = beside_truth(log, truth, step_s=request.step_s)
     errors = compare(beside)
     assert errors is not None
@@ -121,9 +145,7 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         placing=_placing(errors),
         absent=absent if required else None,
     )
-    sound = fit is None or fit.explains
-    case = Case(log, truth, limits_by_column(log, evidence, errors))
-    found = causes(case) if sound else ()
+    found, notes = _explained(log, truth, fit, evidence, errors)
     return JudgedLog(
         **vars(evidence),
         log=log,
@@ -134,8 +156,29 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         findings=_findings(evidence, request),
         causes=found,
         not_judged=not_judged,
-        notes=(*errors.notes, *(_notes(case, found, errors) if sound else (NO_FIT,))),
+        notes=(*errors.notes, *notes),
     )
+
+
+def _explained(
+    log: OwnLog, truth: Truth, fit: DriveFit | None, evidence: Evidence, errors: Errors
+) -> tuple[tuple[Cause, ...], tuple[str, ...]]:
+    """The causes, and what else is worth knowing of a log that is within tolerance, or out."""
+    rows = [row for row in errors.rows if row.kind == "total"]
+    itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
+    if isinstance(truth, FreeTruth):
+        out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
+        apart = told_apart(errors) if out else ()
+        return (), itself or (
+            *told_of_start(log, truth),
+            *apart,
+            *told_of_no_limit(errors),
+        )
+    if fit is not None and not fit.explains:
+        return (), (NO_FIT,)
+    case = Case(log, truth, limits_by_column(log, evidence, errors))
+    found = causes(case)
+    return found, itself or (*seldom(case), *of_no_cause(case, found, errors))
 
 
 def _placing(errors: Errors) -> Placing:
@@ -171,14 +214,3 @@ def _of_what_is_held(errors: Errors, log: OwnLog) -> Errors:
     held |= set(log.forces.columns) if log.forces else set()
     sure = {key: number for key, number in errors.uncertain.items() if key in held}
     return replace(errors, uncertain=sure)
-
-
-def _notes(case: Case, found: Sequence[Cause], errors: Errors) -> tuple[str, ...]:
-    """What is worth knowing of a log that is within tolerance, or out of it."""
-    rows: list[Error] = [row for row in errors.rows if row.kind == "total"]
-    if rows and all(row.maximum == 0.0 for row in rows):
-        return (
-            "every reading is that of the reference to the last bit: it may have been compared "
-            "with itself",
-        )
-    return (*seldom(case), *of_no_cause(case, found, errors))

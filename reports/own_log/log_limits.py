@@ -10,7 +10,7 @@ from models.scene import Scene
 from reports.compare.errors import Error, Errors
 from reports.judge.rules.rule import Evidence
 from reports.judge.rules.start import start_limit
-from reports.judge.tolerance import DEFAULTS, Limit, in_passage, limits
+from reports.judge.tolerance import Limit, in_passage, limits, numbers_for
 from reports.logs.beside_truth import readings_of
 from reports.logs.channel import OwnLog
 
@@ -23,13 +23,13 @@ def log_limits(
 ) -> dict[str, Limit]:
     """The limit of everything that is judged, by target or by a step [s], 0 for none; what is not
     judged has no end. Raises CrankcheckError for neither."""
-    target = dict(target)
+    target, numbers = dict(target), numbers_for(errors)
     every = target.pop(EVERY, None)
     if every is not None:
-        target = {name: target.get(name, every) for name in DEFAULTS}
+        target = {name: target.get(name, every) for name in numbers}
     if step_s:
         return limits(scene, errors, target, "--target")
-    judged = dict.fromkeys(row.tolerance for row in errors.rows)
+    judged = dict.fromkeys(row.tolerance for row in errors.rows if row.tolerance in numbers)
     told = {**{n: Limit(x, "scene") for n, x in scene.tolerance.items()},
             **{n: Limit(x, "--target") for n, x in target.items()}}  # fmt: skip
     lacking_ = [name for name in judged if name not in told]
@@ -39,7 +39,7 @@ def log_limits(
             "from one; give --target 1e-3 (or one each, such as --target angle=1e-3), or --step "
             "with the step of the solver in seconds"
         )
-    return {name: told.get(name, Limit(math.inf, "none")) for name in DEFAULTS}
+    return {name: told.get(name, Limit(math.inf, "none")) for name in numbers}
 
 
 def limit_of(error: Error, evidence: Evidence, errors: Errors) -> Limit:
@@ -63,7 +63,7 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
             continue
         limit = limit_of(row, evidence, errors).number
         for reading in readings_of(log, row.quantity, row.body):
-            if reading.channel.kind.body_kind == row.body_kind or row.quantity == "drive":
+            if reading.channel.kind.body_kind == row.body_kind or row.body_kind == "driver":
                 side = under if row.pure <= limit else over
                 # Two coordinates may be off by too much together, though neither is alone.
                 both = (

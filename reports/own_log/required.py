@@ -22,7 +22,7 @@ def required_name(scene: Scene, name: str) -> tuple[str, str, str]:
         return name, "", name
     body, dot, quantity = name.rpartition(".")
     if (body, quantity) == (scene.driver.link, "angle"):
-        quantity = "drive"
+        quantity = "phase" if scene.is_free else "drive"
     if dot and body in bodies and quantity in QUANTITIES:
         return name, quantity, body
     names = [*QUANTITIES, *sorted(bodies)]
@@ -44,7 +44,7 @@ def absent_names(
     found = []
     for name, quantity, body in required:
         lacks = [
-            each.replace("drive of", "angle of")
+            each.replace("drive of", "angle of").replace("phase of", "angle of")
             for each in not_judged
             if (not quantity or each.startswith(f"{quantity} of "))
             and (not body or _is_of(each.partition(" of ")[2], body))

@@ -75,14 +75,14 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
         return []
     rows = []
     for error in errors.rows:
-        if error.kind not in KINDS:
+        if error.kind not in KINDS or error.tolerance not in judged.limits:
             continue
         limit = limit_of(error, judged, errors)
         read = [
             each
             for each in readings_of(judged.log, error.quantity, error.body)
             if error.source == "reported"
-            and (each.channel.kind.body_kind == error.body_kind or error.quantity == "drive")
+            and (each.channel.kind.body_kind == error.body_kind or error.body_kind == "driver")
         ]
         columns = tuple(each.channel.column for each in read)
         unit = _unit(read, error.unit)
@@ -108,7 +108,7 @@ def _unit(read: Sequence[Reading], otherwise: str) -> tuple[str, float]:
 def _what(error: Error) -> str:
     """An error in words: quantity, body, and where it is not from a column itself, from what."""
     quantity = "angle" if error.quantity == "drive" else error.quantity
-    driver = ", the driver" if error.quantity == "drive" else ""
+    driver = ", the driver" if error.body_kind == "driver" else ""
     differenced = ", differenced" if error.source == "differenced" else ""
     kind = {"start": ", at the start", "passage": ", near a change point"}.get(error.kind, "")
     return f"{quantity} of {error.body}{driver}{differenced}{kind}"
@@ -116,8 +116,7 @@ def _what(error: Error) -> str:
 
 def share_of(error: Error) -> str:
     """What the pure number is a multiple of."""
-    kind = "driver" if error.quantity == "drive" else error.body_kind
-    return QUANTITIES[error.quantity].of(kind).share
+    return QUANTITIES[error.quantity].of(error.body_kind).share
 
 
 def row_table(judged: JudgedLog) -> list[dict[str, object]]:

@@ -22,6 +22,10 @@ WIDE = 90
 """Columns of a terminal that show when an error is largest."""
 ROOM = 1000
 """Characters of a cause."""
+LET_GO = (
+    "Let go: largest errors at the same time over the sensitivity, by how much a small change of "
+    "the start has grown; geometry at the log's own angle; L longest link, w driver's peak speed."
+)
 FEW = 12
 """Names that are listed of what is not judged."""
 
@@ -49,8 +53,7 @@ def _failures(console: Console, judged: JudgedLog) -> None:
         if cause.name not in ADVICE:
             hanging(console, "  cause: ", cause_text(cause), style="cyan")
     if rest := unexplained(judged):
-        hanging(console, "  cause: ", f"none that is known explains {few(rest, 6)}",
-                style="cyan")  # fmt: skip
+        hanging(console, "  cause: ", no_cause_text(judged, rest), style="cyan")
     console.print()
 
 
@@ -100,6 +103,13 @@ def unexplained(judged: JudgedLog) -> list[str]:
     out = (row for row in log_rows(judged) if row.verdict == "out" and told.isdisjoint(row.columns))
     left = dict.fromkeys(column for row in out for column in row.columns)
     return [column_text(column) for column in left]
+
+
+def no_cause_text(judged: JudgedLog, columns: Sequence[str]) -> str:
+    """What is said of columns that are out of tolerance and have no cause."""
+    if judged.scene.is_free:
+        return f"of {few(columns, 6)}: see the notes; none is looked for in what was let go"
+    return f"none that is known explains {few(columns, 6)}"
 
 
 def _table(rows: Sequence[LogRow], width: int) -> Table:
@@ -217,11 +227,14 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
+    moved = f"moved by {drives[judged.drive]}; L longest link, w driver's peak speed."
+    said = f"Largest errors against the closed form {moved}"
+    if judged.scene.is_free:
+        said = LET_GO
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     return [
-        f"Largest errors against the closed form moved by {drives[judged.drive]}; L longest link, "
-        "w driver's peak speed.",
+        said,
         f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

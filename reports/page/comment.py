@@ -11,7 +11,7 @@ from reports.output.markdown import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.lines import called, named
+from reports.results.lines import Line, called, named
 from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
@@ -89,7 +89,7 @@ def _outside(report: Report) -> Iterator[str]:
         (
             row["scene"],
             f"{row['engine']} {row['variant']}",
-            f"{row['steps_per_turn']:g}",
+            steps_told(float(row["steps_per_turn"]), row["drive"]),
             row["status"],
             ", ".join(_rule(name) for name in str(row["failed_rules"]).split()),
         )
@@ -124,8 +124,9 @@ def _recommendation(one: Recommendation) -> tuple[str, ...]:
     target, best = short_target(one.target), one.best
     if one.reason:
         return (target, best.engine, "none", *[""] * 5)
-    times = (f"{best.us_per_step:.2f}", f"{1e3 * best.s_per_turn:.3g}")
-    steps, error = f"{best.steps_per_turn:g}", short(best.worst_error)
+    per_second = " /s" * (best.drive == "free")
+    times = (f"{best.us_per_step:.2f}", f"{1e3 * best.s_per_turn:.3g}{per_second}")
+    steps, error = steps_told(best.steps_per_turn, best.drive), short(best.worst_error)
     name = called(best.variant, best.drive)
     return (target, best.engine, name, steps, *times, error, str(best.worst_scene))
 
@@ -184,8 +185,9 @@ def _time(costs: Costs) -> list[str]:
     ]
     if costs.timed and part:
         steps[0] += f" ({part})"
+    unit = " /s" * (costs.drive == "free")
     turns = [
-        costs.part(costs.reached[target]) or (f"{1e3 * s:.3g}" if math.isfinite(s) else "")
+        costs.part(costs.reached[target]) or (f"{1e3 * s:.3g}{unit}" if math.isfinite(s) else "")
         for target, s in costs.s_to.items()
     ]
     return [name, *steps, *turns]
@@ -193,21 +195,23 @@ def _time(costs: Costs) -> list[str]:
 
 def _fits(report: Report) -> str:
     """Order or floor in words, a row for each scene and variant."""
-    rows = [
-        (line.scene, label(named(line)), line.words, *_finest(line.fit.runs, line.period_s))
-        for line in report.lines
-    ]
+    rows = [(line.scene, label(named(line)), line.words, *_finest(line)) for line in report.lines]
     heads = ("scene", "variant", "error of place", "finest error:", "at steps per turn:")
     title = f"{count(len(rows), 'line')}: scene by scene and variant by variant"
     return folded(title, table(heads, rows, ROOM["fits"]))
 
 
-def _finest(runs: tuple[tuple[float, float], ...], period_s: float) -> tuple[str, str]:
+def _finest(line: Line) -> tuple[str, str]:
     """The error at the finest step that ended well, and its steps per turn."""
-    if not runs:
+    if not line.fit.runs:
         return "", ""
-    dt_s, error = runs[0]
-    return short(error), f"{period_s / dt_s:.4g}"
+    dt_s, error = line.fit.runs[0]
+    return short(error), steps_told(float(f"{line.period_s / dt_s:.4g}"), line.drive)
+
+
+def steps_told(steps: float, drive: str) -> str:
+    """Steps per turn, or of what was let go per second, which is said."""
+    return f"{steps:g}" + " /s" * (drive == "free")
 
 
 def _failures(report: Report) -> Iterator[str]:
@@ -216,7 +220,7 @@ def _failures(report: Report) -> Iterator[str]:
     for line in report.lines:
         bad = line.cells[line.cells["status"] != "ok"]
         for status, cells in bad.groupby("status", sort=False):
-            steps = ", ".join(f"{n:g}" for n in cells["steps_per_turn"])
+            steps = ", ".join(steps_told(n, line.drive) for n in cells["steps_per_turn"])
             reason = str(cells["reason"].iloc[0])
             number += len(cells)
             rows.append((line.scene, label(named(line)), status, steps, reason))

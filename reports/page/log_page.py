@@ -39,7 +39,7 @@ def _head(judged: JudgedLog, facts: Mapping[str, str]) -> Head:
     return Head(
         title=f"crankcheck: {name_text(PurePath(judged.log.source).name or judged.log.source)}",
         facts=(
-            f"beside the closed form of {judged.scene.name}",
+            f"beside the {judged.truth_name} of {judged.scene.name}",
             count(len(judged.log.readings), "channel"),
             count(time_s.size, "row"),
             f"{time_s[-1] - time_s[0]:.4g} s",

@@ -79,17 +79,22 @@ def counted(
             f"engine takes up its pins in the first {SETTLING}, so a run has at least "
             f"{least}: take {least / per_turn:.3g} turns or more, or a shorter step"
         )
-    if every > math.ceil(steps):
-        raise CrankcheckError(
-            f"--every {every}: the run of {scene.name} has {math.ceil(steps)} steps, so that none "
-            "is logged but the start; log more of them, or take more turns"
-        )
+    _refuse_unlogged(scene, every, steps, "more turns")
     return dt_s or period / per_turn, math.ceil(steps)
 
 
-def counted_free(scene: Scene, dt_s: float | None, duration_s: float | None) -> tuple[float, int]:
+def counted_free(
+    scene: Scene,
+    dt_s: float | None,
+    duration_s: float | None,
+    *,
+    every: int = 1,
+    least: int = LEAST_STEPS,
+) -> tuple[float, int]:
     """Step [s] and number of steps for a scene that is let go, from --dt (default 1e-3 s, or a
     5000th of the time that the scene says) and --duration (default: that time).
+
+    Every ``every``-th step is logged; there are at least ``least``.
 
     Raises
     ------
@@ -103,13 +108,24 @@ def counted_free(scene: Scene, dt_s: float | None, duration_s: float | None) -> 
     if duration_s is not None:
         lasts_s = positive("--duration", duration_s, "seconds, such as 10")
     steps = lasts_s / dt_s * (1 - 1e-12)  # may be infinite
-    if not LEAST_STEPS - 1 < steps <= MOST_STEPS:
+    most = min(MOST_STEPS * every, MOST_UNLOGGED)
+    if not least - 1 < steps <= most:
+        logged = ", as all are logged" * (every == 1)
         raise CrankcheckError(
             f"--dt {dt_s:g} --duration {lasts_s:g}: {steps:.6g} steps of {scene.name}; a run has "
-            f"{LEAST_STEPS} at least, and {MOST_STEPS} at most, as all are logged: take another "
-            "step, or another duration"
+            f"{least} at least, and {most} at most{logged}: take another step, or another duration"
         )
+    _refuse_unlogged(scene, every, steps, "a longer duration")
     return dt_s, math.ceil(steps)
+
+
+def _refuse_unlogged(scene: Scene, every: int, steps: float, longer: str) -> None:
+    """Refuse a run that logs no step but its start. Raises CrankcheckError."""
+    if every > math.ceil(steps):
+        raise CrankcheckError(
+            f"--every {every}: the run of {scene.name} has {math.ceil(steps)} steps, so that none "
+            f"is logged but the start; log more of them, or take {longer}"
+        )
 
 
 def positive(option: str, value: float, unit: str) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import pandas as pd
 
 from reports.results.cost import mean
-from reports.results.lines import Line, called, numbers
+from reports.results.lines import Line, called, numbers, turn_of
 from sim.engine import Drive, SettingValue
 
 NOT_RUN = "not run"
@@ -44,7 +44,12 @@ class Candidate:
     @property
     def name(self) -> str:
         """As a sentence calls it."""
-        return f"{called(self.variant, self.drive)} at {self.steps_per_turn:g} steps a turn"
+        return f"{called(self.variant, self.drive)} at {self.steps_told}"
+
+    @property
+    def steps_told(self) -> str:
+        """Its step in words."""
+        return f"{self.steps_per_turn:g} steps a {turn_of(self.drive)}"
 
     @property
     def worst_scene(self) -> str | None:

@@ -48,8 +48,13 @@ class Line:
         return called(self.variant, self.drive)
 
     @property
+    def lasts_s(self) -> float:
+        """How long each run is [s]."""
+        return self.period_s * float(self.cells.iloc[0]["turns"])
+
+    @property
     def period_s(self) -> float:
-        """The period of the driver [s]."""
+        """The period of the driver [s]; a second of what is let go."""
         first = self.cells.iloc[0]
         return float(first["dt_s"] * first["steps_per_turn"])
 
@@ -66,6 +71,11 @@ def named(line: Line) -> Named:
 def called(variant: str, drive: Drive) -> str:
     """A variant by its name, and its drive where that is not the usual one."""
     return variant if drive == "prescribed" else f"{variant}, {drive} drive"
+
+
+def turn_of(drive: Drive) -> str:
+    """What steps and costs are counted over: what is let go has no turns."""
+    return "second" if drive == "free" else "turn"
 
 
 def lines(stored: Stored, quantity: str = "place_pure") -> tuple[Line, ...]:
@@ -143,7 +153,12 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
         settings=json.loads(str(first["asked"])),
         cells=rows,
         fit=fit,
-        words=words(fit, _unit(quantity), float(first["dt_s"] * first["steps_per_turn"])),
+        words=words(
+            fit,
+            _unit(quantity),
+            float(first["dt_s"] * first["steps_per_turn"]),
+            turn_of(cast(Drive, str(first["drive"]))),
+        ),
     )
 
 

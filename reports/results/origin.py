@@ -40,7 +40,7 @@ def study(lines: Sequence[Line]) -> str:
     turns = sorted({float(n) for line in lines for n in line.cells["turns"]})
     if all(line.drive == "free" for line in lines):
         dts = sorted({float(dt) for line in lines for dt in line.cells["dt_s"]}, reverse=True)
-        lasts = listed([duration(s) for s in sorted({line.period_s for line in lines})])
+        lasts = listed([duration(s) for s in sorted({line.lasts_s for line in lines})])
         each = listed([duration(dt) for dt in dts])
         return f"Study: {where}, {variants}, let go for {lasts}, dt {each}"
     to = f"{steps[0]:g}" + (f" to {steps[-1]:g}" if len(steps) > 1 else "")

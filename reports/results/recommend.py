@@ -41,9 +41,10 @@ class Recommendation:
     reason: str = ""
 
     def snippet(self, period_s: float = PERIOD_S) -> str:
-        """Text to copy and paste, headed by what it promises; empty where there is none."""
+        """Text to copy and paste, headed by what it promises; empty where there is none: it says
+        how a step goes with the speed of a driver, which what is let go has not."""
         best = self.best
-        if self.reason or best.engine not in offering("snippet"):
+        if self.reason or best.drive == "free" or best.engine not in offering("snippet"):
             return ""
         scenes = "the scene" if best.scenes == 1 else f"each of {best.scenes} scenes"
         head = (
@@ -60,15 +61,24 @@ class Recommendation:
 def recommendations(
     stored: Stored, targets: Sequence[float] = TARGETS
 ) -> tuple[Recommendation, ...]:
-    """One for each engine and target.
+    """One for each engine and target, of what was driven, and of what was let go.
 
     Of all settings and measured steps whose error is at most the target on every scene of the
     store, those with the least time per turn (geometric mean over the scenes) are chosen; of
     settings that are equal within the noise, the ones with the least error. Of two steps of the
     same settings the longer costs less: that takes no clock.
     """
-    every = lines(stored)
     within = noise(stored)
+    every = lines(stored)
+    free = tuple(line for line in every if line.drive == "free")
+    driven = tuple(line for line in every if line.drive != "free")
+    return (*_of_lines(driven, targets, within), *_of_lines(free, targets, within))
+
+
+def _of_lines(
+    every: Sequence[Line], targets: Sequence[float], within: float
+) -> tuple[Recommendation, ...]:
+    """One for each engine and target, of some lines."""
     choice = candidates(every)
     engines = dict.fromkeys(line.engine for line in every)
     return tuple(

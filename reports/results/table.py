@@ -12,7 +12,7 @@ from rich.text import Text
 from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.results.cost import SHARE, noise, pairs
-from reports.results.lines import called
+from reports.results.lines import called, turn_of
 from reports.results.one_processor import left_out, machine
 from reports.results.recommend import Recommendation
 from reports.store.reader import Stored
@@ -24,13 +24,24 @@ WIDE = 90
 def recommendation_table(
     recommendations: Sequence[Recommendation], width: int = WIDE
 ) -> RenderableType:
-    """The cheapest settings for each target and engine, with what is to be said of them below."""
+    """The cheapest settings for each target and engine, with what is to be said of them below: a
+    table of what was driven, and one of what was let go."""
+    free = [one for one in recommendations if one.best.drive == "free"]
+    driven = [one for one in recommendations if one.best.drive != "free"]
+    if free and driven:
+        return Group(_table(driven, width), "", _table(free, width))
+    return _table(recommendations, width)
+
+
+def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableType:
+    """What was driven, or what was let go."""
     wide = width >= WIDE
     table = plain_table("cheapest settings that keep every scene within a target")
+    turn = turn_of(recommendations[0].best.drive) if recommendations else "turn"
     table.add_column("target\nrad", no_wrap=True, justify="right")
     table.add_column("engine", no_wrap=True)
     table.add_column("settings", overflow="fold", min_width=10)
-    for head in ("steps\na turn", "us per\nstep", "ms per\nturn", "worst\nerror"):
+    for head in (f"steps\na {turn}", "us per\nstep", f"ms per\n{turn}", "worst\nerror"):
         table.add_column(head, justify="right", no_wrap=True)
     if wide:
         table.add_column("on scene", overflow="fold")

@@ -43,7 +43,7 @@ def broken(one: Candidate, choice: Sequence[Candidate], target: float) -> str:
     if not finer:
         return ""
     first = min(finer, key=lambda c: c.steps_per_turn)
-    return f"not at {first.steps_per_turn:g} steps a turn: {few(_missed(first, target), SHOWN)}"
+    return f"not at {first.steps_told}: {few(_missed(first, target), SHOWN)}"
 
 
 def _shortfall(one: Candidate, target: float) -> str:

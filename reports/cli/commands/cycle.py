@@ -33,8 +33,7 @@ def run_cycle(request: CycleRequest, console: Console) -> int:
         _write(request.output, cycle)
         name = cycle.machine.scene.name
         tell_of(console, f"{request.output}: the steady cycle of {name}")
-    if request.output is None and request.figures is None:
-        show_cycle(console, cycle)
+    show_cycle(console, cycle)
     return 0
 
 

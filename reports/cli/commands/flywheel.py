@@ -43,8 +43,7 @@ def run_flywheel(request: FlywheelRequest, console: Console) -> int:
         write(request.written, _scene(found, free=request.free))
         told = ", let go in its steady cycle" * request.free
         tell_of(console, f"{request.written}: {found.cycle.machine.scene.name} with it{told}")
-    if request.output is None and request.figures is None:
-        show_flywheel(console, found)
+    show_flywheel(console, found)
     return 0
 
 

@@ -10,9 +10,10 @@ from rich.console import Console
 
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
+from models.released import let_go
 from models.scene import Scene
 from reports.cli.judging import JudgeRequest
-from reports.judge.tolerance import check_names, parse
+from reports.judge.tolerance import check_names, parse, refuse_of_other_motion
 from reports.logs.blank_map import blank_map
 from reports.logs.columns import read_columns
 from reports.logs.map_file import Map, map_text, read_map
@@ -37,7 +38,10 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     read or asked, before anything is written."""
     asked = _checked(request)
     scene = load_scene(request.scene)
+    if request.free:
+        scene = let_go(scene)
     check_names(scene)
+    refuse_of_other_motion("--target", [*asked.target.keys() - {EVERY}], [scene.is_free])
     map_ = read_map(request.map) if request.map else Map()
     if request.write_map is not None:
         told = f"{request.write_map}: {_write_map(request.write_map, request.log, scene, map_)}"

@@ -12,11 +12,13 @@ from rich.text import Text
 
 from analytic.kinematics import solve
 from analytic.structure.mobility import analyse
-from models.errors import StructureError, harmless
+from models.errors import CrankcheckError, StructureError, harmless
 from models.files import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf import build
 from models.mjcf_options import exact
+from models.motion import State
 from models.scene import Scene
+from reports.compare.free.kept_motion import released_state
 from reports.describe.law import describe_law
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
@@ -76,10 +78,20 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
     if output is not None:
         check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
     scene = load_scene(name)
-    start = solve(scene, np.zeros(1)).state()
+    start = start_of(scene)
     text = build(scene, start, replace(exact(scene), close=close))
     if output is None:
         console.file.write(text)
         return
     write(output, text)
     console.print(harmless(f"{output}: MJCF of {scene.name}"), highlight=False, markup=False)
+
+
+def start_of(scene: Scene) -> State:
+    """Where a scene begins. Raises CrankcheckError where it can not."""
+    try:
+        return solve(scene, np.zeros(1)).state()
+    except CrankcheckError:
+        if not scene.is_free:
+            raise
+        return released_state(scene)  # of several freedoms there is no closed form

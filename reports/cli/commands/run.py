@@ -31,6 +31,7 @@ def run_run(request: RunRequest, console: Console) -> int:
         steps_per_turn=request.steps_per_turn,
         dt_s=request.dt_s,
         turns=request.turns,
+        duration_s=request.duration_s,
         every=request.every,
         drive=request.drive,
         forces=request.forces,
@@ -58,10 +59,10 @@ def _written(request: RunRequest, done: Simulation) -> str:
     """What was written, what came of the run, and how the log is judged."""
     assert done.motion is not None
     judge = ["crankcheck", "judge", request.scene, str(request.output), "--step", repr(done.dt_s)]
-    judge += ["--forces"] * request.forces
+    judge += ["--forces"] * request.forces + ["--free"] * (request.drive == "free")
     lines = [
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}",
-        f"next: {shlex.join(judge)}" if done.drive != "free" else "",
+        f"next: {shlex.join(judge)}",
     ]
-    return harmless("\n".join(line for line in lines if line))
+    return harmless("\n".join(lines))

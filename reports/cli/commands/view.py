@@ -6,12 +6,11 @@ import os
 import sys
 from pathlib import Path
 
-import numpy as np
 from rich.console import Console
 
-from analytic.kinematics import solve
 from models.errors import harmless
 from models.files import find_scene, load_scene
+from reports.cli.commands.listing import start_of
 from reports.output.write import check_file, write
 from sim.viewing import viewer
 
@@ -31,7 +30,7 @@ def run_view(
         check_file(output, "-o", ENDINGS, inputs=read)
     scene = load_scene(name)
     if output is None and has_screen() and not with_forces:
-        viewer()(scene, solve(scene, np.zeros(1)).state())
+        viewer()(scene, start_of(scene))
         return
     if output is None:
         output = Path(f"{scene.name}.gif")

@@ -50,6 +50,20 @@ class FreeBeside(Beside):
         """The true angular velocity of the driver at the logged instants [rad/s], (T,)."""
         return self.reference.links[self.scene.driver.link].omega
 
+    @property
+    def no_geometry(self) -> str:
+        """Why the run does not say in which position it is, "" where it does."""
+        return (
+            ""
+            if np.all(np.isfinite(self.crank))
+            else ("no geometry: the logged angle of the driver is not finite")
+        )
+
+    @property
+    def tells_momentum(self) -> bool:
+        """Whether places and velocities of all bodies are to be asked for."""
+        return True
+
     def driver_at(self, time_s: Array, reference: Motion) -> Array:
         return reference.links[self.scene.driver.link].theta
 

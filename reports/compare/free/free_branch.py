@@ -25,7 +25,7 @@ def free_departure(beside: FreeBeside) -> Departure | None:
     links are held to the position that the run's own coordinate has. With several freedoms the
     phase alone tells.
     """
-    if not beside.free.by_dyads:
+    if not beside.free.by_dyads or beside.no_geometry:
         return None
     closed = np.ones(beside.motion.time_s.shape, dtype=bool)
     for gap in beside.run.gaps.values():

@@ -114,8 +114,8 @@ def _phase_and_places(beside: FreeBeside, tracks: Iterable[Track], at: Instants)
 def _geometry(beside: FreeBeside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:
     """Errors against the truth in the position of the run's own coordinate, or a note of why there
     are none."""
-    if not np.all(np.isfinite(beside.crank)):
-        return [], ("no geometry: the logged angle of the driver is not finite",)
+    if beside.no_geometry:
+        return [], (beside.no_geometry,)
     try:
         tracks = beside.tracks((GEOMETRY.name,), beside.at_crank)
     except CrankcheckError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from models.released import Released
 from models.scene import Driver, Scene
 from reports.compare.beside import Beside, Truth
 from reports.compare.free.free_beside import FreeBeside
-from reports.compare.free.kept_motion import kept_motion
+from reports.compare.free.kept_motion import kept_motion, released_state
 from reports.compare.free.some_samples import first_samples
 from reports.quantities.free import PHASE
 from sim.engine import Run
@@ -31,7 +32,15 @@ def free_truth(
 ) -> FreeTruth:
     """The truth of a scene that is let go, for so many steps of ``dt_s``. Raises CrankcheckError as
     `analytic.free.release`."""
-    motion = kept_motion(scene, steps * dt_s)
+    return free_truth_until(scene, steps * dt_s, dt_s, tolerance)
+
+
+def free_truth_until(
+    scene: Scene, lasts_s: float, dt_s: float, tolerance: Mapping[str, float] | None = None
+) -> FreeTruth:
+    """As `free_truth`, for so long [s]; ``dt_s`` is 0 where no step is known, and the limit of the
+    phase is then the widest that there is, unless one is given."""
+    motion = kept_motion(scene, lasts_s)
     peak = motion.peak_speed_rad_s or 1.0 / motion.until_s
     law = Released(
         float(motion.at(np.zeros(1)).links[scene.driver.link].theta[0]), peak, motion.until_s
@@ -39,6 +48,7 @@ def free_truth(
     given = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
     numbers = PHASE.criteria[0].tolerance
     budget = min(numbers.coefficient * (peak * dt_s) ** numbers.order, numbers.cap)
+    budget = budget if dt_s else numbers.cap
     paced = replace(scene, driver=Driver(scene.driver.link, law))
     return FreeTruth(paced, free=motion, known_rad=LEAST_KNOWN * (given or budget))
 
@@ -52,9 +62,9 @@ class FreeTruth(Truth):
     free: FreeMotion = field(kw_only=True)
     known_rad: float = field(kw_only=True)
 
-    @property
+    @cached_property
     def start(self) -> State:
-        return self.at(np.zeros(1)).state()
+        return released_state(self.free.scene)
 
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
@@ -69,14 +79,19 @@ class FreeTruth(Truth):
     def with_forces_at(self, time_s: Array) -> Motion:
         return self.free.with_forces(self.at(time_s), bound=self.bound)
 
+    def known(self, time_s: Array) -> int:
+        """How many of the first instants (T,) the truth is known well enough at to judge by it;
+        those within a step before the start or after the end are as well known as these."""
+        within = np.clip(time_s, 0.0, self.free.until_s)
+        unsure = self.free.error_rad(within) / self.free.sensitivity(within)
+        lost = np.flatnonzero(~(unsure <= self.known_rad))
+        return int(lost[0]) if lost.size else time_s.size
+
     def beside(self, run: Run) -> Beside | None:
         """The run as far as the truth is known, beside it; None where it logged nothing."""
         motion = run.motion
         if motion is None or not motion.time_s.size:
             return None
-        unsure = self.free.error_rad(motion.time_s) / self.free.sensitivity(motion.time_s)
-        lost = np.flatnonzero(~(unsure <= self.known_rad))
-        kept = max(int(lost[0]), 1) if lost.size else motion.time_s.size
-        known = first_samples(run, kept)
+        known = first_samples(run, max(self.known(motion.time_s), 1))
         assert known.motion is not None
         return FreeBeside(self, known, known.motion, whole_run=run, free=self.free)

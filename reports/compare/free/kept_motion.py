@@ -6,6 +6,9 @@ import pickle
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from models.motion import State
 from models.released import LONGEST_S
 from models.scene import Scene
 
@@ -15,12 +18,21 @@ if TYPE_CHECKING:
 BEYOND = 1.01
 """How much longer than asked for is integrated, where loads over time say so much: some velocities
 belong to half a step after a run."""
+LOOK = 1e-3
+"""The part of the scene's own duration that is integrated for what is at its start."""
 
 
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
     """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
     `analytic.free.release`."""
     return _released(pickle.dumps(scene), max(lasts_s, _told_s(scene, BEYOND * lasts_s)))
+
+
+def released_state(scene: Scene) -> State:
+    """What a scene that is let go starts from: the same to the last bit however long it is left
+    free, with the accelerations that its masses and forces give it. Raises CrankcheckError as
+    `analytic.free.release`."""
+    return kept_motion(scene, LOOK * scene.driver.law.period_s).at(np.zeros(1), bound=False).state()
 
 
 def _told_s(scene: Scene, until_s: float) -> float:

@@ -17,7 +17,7 @@ def momentum_rows(beside: FreeBeside) -> list[Error]:
     """The drift of the angular momentum about the one point that pins a mechanism to the ground,
     of means over windows as that of the energy; none where something else acts from outside."""
     run, scene = beside.run, beside.scene
-    pivot = kept_about(scene)
+    pivot = kept_about(scene) if beside.tells_momentum else None
     if pivot is None or run.velocity_time_s is None or run.velocity_time_s.size < 2:
         return []
     time_s = run.velocity_time_s

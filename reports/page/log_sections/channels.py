@@ -33,6 +33,7 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) ->
             "against": "crank angle" if turning else "part of the period",
             "is_thinned": any(curve.near is not None for curve in drawn),
             "has_places": has_places,
+            "truth": judged.truth_name,
         },
         embedded={
             "channels": channels,
@@ -112,7 +113,7 @@ def _told(judged: JudgedLog, curve: DrawnChannel) -> Iterator[str]:
     if curve.turns:
         way = "up" if curve.turns > 0 else "down"
         turns = count(abs(curve.turns), "turn")
-        yield f"Whole turns do not count: the closed form is drawn {turns} {way}."
+        yield f"Whole turns do not count: the {judged.truth_name} is drawn {turns} {way}."
     if curve.reading is not None and curve.reading.channel.relative_to:
         yield "The truth is that of both links."
     if curve.whole.is_thinned:

@@ -47,6 +47,7 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section | None:
         words={
             "scene": scene_words(judged.beside.scene),
             "names": [stretch.name for stretch, _ in shown],
+            "truth": judged.truth_name,
             "origins": _told(bodies[0]),
             "left_out": bodies[0].left_out,
             "apart": any(piece.apart for piece in bodies[0].pieces),

@@ -43,7 +43,7 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
                 for each in judged.failures
             ],
             "causes": [(sentence_text(each.text), map_lines(each)) for each in judged.causes],
-            "unexplained": sentence_text(few(unexplained(judged), 6)) if judged.failures else "",
+            "unexplained": _unexplained(judged),
             "fit": fit_text(judged) if judged.fit else "",
             "notes": [sentence_text(note) for note in judged.notes],
             "rows": [_row(row, numbers) for row in rows],
@@ -55,6 +55,12 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel]) -> Section:
         scripts=("copying.js",),
         styles=("log.css",),
     )
+
+
+def _unexplained(judged: JudgedLog) -> str:
+    """The columns that no cause explains; of what was let go none is looked for."""
+    is_explained = judged.scene.is_free or not judged.failures
+    return "" if is_explained else sentence_text(few(unexplained(judged), 6))
 
 
 def _row(row: LogRow, numbers: dict[str, int]) -> dict[str, object]:

@@ -10,6 +10,8 @@ from reports.page.sections.section import Section
 from reports.page.thinning import BUDGET, steps_held
 from reports.results.lines import Line, lines
 from reports.results.overview import Report
+from reports.results.recommend import Recommendation
+from reports.results.table import short_target
 
 SHOWN = (
     *("phase_pure", "phase_limit_pure", "geometry_pure", "energy_pure"),
@@ -17,6 +19,8 @@ SHOWN = (
 )
 """The columns of the table."""
 SCRIPTS = ("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js")
+FREE_DRIVE = ", free drive"
+"""What a variant is called by where others were driven: here all were let go."""
 ERRORS = {
     "phase_pure": ("phase, over the sensitivity", "rad"),
     "geometry_pure": ("geometry at the run's own angle", "rad, or of longest link"),
@@ -45,6 +49,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "rows": [row for line in lines for row in _rows(report, line)],
             "scenes": [_words(name, report.scenes[name]) for name in names],
             "errors": {name: ERRORS[name][0] for name in fits},
+            "costs": [_cost(one) for one in report.recommendations if one.best.drive == "free"],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
@@ -71,6 +76,22 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
         | {f"{name}_told": _horizon(cell[f"horizon_{name}_s"]) for name in ("1e-1", "1e-3")}
         for cell in line.cells.to_dict("records")
     ]
+
+
+def _cost(one: Recommendation) -> dict[str, object]:
+    """The cheapest settings of an engine that keep a target on every scene, as a row."""
+    best = one.best
+    return {
+        "target": short_target(one.target),
+        "name": f"{best.engine} {best.variant}",
+        "reason": one.reason.replace(FREE_DRIVE, ""),
+        "caution": one.caution.replace(FREE_DRIVE, ""),
+        "dt_s": 1.0 / best.steps_per_turn,
+        "us_per_step": best.us_per_step,
+        "ms": 1e3 * best.s_per_turn,
+        "error": best.worst_error,
+        "scene": best.worst_scene,
+    }
 
 
 def _horizon(time_s: float | None) -> str:

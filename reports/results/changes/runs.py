@@ -38,7 +38,9 @@ class CellName:
     @property
     def label(self) -> str:
         servo = "" if self.drive == "prescribed" else f", drive {self.drive}"
-        long = "" if self.is_free else f", {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
+        long = f", {self.turns:g} turn{'' if self.turns == 1.0 else 's'}"
+        if self.is_free:
+            long = f" for {self.turns:g} s"
         return f"{self.scene}, {self.engine} {self.variant}{servo}, {steps_told([self])}{long}"
 
     @property
@@ -48,12 +50,11 @@ class CellName:
 
 
 def steps_told(names: Collection[CellName]) -> str:
-    """How many steps cells of one line have, in words: in a turn, or in all of free motion."""
-    if all(name.is_free for name in names):
-        steps = sorted({same(name.steps_per_turn * name.turns) for name in names})
-        return f"{', '.join(f'{each:g}' for each in steps)} steps"
+    """How many steps cells of one line have, in words: in a turn, or in a second of what was let
+    go."""
+    turn = "second" if all(name.is_free for name in names) else "turn"
     steps = sorted({name.steps_per_turn for name in names})
-    return f"{', '.join(f'{each:g}' for each in steps)} steps a turn"
+    return f"{', '.join(f'{each:g}' for each in steps)} steps a {turn}"
 
 
 @dataclass(frozen=True)
@@ -115,14 +116,20 @@ class StoredRun:
     def holds(self) -> str:
         """What there is to compare, in a sentence."""
         names = list(self.cells)
+        driven = [name for name in names if not name.is_free]
+        free = [name for name in names if name.is_free]
         parts = [
             f"{count(len(names), 'cell')}: scenes {each_once(name.scene for name in names)}",
             each_once(f"{name.engine} {name.variant}" for name in names),
-            f"{each_once(f'{name.steps_per_turn:g}' for name in names)} steps a turn",
-            f"{each_once(f'{name.turns:g}' for name in names)} turns",
+            *([steps_told(driven), f"{_each_long(driven)} turns"] if driven else []),
+            *([f"let go {steps_told(free)}", f"for {_each_long(free)} s"] if free else []),
             f"drive {each_once(name.drive for name in names)}",
         ]
         return f"{self.label} holds {'; '.join(parts)}"
+
+
+def _each_long(names: Collection[CellName]) -> str:
+    return each_once(f"{name.turns:g}" for name in names)
 
 
 def run_of(

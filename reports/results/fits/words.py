@@ -17,20 +17,20 @@ VAGUE = 0.15
 """An order that is known no better than this is told with its uncertainty."""
 
 
-def words(fit: LineFit, unit: str, period_s: float) -> str:
+def words(fit: LineFit, unit: str, period_s: float, turn: str = "turn") -> str:
     """The verdict in a few words: 'order 2.0, no floor seen', 'diverges below 90 steps per turn'.
 
-    ``period_s`` is the time of a turn [s].
+    ``period_s`` is the time of a turn [s], or of what else is called ``turn``.
     """
     if fit.kind == "diverges":
         verb = FAILS.get(fit.failed, "fails")
         if "ok" not in fit.statuses:
             return f"{verb} at every step"
-        return f"{verb} at {_per_turn(fit.fails_from_s, period_s)}"
+        return f"{verb} at {_per_turn(fit.fails_from_s, period_s, turn)}"
     verdict = _told(fit, unit)
     if not fit.failed:
         return verdict
-    below = _per_turn(fit.stable_from_s, period_s)
+    below = _per_turn(fit.stable_from_s, period_s, turn)
     return f"{verdict}; {FAILS.get(fit.failed, 'fails')} below {below}"
 
 
@@ -68,5 +68,5 @@ def _irregular(fit: LineFit, unit: str) -> str:
     return f"irregular: follows no order, {short(last)} {unit} at the finest step"
 
 
-def _per_turn(dt_s: float, period_s: float) -> str:
-    return f"{period_s / dt_s:.4g} steps per turn"
+def _per_turn(dt_s: float, period_s: float, turn: str) -> str:
+    return f"{period_s / dt_s:.4g} steps per {turn}"

@@ -59,6 +59,27 @@ def test_what_it_tells_to_do_next_judges_the_log(tmp_path: Path) -> None:
     assert "WITHIN TOLERANCE" in judged.output
 
 
+def test_what_is_let_go_has_its_length_in_seconds_and_is_judged(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    told = crank("run", "fourbar-swing", "--duration", "0.2", "-o", str(path))
+    (command,) = re.findall(r"next: crankcheck (.*)", told.output)
+    judged = crank(*shlex.split(command))
+    assert judged.exit_code == 0, judged.output
+    assert "WITHIN TOLERANCE" in judged.output
+    shown = crank("run", "slider-crank-central", "--drive", "free", "--duration", "0.2")
+    assert "dt 0.001 s, 200 steps, 0.2 s" in shown.output
+    assert "turn" not in shown.output
+
+
+def test_the_log_of_a_driven_scene_that_was_let_go_is_judged_as_such(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    free = ["--drive", "free", "--duration", "0.2"]
+    told = crank("run", "slider-crank-central", *free, "-o", str(path))
+    (command,) = re.findall(r"next: crankcheck (.*)", told.output)
+    assert command.endswith("--free")
+    assert crank(*shlex.split(command)).exit_code == 0
+
+
 def test_without_a_file_it_shows_some_samples_and_what_came_of_the_run() -> None:
     result = crank("run", "shaper", *COARSE, "--profile", "as-shipped")
     assert result.exit_code == 0
@@ -99,6 +120,10 @@ def test_what_an_engine_can_not_hold_is_told_and_nothing_written(tmp_path: Path)
         ("shaper --profile tund", "profile 'tund': mujoco has none of that name"),
         ("shaper --dt 1e-3 --steps-per-turn 90", "--dt and --steps-per-turn: both set the step"),
         ("shaper --turns nan", "--turns nan: give a number above 0"),
+        ("fourbar-swing --turns 1", "--turns: fourbar-swing is let go, and has no turns"),
+        ("fourbar-swing --duration -1", "--duration -1: give a number above 0"),
+        ("fourbar-swing --duration 1e9", "1e+12 steps of fourbar-swing"),
+        ("shaper --duration 1", "--duration: it is of runs that are let go, and shaper is driven"),
         ("shaper --every 0", "--every: found 0; give a whole number, at least 1"),
         ("shaper --drive x", "--drive 'x': unknown; use prescribed, servo or free"),
         ("shaper --turns 1e9", "steps of shaper; at most 300000 are logged"),

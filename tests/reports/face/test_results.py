@@ -247,7 +247,12 @@ def test_a_run_that_an_engine_can_not_do_is_told_and_drawn() -> None:
 
 
 def test_a_scene_that_is_let_go_runs_free_and_is_not_driven() -> None:
-    done = crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, turns=0.02)
+    done = crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, duration_s=0.2)
+    assert done.steps == 20
     assert done.drive == "free"
     with pytest.raises(CrankcheckError, match="fourbar-swing is let go, and nothing drives it"):
-        crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, turns=0.02, drive="servo")
+        crankcheck.run("fourbar-swing", engine="pymunk", dt_s=0.01, drive="servo")
+    with pytest.raises(CrankcheckError, match="turns: fourbar-swing is let go, and has no turns"):
+        crankcheck.run("fourbar-swing", turns=0.02)
+    with pytest.raises(CrankcheckError, match="duration_s: it is of runs that are let go"):
+        crankcheck.run("shaper", duration_s=0.2)

@@ -185,3 +185,10 @@ def test_in_python_messages_name_arguments() -> None:
     for delta in (0.0, "much", True):
         with pytest.raises(crankcheck.CrankcheckError, match=r"^delta"):
             crankcheck.flywheel(scene, delta)  # type: ignore[arg-type]  # that is what is refused
+
+
+@pytest.mark.parametrize("words", ["cycle compressor", "flywheel compressor --delta 0.02"])
+def test_what_is_written_is_shown_as_well(crank: Crank, words: str) -> None:
+    shown = crank(*words.split()).output
+    told = crank(*words.split(), "-o", "cycle.csv").output
+    assert told.endswith(shown)

@@ -208,7 +208,7 @@ def test_what_is_compared_of_free_motion_alone_is_compared_with_an_earlier_run()
 
 def test_a_cell_of_free_motion_is_named_by_its_steps_and_not_by_turns() -> None:
     free = CellName("swing", "pymunk", "tuned", "free", 1250.0, 0.1)
-    assert free.label == "swing, pymunk tuned, drive free, 125 steps"
-    assert steps_told([free, replace(free, steps_per_turn=2000.0)]) == "125, 200 steps"
+    assert free.label == "swing, pymunk tuned, drive free, 1250 steps a second for 0.1 s"
+    assert steps_told([free, replace(free, steps_per_turn=2000.0)]) == "1250, 2000 steps a second"
     driven = replace(free, drive="prescribed", turns=2.0)
     assert driven.label == "swing, pymunk tuned, 1250 steps a turn, 2 turns"

@@ -1,0 +1,157 @@
+"""The log of a mechanism that was let go, which nothing drives: what it is held to, and what is
+told of it in place of causes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from models.errors import CrankcheckError, few
+from reports.compare.errors import Error, Errors
+from reports.compare.free.free_truth import FreeTruth, free_truth_until
+from reports.compare.free.kept_motion import BEYOND
+from reports.judge.tolerance import FREE
+from reports.logs.channel import OwnLog, Reading
+from reports.output.numbers import error_text, listed, short
+from reports.own_log.log_limits import EVERY
+from reports.plan.free import refuse_unreleased
+
+LEAST_ROWS = 2
+MOST_TIMES = 100.0
+"""How much longer than its scene says a log may last: each second of its truth takes a part of a
+second to integrate, or some seconds."""
+BEGUN = 1e-3
+"""What a reading of the first row is off by at most, as a pure number, where a log begins as its
+scene does."""
+OPEN, CLOSED = 0.3, 0.03
+"""The part of an error of place that is left at the run's own angle: from here on it is the
+geometry that is off, and below it is not."""
+SHOWN = 4
+"""Columns that are told of."""
+
+
+def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[OwnLog, FreeTruth]:
+    """The log as far as the truth of it is known well enough, and the truth.
+
+    ``target`` has limits as pure numbers by quantity, that of all others under `EVERY`.
+
+    Raises
+    ------
+    CrankcheckError
+        Times before 0, at which the scene is let go, or long after its end; a scene that can not be
+        let go; a truth that is lost before the second row.
+    """
+    scene, lasts_s = log.scene, _lasts_s(log)
+    refuse_unreleased(scene, lasts_s)
+    phase = target.get("phase", target.get(EVERY))
+    truth = free_truth_until(scene, lasts_s, step_s, {} if phase is None else {"phase": phase})
+    rows = truth.known(log.time_s)
+    if rows < LEAST_ROWS:
+        raise CrankcheckError(
+            f"{log.source}: at t = {log.time_s[rows]:.4g} s the truth of {scene.name} is not known "
+            "well enough to judge by: a small change of its start has grown too much until then; "
+            "log the motion from its start on, or give a wider --target"
+        )
+    return log.first(rows), truth
+
+
+def _lasts_s(log: OwnLog) -> float:
+    """How long the truth has to go on. Raises CrankcheckError for times that it has none at."""
+    scene, time_s = log.scene, log.time_s
+    first, last = float(time_s[0]), float(time_s[-1])
+    zero = (
+        "count the time from there on, or from the first row: zero = 'first' in [time] of the map"
+    )
+    if first < -1.001 * float(np.max(np.diff(time_s))):
+        raise CrankcheckError(
+            f"{log.source}: its rows begin at t = {first:.6g} s, and {scene.name} is let go at "
+            f"t = 0, before which it has no motion; cut the log there, or {zero}"
+        )
+    if not 0.0 < last <= MOST_TIMES * scene.driver.law.period_s:
+        raise CrankcheckError(
+            f"{log.source}: its rows end at t = {last:.6g} s, and {scene.name} is let go at t = 0 "
+            f"for {scene.driver.law.period_s:.6g} s; look at the unit of its times, and {zero}; a "
+            f"log that lasts more than {MOST_TIMES:g} times as long as its scene needs a scene "
+            "with a longer duration"
+        )
+    latest = max(float(each.instants[-1]) for each in log.readings) if log.readings else last
+    return last if latest <= BEYOND * last else latest
+
+
+def refuse_drives(scene_name: str, drive: str) -> None:
+    """Refuse a drive of what nothing drives. Raises CrankcheckError."""
+    if drive != "scene":
+        raise CrankcheckError(
+            f"--drive {drive}: {scene_name} is let go, and nothing drives it; leave --drive out: "
+            "the geometry at its own angle is judged beside the motion in time"
+        )
+
+
+def told_of_start(log: OwnLog, truth: FreeTruth) -> Iterator[str]:
+    """Whether a log begins as its scene is let go, where that is not so."""
+    first, sample = float(log.time_s[0]), float(np.min(np.diff(log.time_s)))
+    if first > sample:
+        yield (
+            f"the log begins at t = {first:.6g} s, and {log.scene.name} is let go at t = 0: what "
+            "its motion began with is not in it"
+        )
+        return
+    off = {
+        reading.channel.column: f"{error_text(size)} {unit}"
+        for reading in log.readings
+        for size, unit, share in (_off_at_start(reading, truth),)
+        if not share <= BEGUN
+    }
+    if off:
+        columns = few((f"{name} by {size}" for name, size in off.items()), SHOWN)
+        yield (
+            f"the log does not begin as {log.scene.name} is let go: {columns} at its first row; "
+            "what is off after it is of another motion"
+        )
+
+
+def _off_at_start(reading: Reading, truth: FreeTruth) -> tuple[float, str, float]:
+    """What a reading is off by in its first row, with its unit, and as a pure number; 0 of an
+    acceleration, which is no part of a start."""
+    kind, scene = reading.channel.kind, truth.scene
+    if kind.order == 2:
+        return 0.0, "", 0.0
+    unit = ("rad" if kind.turns else "m") + ("", "/s")[kind.order]
+    scale = 1.0 if kind.turns else scene.longest_m
+    scale *= scene.driver.law.peak_speed_rad_s**kind.order
+    size = abs(float(reading.first(1).error(truth)[0]))
+    return size, unit, size / scale
+
+
+def told_of_no_limit(errors: Errors) -> Iterator[str]:
+    """What the log has, and what is held to no limit in free motion, of an engine neither."""
+    own = (row for row in errors.rows if row.source == "reported" and row.kind == "total")
+    names = dict.fromkeys(row.quantity for row in own if row.tolerance not in FREE)
+    if names:
+        yield f"held to no limit in free motion: {listed([f'{name} of bodies' for name in names])}"
+
+
+def told_apart(errors: Errors) -> Iterator[str]:
+    """Whether it is the phase that has run away, or the linkage that has come open."""
+    phase, geometry = errors.worst("phase", kind="raw"), errors.worst("geometry")
+    if phase is None or geometry is None or not (phase.finite and geometry.finite):
+        return
+    assert errors.free is not None
+    left = geometry.pure / phase.pure if phase.pure > 0.0 else np.inf
+    what = (
+        "it is the geometry that is off"
+        if left > OPEN
+        else "it is the phase that is off, and not the geometry"
+        if left < CLOSED
+        else "both are off"
+    )
+    yield (
+        f"at the same time {phase.body} is off by {_size(phase)} at most, with a sensitivity of "
+        f"{short(errors.free.sensitivity)}; at its own angle {geometry.body} is off by "
+        f"{_size(geometry)}: {what}; causes are not looked for in what was let go"
+    )
+
+
+def _size(error: Error) -> str:
+    return f"{error_text(error.maximum)} {error.unit}"

@@ -1,0 +1,29 @@
+"""`crankcheck export` of what is let go: a model that runs as it is."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from analytic.free.release import release
+from models.files import load_scene
+from reports.cli import app
+
+
+@pytest.mark.parametrize("name", ["fourbar-swing", "double-pendulum"])
+def test_a_model_that_is_let_go_moves_as_its_masses_say(name: str) -> None:
+    told = CliRunner().invoke(app, ["export", name], catch_exceptions=False)
+    assert told.exit_code == 0
+    model = mujoco.MjModel.from_xml_string(told.output)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    while data.time < 0.2:
+        mujoco.mj_step(model, data)
+    scene = load_scene(name)
+    truth = release(scene, 1.0).at(np.array([data.time]))
+    for link, moved in truth.links.items():
+        rotation = data.body(link).xmat.reshape(3, 3)
+        turn = np.arctan2(rotation[1, 0], rotation[0, 0]) - moved.theta[0]
+        assert abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < 1e-4

@@ -1,0 +1,182 @@
+"""The log of a mechanism that was let go is held to the motion of its masses and forces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import crankcheck
+from models.errors import CrankcheckError
+from models.files import load_scene
+from models.motion import Motion
+from models.scene import Scene
+from reports.compare.free.kept_motion import kept_motion
+from reports.face.simulation import Simulation
+from reports.judge.cell import Cell, check
+from reports.logs.columns import columns_of
+from reports.logs.meanings import understood
+from reports.own_log.judged import JudgedLog, LogRequest, judge_log
+from reports.own_log.log_limits import EVERY
+from reports.own_log.table import footer, no_cause_text
+from reports.page.log_page import log_page
+
+SWING = "fourbar-swing"
+TIME_S = np.linspace(0.0, 0.4, 201)
+
+
+@cache
+def ran(name: str, engine: str, duration_s: float) -> Simulation:
+    return crankcheck.run(name, engine, duration_s=duration_s)
+
+
+def truth(name: str = SWING) -> Motion:
+    return kept_motion(load_scene(name), 0.4).at(TIME_S)
+
+
+def angles(motion: Motion, *names: str) -> dict[str, object]:
+    return {f"{name}_rad": motion.links[name].theta for name in names}
+
+
+def judged(
+    columns: Mapping[str, object],
+    scene: Scene | str = SWING,
+    every: float | None = 1e-3,
+    time_s: object = TIME_S,
+    **asked: object,
+) -> JudgedLog:
+    scene = load_scene(scene) if isinstance(scene, str) else scene
+    log = understood(columns_of(pd.DataFrame({"t": time_s, **columns})), scene)
+    told = {"target": {} if every is None else {EVERY: every}, **asked}
+    return judge_log(log, LogRequest(**told))  # type: ignore[arg-type]
+
+
+def rules(one: JudgedLog) -> list[str]:
+    return [finding.rule for finding in one.failures]
+
+
+@pytest.mark.parametrize(
+    ("name", "engine", "seconds"),
+    [(SWING, "mujoco", 0.3), ("fourbar-double-rocker-swing", "pymunk", 1.0)],
+)
+def test_a_run_that_was_logged_has_the_numbers_of_its_verification(
+    name: str, engine: str, seconds: float
+) -> None:
+    done = ran(name, engine, seconds)
+    cell = Cell(done.mechanism, engine, "tuned", done.dt_s, done.steps, drive="free")
+    verified = check(replace(cell, converge=False))
+    log = crankcheck.judge(name, done.frame(), step_s=done.dt_s)
+    assert verified.errors is not None
+    assert log.errors is not None
+    found = {(e.quantity, e.body, e.source, e.kind): e.maximum for e in log.errors.rows}
+    for row in verified.errors.rows:
+        if row.quantity != "energy":  # which no column tells
+            assert found[row.quantity, row.body, row.source, row.kind] == row.maximum
+    assert log.limits == verified.limits
+    assert log.verdict == verified.verdict
+    assert f"energy of {name}" in log.not_judged
+
+
+def test_a_run_itself_may_be_judged_and_compared() -> None:
+    done = ran(SWING, "mujoco", 0.3)
+    verdict = crankcheck.judge(SWING, done)
+    assert verdict.verdict == "within"
+    worst = crankcheck.compare(SWING, done).worst("phase")
+    assert worst == verdict.errors.worst("phase")
+
+
+def test_a_driven_scene_may_be_let_go_and_judged() -> None:
+    done = crankcheck.run("slider-crank-central", drive="free", duration_s=0.2)
+    assert crankcheck.judge("slider-crank-central", done).verdict == "within"
+
+
+def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
+    motion = truth()
+    rocker = motion.links["rocker"].theta
+    late = kept_motion(load_scene(SWING), 0.4).at(TIME_S * 0.98)
+    phase = judged(angles(late, "crank", "rocker"))
+    assert rules(phase) == ["CC103", "CC127"]
+    assert any("the phase that is off, and not the geometry" in note for note in phase.notes)
+    bent = angles(motion, "crank") | {"rocker_rad": rocker + 0.01 * np.sin(9.0 * TIME_S)}
+    opened = judged(bent)
+    assert "CC128" in rules(opened)
+    assert any("it is the geometry that is off" in note for note in opened.notes)
+    assert phase.causes == opened.causes == ()
+    assert "none is looked for" in no_cause_text(opened, ["rocker_rad"])
+    assert "sensitivity" in footer(opened, {})[0]
+
+
+def test_geometry_is_that_of_the_readings_where_the_phase_has_run_away() -> None:
+    """One coordinate, and an angle relative to another link: what else there is of them is not
+    that of the same time."""
+    late = kept_motion(load_scene(SWING), 0.4).at(TIME_S * 0.98)
+    turned = {name: link.theta for name, link in late.links.items()}
+    one = judged(
+        {
+            "crank_rad": turned["crank"],
+            "C.x_m": late.points["C"].position[:, 0],
+            "coupler_rel_crank_rad": turned["coupler"] - turned["crank"],
+        },
+        every=0.3,
+    )
+    assert one.errors is not None
+    rows = {row.body: row.maximum for row in one.errors.rows if row.quantity == "geometry"}
+    assert set(rows) >= {"crank", "C"}
+    assert max(rows.values()) < 1e-12
+
+
+def test_a_log_that_begins_in_another_way_is_told() -> None:
+    motion = truth()
+    one = judged({"rocker_rad": motion.links["rocker"].theta + 0.1})
+    assert any("does not begin as fourbar-swing is let go: rocker_rad by" in n for n in one.notes)
+    later = judged({"rocker_rad": motion.links["rocker"].theta[50:] + 1e-9}, time_s=TIME_S[50:])
+    assert later.verdict == "within"
+    assert any("begins at t = 0.1 s" in note for note in later.notes)
+    assert not any("begin" in note for note in judged(angles(motion, "rocker")).notes)
+
+
+def test_where_the_driver_does_not_tell_the_position_no_geometry_is_judged() -> None:
+    motion = truth("fourbar-double-rocker-swing")
+    one = judged(angles(motion, "driver", "rocker"), "fourbar-double-rocker-swing")
+    assert one.verdict == "within"
+    assert any("no geometry: the angle of driver alone" in note for note in one.notes)
+
+
+def test_rows_of_which_the_truth_is_not_known_are_left_out_and_counted() -> None:
+    chain = load_scene("fourbar-chain")
+    time_s = np.linspace(0.0, 8.0, 81)
+    motion = kept_motion(chain, 8.0).at(time_s)
+    name = chain.driver.link
+    one = judged({f"{name}_rad": motion.links[name].theta}, chain, 1e-12, time_s)
+    assert one.errors is not None
+    assert one.errors.free is not None
+    assert one.errors.free.left_out == 81 - one.log.time_s.size > 0
+    assert any("samples after it are not judged" in note for note in one.notes)
+
+
+@pytest.mark.parametrize(
+    ("time_s", "asked", "told"),
+    [
+        (TIME_S - 0.2, {}, "begin at t = -0.2 s, and fourbar-swing is let go at t = 0"),
+        (TIME_S * 1e4, {}, "look at the unit of its times"),
+        (TIME_S, {"drive": "fitted"}, "--drive fitted: fourbar-swing is let go"),
+        (TIME_S, {"drive": "logged"}, "--drive logged: fourbar-swing is let go"),
+        (TIME_S, {"every": None}, "no limit for angle: no step of a log is known"),
+    ],
+)
+def test_what_can_not_be_judged_is_told(
+    time_s: object, asked: dict[str, object], told: str
+) -> None:
+    with pytest.raises(CrankcheckError, match=told):
+        judged({"rocker_rad": truth().links["rocker"].theta}, time_s=time_s, **asked)
+
+
+def test_its_page_is_written() -> None:
+    one = judged(angles(truth(), "crank", "rocker"))
+    page = log_page(one, {"made": "2026-01-02"})
+    assert "geometry of rocker" in page
+    assert "free motion of fourbar-swing" in page
