@@ -16,8 +16,8 @@ from reports.stability.case import Case, Judge, Trial
 from reports.stability.error_series import ErrorSeries, error_series
 from reports.stability.falling_chain import falling, freely
 from reports.stability.force_error import force_error
+from reports.stability.free_error_series import free_error_series, free_motion, free_start
 from reports.stability.grades import outcome
-from reports.stability.let_go import let_go, let_go_start, true_motion
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
 from reports.stability.picture import picture
@@ -49,7 +49,7 @@ JUDGES: Mapping[Judge, Yardstick] = {
     ),
     "limit": Yardstick(at_limit, held),
     "chain": Yardstick(freely, falling),
-    "let-go": Yardstick(let_go, true_motion, let_go_start),
+    "let-go": Yardstick(free_error_series, free_motion, free_start),
     "toggle": Yardstick(at_toggle, thrown_motion, thrown_start),
 }
 
