@@ -45,7 +45,7 @@ BEFORE_RAD = 1e-3
 
 
 @dataclass(frozen=True)
-class Throw:
+class RandomThrow:
     """A four-bar that is thrown at its toggle; it gets over where the margin is above 0."""
 
     lengths_m: tuple[float, float, float, float]
@@ -65,7 +65,7 @@ class Thrown:
     """What came of a throw: the ``outcomes`` of `LINES`, and whether the integrated motion gets
     over."""
 
-    throw: Throw
+    throw: RandomThrow
     gets_over: bool
     outcomes: tuple[str, ...]
 
@@ -90,7 +90,7 @@ def main(count: int = COUNT) -> int:
     return int(bool(doubtful))
 
 
-def throws(count: int) -> Iterator[Throw]:
+def throws(count: int) -> Iterator[RandomThrow]:
     """So many throws; those of fewer are the first of more."""
     draw = np.random.default_rng(SEED)
     done = 0
@@ -98,7 +98,7 @@ def throws(count: int) -> Iterator[Throw]:
         lengths = draw.uniform(SHORTEST_M, LONGEST_M, 4)
         margin = 10.0 ** draw.uniform(DECADES[0], DECADES[-1] + 1)
         a, b, c, d = lengths.tolist()
-        throw = Throw((a, b, c, d), margin * (-1.0) ** done)
+        throw = RandomThrow((a, b, c, d), margin * (-1.0) ** done)
         try:
             throw.barrier()
         except (CrankcheckError, ValueError):
@@ -107,7 +107,7 @@ def throws(count: int) -> Iterator[Throw]:
         yield throw
 
 
-def threw(throw: Throw) -> Thrown:
+def threw(throw: RandomThrow) -> Thrown:
     """One throw in all engines."""
     barrier = throw.barrier()
     scene, start = barrier.thrown(throw.margin), barrier.start(throw.margin)

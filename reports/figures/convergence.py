@@ -19,18 +19,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
 from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
+from reports.output.numbers import duration
 from reports.results.drawable import PLACE, PLACE_FREE, around, ends, fitted, measured
 from reports.results.lines import Line, Named, named
 from reports.results.origin import notes
 from reports.results.overview import Report
 
-STEP = "time step [s]"
+STEP, TIME = "time step [s]", "time step"
 PER_TURN = "steps per turn"
 STRIP = "#f0f0f0"
 ALONG = 60
@@ -52,10 +53,10 @@ def draw(report: Report, scene: str) -> Figure:
     if strip:
         right: dict[str, Any] = {"ha": "right", "va": "center", "transform": axes.transAxes}
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
-    axes.set_xlabel(STEP)
-    axes.set_ylabel(PLACE_FREE if _all_free(own) else PLACE)
-    if not _all_free(own):
-        _upper(axes, own)
+    free = _all_free(own)
+    axes.set_xlabel(TIME if free else STEP)
+    axes.set_ylabel(PLACE_FREE if free else PLACE)
+    (_time if free else _upper)(axes, own)
     return figure
 
 
@@ -71,7 +72,7 @@ def draw_all(report: Report) -> Figure:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
     free = _all_free(lines)
-    labels = (STEP, PLACE_FREE) if free else (PER_TURN, PLACE)
+    labels = (TIME, PLACE_FREE) if free else (PER_TURN, PLACE)
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
     _limits(axes, lines, 1.0 if free else 0.0)
     for scene, one in zip(scenes, axes, strict=True):
@@ -79,8 +80,7 @@ def draw_all(report: Report) -> Figure:
         unit_s = 1.0 if free else own[0].period_s
         _panel(one, own, mark_of, unit_s)
         _failed(one, own, mark_of, unit_s, strip)
-        if not free:
-            _count(one, own)
+        (_time if free else _count)(one, own)
     return figure
 
 
@@ -156,24 +156,35 @@ def _upper(axes: Axes, lines: Sequence[Line]) -> None:
 
 def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
     """Ticks of an axis over steps at the steps per turn that were run, as many as have room."""
-    numbers = sorted({float(n) for line in lines for n in line.cells["steps_per_turn"]})
+    numbers = {float(n) for line in lines for n in line.cells["steps_per_turn"]}
+    _ticks(axes, {period_s / n: f"{n:g}" for n in numbers})
+
+
+def _time(axes: Axes, lines: Sequence[Line]) -> None:
+    """Ticks of an axis over steps of time at those that were run, as many as have room."""
+    _ticks(axes, {float(s): duration(float(s)) for line in lines for s in line.cells["dt_s"]})
+
+
+def _ticks(axes: Axes, texts: Mapping[float, str]) -> None:
+    """Ticks of an axis over steps at some of these places: from the coarsest on every one,
+    every second, or as many as have room."""
+    places = sorted(texts, reverse=True)
     low, high = axes.get_xlim()
     figure = axes.get_figure(root=True)
     assert figure is not None
     width = axes.get_position().width * figure.get_figwidth() / math.log(high / low)
-    every = next((k for k in range(1, len(numbers)) if _fits(numbers[::k], width)), len(numbers))
-    kept = numbers[::every]
-    axes.xaxis.set_major_locator(FixedLocator([period_s / n for n in kept]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda step, _: f"{period_s / step:g}"))
+
+    def fits(kept: Sequence[float]) -> bool:
+        return all(
+            math.log(a / b) * width > 0.5 * (width_in(texts[a]) + width_in(texts[b])) + 0.06
+            for a, b in itertools.pairwise(kept)
+        )
+
+    every = next((k for k in range(1, len(places)) if fits(places[::k])), len(places))
+    kept = places[::every]
+    axes.xaxis.set_major_locator(FixedLocator(kept))
+    axes.xaxis.set_major_formatter(FixedFormatter([texts[place] for place in kept]))
     axes.xaxis.set_minor_locator(NullLocator())
-
-
-def _fits(numbers: Sequence[float], per_e_in: float) -> bool:
-    """Whether labels stand apart on an axis with so many inches to a factor of e."""
-    return all(
-        math.log(b / a) * per_e_in > 0.5 * (width_in(f"{a:g}") + width_in(f"{b:g}")) + 0.06
-        for a, b in itertools.pairwise(numbers)
-    )
 
 
 def _entries(

@@ -3,153 +3,159 @@ otherwise. Driven by a crank most of them would move as they should."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
+from models.scene import Scene
 from reports.selftest.fault import Fault
 from reports.selftest.free_changes import (
     about_pin,
+    along_lines,
     faster_start,
     heavier,
     held_at_start,
     in_free_scene,
+    lasting,
     later,
     of_coupler,
-    of_first_load,
+    of_load,
     of_spring,
     off_centre,
     on_last_link,
     reversed_load,
+    spring_elsewhere,
     stronger_gravity,
     turned_gravity,
     without_flywheel,
 )
-from reports.selftest.free_runs import FREE_RUNS, PRESS, PULSE, SPRING, SWING
+from reports.selftest.free_runs import FREE_RUNS, PRESS, PULSE, SPRING, SQUEEZER, SWING
 from reports.selftest.mechanism import long_coupler
 
-_fault = partial(Fault, "dynamics", rule="CC127", scenes=(SWING,))
 _STEP_S = FREE_RUNS[PULSE][0]
+
+
+def _fault(
+    name: str,
+    what: str,
+    change: Callable[[Scene, float], Scene],
+    size: float | None = None,
+    unit: str = "",
+    *,
+    scene: str = SWING,
+    rule: str = "CC127",
+    finer: bool = False,
+) -> Fault:
+    """A fault of the machine that the engine is given in the place of a scene."""
+    plant = in_free_scene(change)
+    return Fault("dynamics", name, what, rule, plant, size, unit, scenes=(scene,), finer=finer)
+
+
 FAULTS = (
-    _fault(
-        "mass-wrong",
-        "a link is too heavy",
-        plant=in_free_scene(of_coupler(heavier)),
-        size=0.1,
-        unit="of it",
-    ),
+    _fault("mass-wrong", "a link is too heavy", of_coupler(heavier), 0.1, "of it"),
     _fault(
         "inertia-at-pin",
         "inertia about a pin, not the centre",
-        plant=in_free_scene(of_coupler(about_pin)),
-        size=1.0,
-        unit="m d^2",
+        of_coupler(about_pin),
+        1.0,
+        "m d^2",
     ),
-    _fault(
-        "centre-moved",
-        "a centre of mass is elsewhere",
-        plant=in_free_scene(of_coupler(off_centre)),
-        size=0.1,
-        unit="of it",
-    ),
-    _fault(
-        "gravity-scaled",
-        "gravity is too strong",
-        plant=in_free_scene(stronger_gravity),
-        size=1e-3,
-        unit="of it",
-    ),
+    _fault("centre-moved", "a centre of mass is elsewhere", of_coupler(off_centre), 0.1, "of it"),
+    _fault("gravity-scaled", "gravity is too strong", stronger_gravity, 1e-3, "of it"),
     _fault(
         "gravity-hardly",
         "the same, within this step's limit",
+        stronger_gravity,
+        1e-4,
+        "of it",
         rule="CC110",
-        plant=in_free_scene(stronger_gravity),
-        size=1e-4,
-        unit="of it",
         finer=True,
     ),
-    _fault(
-        "gravity-turned",
-        "gravity is not straight down",
-        plant=in_free_scene(turned_gravity),
-        size=1e-2,
-        unit="rad",
-    ),
-    _fault(
-        "start-faster",
-        "the driver starts too fast",
-        plant=in_free_scene(faster_start),
-        size=1e-2,
-        unit="w",
-        scenes=(SPRING,),
-    ),
+    _fault("gravity-turned", "gravity is not straight down", turned_gravity, 1e-2, "rad"),
+    _fault("start-faster", "the driver starts too fast", faster_start, 1e-2, "w", scene=SPRING),
     _fault(
         "torque-late",
         "a torque over time acts late",
-        plant=in_free_scene(of_first_load(later(_STEP_S))),
-        size=1.0,
-        unit="steps",
-        scenes=(PULSE,),
+        of_load("pulse", later(_STEP_S)),
+        1.0,
+        "steps",
+        scene=PULSE,
+    ),
+    _fault(
+        "torque-lasts",
+        "a torque over time ends late",
+        of_load("pulse", lasting(_STEP_S)),
+        1.0,
+        "steps",
+        scene=PULSE,
     ),
     _fault(
         "torque-reversed",
         "a torque turns the other way",
-        plant=in_free_scene(of_first_load(reversed_load)),
-        scenes=(PULSE,),
+        of_load("pulse", reversed_load),
+        scene=PULSE,
     ),
     _fault(
         "torque-elsewhere",
         "a torque acts on another link",
-        plant=in_free_scene(of_first_load(on_last_link)),
-        scenes=(PULSE,),
+        of_load("pulse", on_last_link),
+        scene=PULSE,
     ),
     _fault(
-        "motor-held",
-        "a motor keeps its first torque",
-        plant=in_free_scene(of_first_load(held_at_start)),
-        scenes=(PRESS,),
+        "motor-held", "a motor keeps its first torque", of_load("motor", held_at_start), scene=PRESS
     ),
     _fault(
-        "flywheel-lost",
-        "the flywheel is forgotten",
-        plant=in_free_scene(without_flywheel),
-        size=0.9,
-        unit="of it",
-        scenes=(PRESS,),
+        "table-in-lines",
+        "a table read along straight lines",
+        of_load("work", along_lines),
+        scene=PRESS,
+    ),
+    _fault(
+        "flywheel-lost", "the flywheel is forgotten", without_flywheel, 0.9, "of it", scene=PRESS
     ),
     _fault(
         "spring-stiff",
         "a spring is too stiff",
-        plant=in_free_scene(
-            of_spring(lambda one, share, _: replace(one, rate=(1.0 + share) * one.rate))
-        ),
-        size=0.1,
-        unit="of it",
-        scenes=(SPRING,),
+        of_spring(lambda one, share, _: replace(one, rate=(1.0 + share) * one.rate)),
+        0.1,
+        "of it",
+        scene=SPRING,
+    ),
+    _fault(
+        "spring-reversed",
+        "a spring pushes where it should pull",
+        of_spring(lambda one, swap, _: replace(one, rate=(1.0 - 2.0 * swap) * one.rate)),
+        scene=SPRING,
     ),
     _fault(
         "spring-long",
         "a spring is slack elsewhere",
-        plant=in_free_scene(of_spring(lambda one, _, off_m: replace(one, free=one.free + off_m))),
-        size=0.1,
-        unit="L",
-        scenes=(SPRING,),
+        of_spring(lambda one, _, off_m: replace(one, free=one.free + off_m)),
+        0.1,
+        "L",
+        scene=SPRING,
+    ),
+    _fault(
+        "spring-elsewhere",
+        "a spring pulls at another point",
+        spring_elsewhere,
+        1e-2,
+        "m",
+        scene=SQUEEZER,
     ),
     _fault(
         "damper-lost",
         "a damper is forgotten",
-        plant=in_free_scene(
-            of_spring(lambda one, share, _: replace(one, damping=(1.0 - share) * one.damping))
-        ),
-        size=1.0,
-        unit="of it",
-        scenes=(SPRING,),
+        of_spring(lambda one, share, _: replace(one, damping=(1.0 - share) * one.damping)),
+        1.0,
+        "of it",
+        scene=SPRING,
     ),
     _fault(
-        "coupler-long",
-        "a link is too long",
-        rule="CC128",
-        plant=in_free_scene(long_coupler),
-        size=1e-2,
-        unit="of it",
+        "damper-reversed",
+        "a damper drives",
+        of_spring(lambda one, swap, _: replace(one, damping=(1.0 - 2.0 * swap) * one.damping)),
+        scene=SPRING,
+        rule="CC129",
     ),
+    _fault("coupler-long", "a link is too long", long_coupler, 1e-2, "of it", rule="CC128"),
 )

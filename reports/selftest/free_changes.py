@@ -14,7 +14,10 @@ from models.characteristics import Constant
 from models.loads import Load
 from models.released import Released
 from models.scene import Link, Scene
-from models.springs import SlideSpring
+from models.spring_ends import line_ends
+from models.springs import LineSpring, SlideSpring
+from models.tabulated import Tabulated
+from models.waves import Pulse
 from reports.judge.cell import CellRunner
 from reports.selftest.fault import Plant
 from sim.engine import Run
@@ -96,12 +99,13 @@ def faster_start(scene: Scene, share: float) -> Scene:
     return replace(scene, driver=replace(scene.driver, law=faster))
 
 
-def of_first_load(change: Callable[[Scene, Load, float], Load]) -> Callable[[Scene, float], Scene]:
-    """A change of the first load of the scene, which is a torque on the driver."""
+def of_load(
+    name: str, change: Callable[[Scene, Load, float], Load]
+) -> Callable[[Scene, float], Scene]:
+    """A change of a load of the scene."""
 
     def changed(scene: Scene, size: float) -> Scene:
-        load = next(iter(scene.loads.values()))
-        return replace(scene, loads={**scene.loads, load.name: change(scene, load, size)})
+        return replace(scene, loads={**scene.loads, name: change(scene, scene.loads[name], size)})
 
     return changed
 
@@ -111,6 +115,24 @@ def later(delay_s: float) -> Callable[[Scene, Load, float], Load]:
     return lambda _, load, times: replace(
         load, characteristic=load.characteristic.carried(1.0, shift=times * delay_s)
     )
+
+
+def lasting(longer_s: float) -> Callable[[Scene, Load, float], Load]:
+    """A pulse that ends later by a multiple of a time."""
+
+    def changed(_: Scene, load: Load, times: float) -> Load:
+        pulse = load.characteristic
+        assert isinstance(pulse, Pulse)
+        return replace(load, characteristic=replace(pulse, period=pulse.period + times * longer_s))
+
+    return changed
+
+
+def along_lines(_: Scene, load: Load, swap: float) -> Load:
+    """A table whose curve is left for straight lines from row to row."""
+    table = load.characteristic
+    assert isinstance(table, Tabulated)
+    return replace(load, characteristic=replace(table, interpolation="linear")) if swap else load
 
 
 def reversed_load(_: Scene, load: Load, swap: float) -> Load:
@@ -127,6 +149,21 @@ def held_at_start(scene: Scene, load: Load, swap: float) -> Load:
     assert isinstance(law, Released)
     first = float(load.magnitude(np.array([law.speed_rad_s]))[0])
     return replace(load, characteristic=Constant(first), over="time") if swap else load
+
+
+def spring_elsewhere(scene: Scene, off_m: float) -> Scene:
+    """The first end of a spring between points, moved on its link."""
+    spring = next(iter(scene.springs.values()))
+    assert isinstance(spring, LineSpring)
+    (name, (x, y)), _ = line_ends(scene, spring)
+    link = scene.links[name]
+    moved = replace(link, points={**link.points, "moved": (x + off_m, y)})
+    other = replace(spring, points=("moved", spring.points[1]))
+    return replace(
+        scene,
+        links={**scene.links, name: moved},
+        springs={**scene.springs, spring.name: other},
+    )
 
 
 def of_spring(

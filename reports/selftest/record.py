@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from analytic.kinematics import solve_driven
 from models.scene import Scene
 from reports.compare.free.free_truth import free_truth
 from reports.selftest.clock import late
@@ -32,6 +33,26 @@ def _quick(scene: Scene, done: Run, share: float) -> Run:
     return with_link(done, last(scene), omega=(1.0 + share) * output(scene, done).omega)
 
 
+def _in_other_assembly(scene: Scene, done: Run) -> Run:
+    """The logged driver angle, and all places of the other assembly there."""
+    own = moved(done)
+    crank = own.links[scene.driver.link]
+    other = replace(scene, branch={key: -sign for key, sign in scene.branch.items()})
+    still = np.zeros_like(crank.theta)
+    there = solve_driven(other, crank.theta, crank.omega, still, own.time_s, bound=False)
+    links = {
+        name: replace(link, theta=there.links[name].theta, omega=there.links[name].omega)
+        for name, link in own.links.items()
+    }
+    points = {
+        name: replace(
+            point, position=there.points[name].position, velocity=there.points[name].velocity
+        )
+        for name, point in own.points.items()
+    }
+    return replace(done, motion=replace(own, links=links, points=points))
+
+
 def _without_energy(_: Scene, done: Run) -> Run:
     return replace(done, energy=None)
 
@@ -49,6 +70,7 @@ FAULTS = (
     _fault("row-later", "every sample is a later one", "CC127", late, 1.0, "sample", whole=True),
     _fault("rate-off", "a logged velocity is too large", "CC106", in_log(_quick), 0.1, "of it"),
     _fault("energy-leaks", "energy that is lost evenly", "CC129", in_log(_leaking), 1e-2, "T"),
+    _fault("other-assembly", "the other assembly is logged", "CC101", switched(_in_other_assembly)),
     _fault("energy-missing", "no energy is in the log", "CC109", switched(_without_energy)),
     _fault(
         "free-copied",

@@ -21,6 +21,22 @@ def _even(_: Scene, done: Run, size: float) -> Run:
     return replace(done, energy=Energy(done.energy.kinetic_j, level - done.energy.kinetic_j))
 
 
+def _parts(_: Scene, done: Run, size: float) -> Run:
+    """Each part of the energy is called by the name of the other."""
+    if not (size and done.energy):
+        return done
+    return replace(done, energy=Energy(done.energy.potential_j, done.energy.kinetic_j))
+
+
+def _half_a_step(_: Scene, done: Run, size: float) -> Run:
+    """The potential energy of half a step before, beside the kinetic energy of the sample."""
+    if not (size and done.energy):
+        return done
+    late = done.energy.potential_j.copy()
+    late[1:] -= 0.5 * size * np.diff(late)
+    return replace(done, energy=Energy(done.energy.kinetic_j, late))
+
+
 UNSEEN_FREE = (
     Unseen(
         "matter-scaled",
@@ -36,5 +52,19 @@ UNSEEN_FREE = (
         "The energy is worked out of the logged motion here, and not told by an engine: what "
         "damps or drives that motion is seen in it (damping-left-on, energy-fed).",
         in_log(_even),
+    ),
+    Unseen(
+        "energy-half-step",
+        "potential energy of half a step before",
+        "The total comes and goes with the motion by as much as a step makes of it, as that of an "
+        "engine does; its drift is judged, and the motion itself.",
+        in_log(_half_a_step),
+    ),
+    Unseen(
+        "energy-parts",
+        "kinetic energy told as potential",
+        "The total is judged: both parts are worked out of the logged motion here.",
+        in_log(_parts),
+        shows=False,  # a sum does not know its order
     ),
 )

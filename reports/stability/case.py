@@ -24,7 +24,7 @@ BEYOND = 10.0
 Scale = Literal["log", "linear", "whole"]
 Judge = Literal["follow", "limit", "chain", "let-go", "toggle"]
 """What runs are held to, see `reports.stability.grading`."""
-LET_GO: tuple[Judge, ...] = ("let-go", "toggle")
+FREE_JUDGES: tuple[Judge, ...] = ("let-go", "toggle")
 """The judges of cases of free motion, which are run when asked for."""
 
 
@@ -92,7 +92,7 @@ class Case(CaseFacts):
     @property
     def free(self) -> bool:
         """Whether it is one of free motion."""
-        return self.judge in LET_GO
+        return self.judge in FREE_JUDGES
 
     def refuse(self, value: float) -> None:
         """Refuse a value that means nothing for the case. Raises CrankcheckError."""

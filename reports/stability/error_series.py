@@ -26,9 +26,11 @@ class ErrorSeries:
 
     ``place`` is the worst error of any link, slider and point, ``gap`` the widest open joint,
     ``drive`` the error of the crank, all as pure numbers (rad, lengths over the longest link) and
-    infinite where a number is missing; ``crank`` is its logged angle [rad]. ``settled`` is the
-    first sample that counts, and ``incomplete`` what the log lacks of what was commanded.
-    ``limited`` says that ``place`` is the crank's, against a command that ends at a limit.
+    infinite where a number is missing; ``drive`` is NaN where nothing tells the crank where to be.
+    ``crank`` is its logged angle [rad]. ``settled`` is the first sample that counts, and
+    ``incomplete`` what the log lacks of what was commanded.
+    ``limited`` says that ``place`` is the crank's, against a command that ends at a limit, and
+    ``worst_of_place`` what the largest error of place is one of.
     """
 
     status: str
@@ -45,11 +47,22 @@ class ErrorSeries:
     departure: Departure | None = None
     incomplete: str = ""
     limited: bool = False
+    worst_of_place: str = "a place"
 
     @property
     def turn(self) -> Array:
         """How many periods have gone by."""
         return np.asarray((self.time_s - self.time_s[0]) / self.period_s)
+
+    @property
+    def driven(self) -> bool:
+        """Whether anything tells the crank where to be."""
+        return not bool(np.isnan(self.drive).all())
+
+    @property
+    def per_turn(self) -> str:
+        """What a growth per period is told as."""
+        return "a turn" if self.driven else f"in {self.period_s:.3g} s"
 
     def worst(self, series: Array) -> tuple[float, int]:
         """The largest number of a series that counts, and its sample."""

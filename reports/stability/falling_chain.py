@@ -17,7 +17,7 @@ def freely(trial: Trial, run: Run) -> ErrorSeries:
     """A free run beside the closed form of the chain.
 
     The error of place is the larger of the distance of B0 from its place, over a rod, and of the
-    change of the energy, over what is exchanged in a turn. No crank is told where to be.
+    change of the energy, over what is exchanged in a turn.
     """
     assert trial.chain is not None
     errors = compared(trial.chain, run)
@@ -29,7 +29,7 @@ def freely(trial: Trial, run: Run) -> ErrorSeries:
         driver_rad=theta,
         place=worst_of(_error(errors)),
         gap=worst_of(errors.gap_m / trial.chain.length_m),
-        drive=np.zeros_like(theta),
+        drive=np.full_like(theta, np.nan),
         crank=theta,
         period_s=ChainMotion(trial.chain).period_s,
         departure=errors.left,

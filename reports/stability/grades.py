@@ -66,7 +66,7 @@ def outcome(errors: ErrorSeries, within: float) -> Grade:
     slope, doubt = drift(errors)
     if grade.outcome not in STEADY or math.isnan(slope):
         return grade
-    growth = f"drift {slope:.1e} +- {doubt:.0e} a turn"
+    growth = f"drift {slope:.1e} +- {doubt:.0e} {errors.per_turn}"
     return replace(grade, reason=f"{grade.reason}; {growth}" if grade.reason else growth)
 
 
@@ -123,7 +123,7 @@ def _locked(errors: ErrorSeries, within: float) -> Reason | None:
     commanded = float(np.ptp(errors.driver_rad[-end:]))
     if (
         turned > STANDS * commanded
-        or errors.drive[-1] <= within
+        or not errors.drive[-1] > within  # nothing is commanded where it is NaN
         or errors.worst(errors.gap)[0] > within
     ):
         return None
@@ -137,7 +137,8 @@ def _silently_open(errors: ErrorSeries, within: float) -> Reason | None:
     gap, _ = errors.worst(errors.gap)
     if gap <= within or errors.worst(errors.drive)[0] > within:
         return None
-    reason = f"a joint is open by {gap:.2g} of the longest link, and the crank does not show it"
+    unshown = ", and the crank does not show it" if errors.driven else ""
+    reason = f"a joint is open by {gap:.2g} of the longest link{unshown}"
     return reason, errors.first(errors.gap, within)
 
 
@@ -148,12 +149,12 @@ def _drifts(errors: ErrorSeries, within: float) -> Reason | None:
         return None
     if peaks[-1] < GROWN * peaks[0]:
         return None
-    return f"grows by {slope:.2g} a turn", errors.first(errors.place, within)
+    return f"grows by {slope:.2g} {errors.per_turn}", errors.first(errors.place, within)
 
 
 def _degraded(errors: ErrorSeries, within: float) -> Reason | None:
     for what, series in (
-        ("a place", errors.place),
+        (errors.worst_of_place, errors.place),
         ("the crank", errors.drive),
         ("a joint", errors.gap),
     ):
@@ -175,7 +176,9 @@ RULES: tuple[GradeRule, ...] = (
     GradeRule("branch-changed", "the loops are closed, in the other assembly", _branch_changed),
     GradeRule("locked", "the loops are closed, and the crank stands short of its command", _locked),
     GradeRule(
-        "silently-open", "the driven joint looks fine, and another has come apart", _silently_open
+        "silently-open",
+        "a joint has come apart; a driven one looks fine",
+        _silently_open,
     ),
     GradeRule("drifts", "the error is over the class and grows with the turns", _drifts),
     GradeRule("degraded", "the error is over the class, and does not blow up", _degraded),

@@ -16,7 +16,7 @@ from reports.stability.case import Case, Judge, Trial
 from reports.stability.error_series import ErrorSeries, error_series
 from reports.stability.falling_chain import falling, freely
 from reports.stability.force_error import force_error
-from reports.stability.free_yardstick import free_series, free_start, true_motion
+from reports.stability.free_error_series import free_error_series, free_motion, free_start
 from reports.stability.grades import outcome
 from reports.stability.limit import at_limit, held
 from reports.stability.matrix import Graded, Outcome, Picture, label
@@ -49,7 +49,7 @@ JUDGES: Mapping[Judge, Yardstick] = {
     ),
     "limit": Yardstick(at_limit, held),
     "chain": Yardstick(freely, falling),
-    "let-go": Yardstick(free_series, true_motion, free_start),
+    "let-go": Yardstick(free_error_series, free_motion, free_start),
     "toggle": Yardstick(at_toggle, thrown_motion, thrown_start),
 }
 

@@ -19,7 +19,6 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
     One that gets over and should not has left its branch. For one that should and does not, the
     error of place is the angle that coupler and rocker were short of where it would have been over,
     at the nearest [rad].
-    No crank is told where to be.
     """
     motion, throw = run.motion, _throw(trial)
     assert motion is not None
@@ -43,12 +42,13 @@ def at_toggle(trial: Trial, run: Run) -> ErrorSeries:
         driver_rad=worst_of(crank),
         place=place,
         gap=np.where(decided, widest(gaps, crank), 0.0),  # what comes after it is not asked
-        drive=np.zeros_like(crank),
+        drive=np.full_like(crank, np.nan),
         crank=worst_of(crank),
         period_s=trial.scene.driver.law.period_s,
         departure=left,
         sine=0.0,
         incomplete=lacking(trial.scene, run),
+        worst_of_place="the angle of coupler and rocker, short of being over,",
     )
 
 

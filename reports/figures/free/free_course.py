@@ -19,8 +19,9 @@ from reports.output.provenance import crankcheck_version
 
 SIDES = (0.58, 0.1)
 """Room on the left and on the right of a panel over time [inch]."""
-LEAST, MOST, IN_A_TURN = 2401, 7201, 60
-"""Samples: of a motion that hardly turns, of one that turns very often, and in a turn."""
+LEAST, MOST, IN_A_TURN = 2401, 7201, 180
+"""Samples: of a motion that hardly turns, of one that turns very often, and in a turn at its
+largest speed, whose peaks are narrow."""
 
 
 @dataclass(frozen=True)

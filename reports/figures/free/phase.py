@@ -48,8 +48,18 @@ def draw(course: FreeCourse) -> Figure:
 
 
 def _over_one_turn(degrees: Array, omega: Array) -> tuple[Array, Array]:
-    """Angles within a turn, the curve cut where one turn goes over into the next."""
+    """Angles within a turn, the curve cut where one turn goes over into the next: there it ends at
+    one side and goes on at the other."""
     turn = np.floor(np.round(degrees, 9) / 360.0)
     cuts = np.flatnonzero(np.diff(turn)) + 1
-    within = degrees - 360.0 * turn
-    return np.insert(within, cuts, math.nan), np.insert(omega, cuts, math.nan)
+    before, after = turn[cuts - 1], turn[cuts]
+    edge = 360.0 * np.maximum(before, after)
+    share = (edge - degrees[cuts - 1]) / (degrees[cuts] - degrees[cuts - 1])
+    there = omega[cuts - 1] + share * (omega[cuts] - omega[cuts - 1])
+    none = np.full(cuts.size, math.nan)
+    sides = np.column_stack([edge - 360.0 * before, none, edge - 360.0 * after])
+    place = np.repeat(cuts, 3)
+    return (
+        np.insert(degrees - 360.0 * turn, place, sides.ravel()),
+        np.insert(omega, place, np.column_stack([there, none, there]).ravel()),
+    )

@@ -76,7 +76,7 @@
     return [
       ["worst error of place", `${short(run.error)} (held below ${short(known?.within ?? null)})`],
       ["widest gap of a pin", short(run.gap)],
-      ["error of the crank", short(run.drive)],
+      ...(run.drive === null ? [] : [["error of the crank", short(run.drive)]]), // nothing drives it
       ["distance from singular, 0 to 1", run.sine >= 0.01 ? run.sine.toFixed(2) : short(run.sine)],
       ["happens at", at ? at + crank : "–"],
       ["step", run.dt_s === null ? "–" : `${short(run.dt_s, 3)} s${steps}`],

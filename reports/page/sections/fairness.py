@@ -65,6 +65,26 @@ RULES = (
     ),
 )
 
+LET_GO = {
+    "One truth for all": (
+        "One truth for all",
+        "Every engine is held to the equation of the machine, integrated with high precision; a "
+        "second integration says what the first may be off by. No engine is the reference for "
+        "another.",
+    ),
+    "One start": (
+        "One start",
+        "Every run starts from the same state: angles, places and velocities, the accelerations "
+        "that weights and loads give it, and all pins closed.",
+    ),
+    "One drive": (
+        "No drive",
+        "Weights, springs and loads alone move the mechanism. A phase that has run away is told "
+        "from a linkage that has come open, and judged over the sensitivity of the motion.",
+    ),
+}
+"""What takes the place of a rule where every run was let go."""
+
 
 def build(report: Report) -> Section:
     """The section."""
@@ -73,7 +93,7 @@ def build(report: Report) -> Section:
         title="How it is kept fair",
         template="fairness.html",
         words={
-            "rules": RULES,
+            "rules": RULES if report.driven else [LET_GO.get(rule[0], rule) for rule in RULES],
             "noise": report.noise if math.isfinite(report.noise) else None,
         },
     )

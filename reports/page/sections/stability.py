@@ -38,6 +38,7 @@ def build(report: Report) -> Section:
             "looks": looks,
             "engines": engines,
             "free": any(line.drive == "free" for line in report.lines),
+            "all_free": all(line.drive == "free" for line in report.lines),
             "rows": [
                 (scene, [held.get((scene, look.number)) for look in looks])
                 for scene in report.scenes

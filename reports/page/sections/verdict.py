@@ -67,6 +67,7 @@ def build(report: Report) -> Section:
             ],
             "rows": rows,
             "free": report.driven is not report,
+            "all_free": report.driven is None,
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )

@@ -102,18 +102,25 @@ CASES = (
         values=(200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 3.0, 2.0),
         trial=_stiff,
     ),
-    *(
-        _case(
-            name=f"free-heavy-{name}",
-            title=f"Heavy {name} between light links, let go",
-            source=SWING,
-            truth="the equation of the machine: its reduced mass becomes that of one link",
-            expected="holds, with more iterations if need be",
-            parameter="mass ratio",
-            values=FREE_RATIOS,
-            trial=partial(_heavier, name),
-        )
-        for name in ("rocker", "coupler")
+    _case(
+        name="free-heavy-rocker",
+        title="Heavy rocker that whirls a light crank",
+        source=SWING,
+        truth="the equation of the machine; where the rocker stands still light links alone move",
+        expected="holds while a step is short for the crank, which is faster by the ratio's root",
+        parameter="mass ratio",
+        values=FREE_RATIOS,
+        trial=partial(_heavier, "rocker"),
+    ),
+    _case(
+        name="free-heavy-coupler",
+        title="Heavy coupler between light links, let go",
+        source=SWING,
+        truth="the equation of the machine: its reduced mass becomes that of the coupler",
+        expected="holds, with more iterations if need be",
+        parameter="mass ratio",
+        values=FREE_RATIOS,
+        trial=partial(_heavier, "coupler"),
     ),
     _case(
         name="free-change-point",

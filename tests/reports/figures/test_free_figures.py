@@ -11,6 +11,7 @@ from rich.console import Console
 
 from models.errors import CrankcheckError
 from reports.cli.commands.figures import run_figures
+from reports.figures.free.phase import _over_one_turn
 from reports.figures.free_runs.free_run import free_runs
 from reports.results.overview import Report
 from reports.store.reader import read_store
@@ -22,7 +23,7 @@ LABELS = {
     "let-go": ("angle of crank [deg]", "speed [rad/s]", "error of angle / G [rad]", "time [s]"),
     "energy": ("change of energy / largest kinetic energy", "drift", "means over windows"),
     "phase": ("angular velocity [rad/s]", "truth, integrated", "pymunk as-shipped"),
-    "convergence": ("time step [s]", "largest error / sensitivity"),
+    "convergence": ("time step", "4.00 ms", "2.00 ms", "largest error / sensitivity"),
     "mechanism": ("integrated", "x [m]"),
 }
 
@@ -63,3 +64,14 @@ def test_a_portrait_goes_through_its_samples_and_smoothly_between(free_store: Pa
     np.testing.assert_allclose(speed[::8], run.trace["omega"], rtol=0, atol=1e-9)
     near = np.interp(np.linspace(0, shown.time_s[-1], angle.size), shown.time_s, shown.angle)
     assert np.max(np.abs(angle - near)) < 1e-2
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_phase_diagram_over_one_turn_goes_on_at_the_other_side(way: float) -> None:
+    degrees = way * np.array([300.0, 340.0, 420.0, 500.0])
+    within, speed = _over_one_turn(degrees, np.array([1.0, 2.0, 6.0, 7.0]))
+    (cut,) = np.flatnonzero(np.isnan(within))
+    assert (within[cut - 1], within[cut + 1]) == ((360.0, 0.0) if way > 0.0 else (0.0, 360.0))
+    assert speed[cut - 1] == speed[cut + 1] == pytest.approx(3.0)
+    assert np.isnan(speed[cut])
+    assert within.size == 7

@@ -50,6 +50,8 @@ def test_a_page_of_free_runs_has_no_section_that_speaks_of_turns(path: Path) -> 
     assert sections(text) == FREE
     told = text[: text.index('id="provenance"')]
     assert "free drive" not in told  # where all were let go it needs no word
+    assert "steps a turn" not in told
+    assert "closed form" not in told
 
 
 def test_what_was_driven_keeps_its_sections_beside_what_was_let_go(

@@ -10,18 +10,22 @@ import pytest
 
 from models.files import load_scene
 from models.poses import mass_of
+from models.spring_ends import line_ends
 from reports.compare.free.free_truth import free_truth
 from reports.selftest.all_faults import FAULTS
 from reports.selftest.free_changes import (
     about_pin,
+    along_lines,
     held_at_start,
+    lasting,
     of_coupler,
-    of_first_load,
+    of_load,
     off_centre,
     on_last_link,
+    spring_elsewhere,
     turned_gravity,
 )
-from reports.selftest.free_runs import FREE_RUNS, PRESS, PULSE, SWING
+from reports.selftest.free_runs import FREE_RUNS, PRESS, PULSE, SQUEEZER, SWING
 from reports.selftest.logs import moved, output
 from reports.selftest.trial import _cell, examined
 from reports.selftest.unseen_free import UNSEEN_FREE
@@ -116,10 +120,40 @@ def test_gravity_is_turned_and_as_strong() -> None:
 
 def test_loads_act_elsewhere_or_stay_as_at_the_start() -> None:
     pulse = load_scene(PULSE)
-    assert of_first_load(on_last_link)(pulse, 1.0).loads["pulse"].body == "rocker"
-    assert of_first_load(on_last_link)(pulse, 0.0) == pulse
-    motor = of_first_load(held_at_start)(load_scene(PRESS), 1.0).loads["motor"]
+    assert of_load("pulse", on_last_link)(pulse, 1.0).loads["pulse"].body == "rocker"
+    assert of_load("pulse", on_last_link)(pulse, 0.0) == pulse
+    motor = of_load("motor", held_at_start)(load_scene(PRESS), 1.0).loads["motor"]
     assert motor.magnitude(np.array([0.0, 1.0])) == pytest.approx([480.0, 480.0])
+
+
+def test_a_pulse_ends_later_and_a_table_has_corners() -> None:
+    pulse = load_scene(PULSE)
+    longer = of_load("pulse", lasting(0.1))(pulse, 2.0).loads["pulse"].characteristic
+    assert list(longer.kinks) == pytest.approx([0.0, 1.2])
+    assert of_load("pulse", lasting(0.1))(pulse, 0.0) == pulse
+    press = load_scene(PRESS)
+    between = np.array([0.4])
+    cornered = of_load("work", along_lines)(press, 1.0).loads["work"]
+    assert cornered.magnitude(np.array([0.46])) == pytest.approx([1e4])
+    assert cornered.magnitude(between) == press.loads["work"].magnitude(between)
+
+
+def test_a_spring_pulls_beside_its_point_which_stays_where_it_is() -> None:
+    scene = load_scene(SQUEEZER)
+    other = spring_elsewhere(scene, 1e-2)
+    (name, place), _ = line_ends(other, other.springs["return"])
+    assert (name, place) == ("lever", pytest.approx((0.21, 0.18)))
+    assert other.links["lever"].points["S"] == scene.links["lever"].points["S"]
+
+
+def test_the_other_assembly_has_the_driver_where_it_was_logged() -> None:
+    done = sound("mujoco")
+    names, options = given("mujoco")
+    other = FAULTS["other-assembly"].plant(1.0)(*names, **options)
+    crank, mirrored = (moved(one).links["crank"].theta for one in (done, other))
+    assert np.array_equal(crank, mirrored)
+    rocker, turned = (moved(one).links["rocker"].theta for one in (done, other))
+    assert np.max(np.abs(rocker - turned)) > 1.0
 
 
 def test_another_coupler_is_another_scene_and_the_rest_the_same() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.toggle import LINES, Throw, Thrown, right_from, threw, throws, told
+from benchmarks.toggle import LINES, RandomThrow, Thrown, right_from, threw, throws, told
 from reports.compare.free.toggle_passage import toggle_passage
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.grades import outcome
@@ -101,7 +101,7 @@ def test_throws_of_the_benchmark_are_told_from_their_truth() -> None:
 def test_the_margin_from_which_all_are_right_ends_at_the_largest_that_is_not() -> None:
     lengths = (0.2, 0.25, 0.3, 0.5)
     results = [
-        Thrown(Throw(lengths, margin), margin > 0.0, (came,))
+        Thrown(RandomThrow(lengths, margin), margin > 0.0, (came,))
         for margin, came in ((0.05, "over"), (-2e-3, "back"), (1e-3, "back"), (1e-5, "over"))
     ]
     assert right_from(results, 0) == 2e-3

@@ -14,7 +14,7 @@ from reports.stability.case import Trial
 from reports.stability.catalogue import CATALOGUE
 from reports.stability.catalogue.free_motion import from_rest
 from reports.stability.error_series import ErrorSeries
-from reports.stability.free_yardstick import free_series, free_start
+from reports.stability.free_error_series import free_error_series, free_start
 from reports.stability.grades import outcome
 from reports.stability.grading import graded
 from sim.engine import Energy, Run
@@ -41,7 +41,7 @@ def worst(errors: ErrorSeries) -> float:
 
 
 def test_a_run_that_holds_is_ok(trial: Trial, good: Run) -> None:
-    errors = free_series(trial, good)
+    errors = free_error_series(trial, good)
     assert worst(errors) < 1e-5
     assert outcome(errors, 1e-2).outcome == "ok"
 
@@ -51,7 +51,9 @@ def test_energy_that_is_lost_is_an_error_of_its_size(trial: Trial, good: Run) ->
     kinetic = good.energy.kinetic_j
     lost = np.linspace(0.0, 0.1, kinetic.size) * np.max(kinetic)
     leaking = replace(good, energy=Energy(kinetic - lost, good.energy.potential_j))
-    assert worst(free_series(trial, leaking)) == pytest.approx(0.05, rel=0.05)  # between two halves
+    assert worst(free_error_series(trial, leaking)) == pytest.approx(
+        0.05, rel=0.05
+    )  # between two halves
 
 
 def test_a_phase_that_runs_away_is_an_error_as_long_as_it_is_followed(
@@ -61,10 +63,10 @@ def test_a_phase_that_runs_away_is_an_error_as_long_as_it_is_followed(
     light = replace(trial.scene, gravity_m_s2=(0.0, -0.9 * 9.81))
     start = free_start(trial)
     slow = run(light, start, "mujoco", "tuned", dt_s=trial.dt_s, steps=trial.steps, drive="free")
-    followed = free_series(trial, slow)
+    followed = free_error_series(trial, slow)
     assert worst(followed) > 1e-2
     assert outcome(followed, 1e-2).outcome == "degraded"
-    alone = free_series(replace(trial, followed_s=0.02), slow)
+    alone = free_error_series(replace(trial, followed_s=0.02), slow)
     assert worst(alone) < 2e-3
 
 
@@ -74,7 +76,7 @@ def test_places_at_the_runs_own_angle_count_after_the_phase(trial: Trial, good: 
     off = rocker.theta + np.where(good.motion.time_s > 0.3, 0.04, 0.0)
     links = {**good.motion.links, "rocker": replace(rocker, theta=off)}
     bent = replace(good, motion=replace(good.motion, links=links))
-    errors = free_series(replace(trial, followed_s=0.1), bent)
+    errors = free_error_series(replace(trial, followed_s=0.1), bent)
     assert worst(errors) == pytest.approx(0.04, rel=1e-3)
     assert errors.time_s[errors.first(errors.place, 1e-2)] == pytest.approx(0.301, abs=2e-3)
 
@@ -84,7 +86,7 @@ def test_numbers_that_are_not_finite_have_diverged(trial: Trial, good: Run) -> N
     crank = good.motion.links["crank"]
     theta = np.where(good.motion.time_s > 0.4, np.nan, crank.theta)
     links = {**good.motion.links, "crank": replace(crank, theta=theta)}
-    errors = free_series(trial, replace(good, motion=replace(good.motion, links=links)))
+    errors = free_error_series(trial, replace(good, motion=replace(good.motion, links=links)))
     assert outcome(errors, 1e-2).outcome == "diverged"
 
 
@@ -104,3 +106,27 @@ def test_cases_of_free_motion_are_run_when_asked_for() -> None:
     assert [case.name for case in _cases(["free-long"], free=False)] == ["free-long"]
     with pytest.raises(CrankcheckError, match="--free and kite: no case of free motion; those are"):
         _cases(["free-long", "kite"], free=True)
+
+
+def test_nothing_is_said_of_a_crank_that_nobody_drives() -> None:
+    """Of an open joint not what the crank shows, and of the crank no error of 0."""
+    case = CATALOGUE["free-coarse-step"]
+    coarse, _ = graded(case, "mujoco", "tuned", 5e-2, draw=False)
+    assert coarse.reason.startswith("a joint is open by")
+    assert "crank" not in coarse.reason
+    assert np.isnan(coarse.drive)
+
+
+def test_the_reason_names_what_is_off(trial: Trial, good: Run) -> None:
+    assert good.energy is not None
+    kinetic = good.energy.kinetic_j
+    lost = np.linspace(0.0, 0.1, kinetic.size) * np.max(kinetic)
+    leaking = replace(good, energy=Energy(kinetic - lost, good.energy.potential_j))
+    reason = outcome(free_error_series(trial, leaking), 1e-2).reason
+    assert reason == "the energy, over the largest kinetic one, is off by 0.05"
+
+
+def test_growth_is_told_over_the_time_and_not_over_turns(trial: Trial, good: Run) -> None:
+    errors = free_error_series(trial, good)
+    assert errors.per_turn == "in 0.5 s"
+    assert replace(errors, drive=np.zeros_like(errors.place)).per_turn == "a turn"

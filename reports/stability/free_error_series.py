@@ -25,13 +25,12 @@ LOOKS = 1001
 """Instants at which the largest kinetic energy is looked for."""
 
 
-def free_series(trial: Trial, run: Run) -> ErrorSeries:
+def free_error_series(trial: Trial, run: Run) -> ErrorSeries:
     """A run of a scene that loses no energy, beside its free motion.
 
     The error of place is the largest of three: that of phase and places at the same time, over the
     sensitivity, as far as the truth is followed and known; that of the places at the run's own
-    driver angle; and the drift of the energy, over the largest kinetic energy. No crank is told
-    where to be.
+    driver angle; and the drift of the energy, over the largest kinetic energy.
     """
     motion = run.motion
     assert motion is not None
@@ -41,24 +40,28 @@ def free_series(trial: Trial, run: Run) -> ErrorSeries:
     assert isinstance(known, FreeBeside)
     whole = FreeBeside(truth, run, motion, whole_run=run, free=truth.free)
     with np.errstate(all="ignore"):  # what has come apart is judged, not warned
-        place = np.maximum(_geometry(whole), _energy(whole))
-        place[: known.motion.time_s.size] = np.maximum(
-            place[: known.motion.time_s.size], _same_time(known)
-        )
+        same_time = np.zeros_like(motion.time_s)
+        same_time[: known.motion.time_s.size] = _same_time(known)
+        parts = {
+            "the phase, or a place at the same time, over the sensitivity": same_time,
+            "a place at the run's own angle": _geometry(whole),
+            "the energy, over the largest kinetic one,": _energy(whole),
+        }
         gaps = [np.abs(gap) / trial.scene.longest_m for gap in run.gaps.values()]
     return ErrorSeries(
         status=run.status,
         reason=run.reason,
         time_s=motion.time_s,
         driver_rad=whole.crank,
-        place=place,
+        place=np.max(list(parts.values()), axis=0),
         gap=widest(gaps, motion.time_s),
-        drive=np.zeros_like(motion.time_s),
+        drive=np.full_like(motion.time_s, np.nan),
         crank=whole.crank,
         period_s=trial.scene.driver.law.period_s,
         departure=free_departure(known),
         sine=nearest(trial.scene, known.reference),
         incomplete=lacking(trial.scene, run),
+        worst_of_place=max(parts, key=lambda name: float(np.max(parts[name]))),
     )
 
 
@@ -67,7 +70,7 @@ def free_start(trial: Trial) -> State:
     return _truth(trial).start
 
 
-def true_motion(trial: Trial, time_s: Array) -> Motion:
+def free_motion(trial: Trial, time_s: Array) -> Motion:
     """The truth to be drawn. Raises CrankcheckError where it is no longer followed."""
     return replace(_truth(trial).at(time_s), bound=None)
 
