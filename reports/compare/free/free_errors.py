@@ -9,6 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from analytic.forces.jolts import jolts
+from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import has_loops
@@ -85,6 +86,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         inertia_share=borne.inertia_share,
         travel_rad=_travel(beside),
         drifted_rad=_drifted(beside),
+        late=late_impulses(scene, reference, run.dt_s),
         free=facts,
     )
 
