@@ -191,8 +191,9 @@ class _Passing:
         limit, closure = self.limit, dyad.closure
         assert closure.short_m is not None
         short = np.broadcast_to(closure.short_m, self.u.shape)
-        # Beside the limit it closes, but for rounding; beyond its reach the root is not known.
-        beside = self.u * self.u <= REACH * limit.length_rad
+        # Beside the limit it closes, but for rounding; beyond its reach the root is not known. The
+        # square of a root may be larger than what that was taken of.
+        beside = self.u * self.u <= REACH * limit.length_rad * (1.0 + 4.0 * EPS)
         if not beside.all():
             raise OpenError(np.where(beside, -np.abs(short), np.abs(short)))
         short = np.minimum(short, 0.0)

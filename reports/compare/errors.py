@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Literal
 
+from analytic.forces.late_impulses import ON_TIME, LateImpulses
 from reports.compare.free.free_facts import FreeFacts
 from reports.quantities.quantity import BodyKind, Source, tolerance_name
 
@@ -103,8 +104,9 @@ class Errors:
     change over a displacement, in reactions and in the torque, and ``inertia_share`` what inertia
     may have of the largest reaction (`reports.compare.loading`). ``travel_rad`` is the angle
     that a driver which was let go turns through, weighed with the square of its speed over the
-    largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, both
-    0 of one that is driven; ``free`` is what else there is to know of a run that was let go, None
+    largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, and
+    ``late`` what impulses that come a step late may make of its energy, all 0 of one that is
+    driven; ``free`` is what else there is to know of a run that was let go, None
     of one that was driven.
     """
 
@@ -133,6 +135,7 @@ class Errors:
     inertia_share: float = 1.0
     travel_rad: float = 0.0
     drifted_rad: float = 0.0
+    late: LateImpulses = ON_TIME
     free: FreeFacts | None = None
 
     def worst(

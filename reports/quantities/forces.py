@@ -52,6 +52,7 @@ FREE_FORCE = Tolerance(
     power=2.0,
     lasting=1.8,
     drifting=1.0,
+    opening=0.7,
     share=OPEN_SHARE,
     rate=2,
     parts=True,

@@ -54,6 +54,7 @@ PHASE = Quantity(
                 power=1.0,
                 lasting=1.2,
                 drifting=0.7,
+                opening=0.5,
             ),
         ),
     ),
@@ -125,12 +126,11 @@ ENERGY = Quantity(
             short="drift",
             diagram="drift of energy",
             tolerance=Tolerance(
-                "Joints that are closed by impulses, or by springs with dampers, take energy at "
-                "every step, of second order for the longest while.",
+                "Joints that are closed by impulses, or by springs with dampers, are late by the "
+                "arc of a step: by its work the energy is off, of second order, and loses a part "
+                "at every step, of third.",
                 cap=0.1,
-                coefficient=0.7,
-                power=1.0,
-                lasting=3.4,
+                late=0.6,
             ),
         ),
     ),

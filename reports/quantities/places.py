@@ -34,6 +34,7 @@ FREE_PLACE = Tolerance(
     power=1.0,
     lasting=1.8,
     drifting=1.0,
+    opening=0.7,
 )
 
 

@@ -44,6 +44,7 @@ FREE_RATE = Tolerance(
     power=1.5,
     lasting=1.8,
     drifting=1.0,
+    opening=0.7,
     share=OPEN_SHARE,
     share_order=1,
     rate=1,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import mujoco  # type: ignore[import-untyped]  # ships no stubs
@@ -18,6 +19,7 @@ from models.tree import Limb
 from sim.engine import Drive
 from sim.load_magnitudes import ahead, known_ahead
 from sim.mujoco.load_stages import INSIDE, LoadStages
+from sim.mujoco.stroke_shares import StrokeShares
 
 
 class Loading:
@@ -27,7 +29,7 @@ class Loading:
     motion is set by a callback (`following`) in every evaluation of the forces, four times a step
     of RK4, from the state of then; that costs some microseconds each. So are loads over time where
     ``stages_dt_s`` says that steps of RK4, of that length [s], are to see them in their stages
-    (`in_stages`).
+    (`in_stages`), and loads of one stroke with their share of the step.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class Loading:
             if self._dt and not of_motion[k] and not isinstance(load.characteristic, Constant)
         ]
         self._stages: LoadStages | None = None
+        self._shares: StrokeShares | None = None
         self._crank = int(model.joint(driver_joint(scene)).qposadr[0])
         self._turning = {
             load.body: int(model.body(load.body).id) for load in self.loads if load.over == "omega"
@@ -61,6 +64,11 @@ class Loading:
             if limb.slider is not None
             for freedom in limb.freedoms
             if freedom.kind == "slide"
+        }
+        self._of_strokes = {
+            load.name: replace(load, stroke="both")
+            for load in self.loads
+            if self._dt and load.stroke != "both"
         }
 
     def at_times(self, time_s: Array) -> Array:
@@ -87,25 +95,37 @@ class Loading:
 
     @contextmanager
     def in_stages(self, first: int, count: int) -> Iterator[None]:
-        """Let loads over time be those of the stages while MuJoCo takes ``count`` steps from the
-        step ``first`` on."""
-        if not self._of_time:
+        """Let loads over time be those of the stages, and loads of one stroke have their share of
+        the step, while MuJoCo takes ``count`` steps from the step ``first`` on."""
+        if not (self._of_time or self._of_strokes):
             yield
             return
         before = mujoco.get_mjcb_control()
         loads = [self.loads[k] for k in self._of_time]
-        self._stages = LoadStages(loads, self._start_s, self._dt, first, count)
+        if loads:
+            self._stages = LoadStages(loads, self._start_s, self._dt, first, count)
+        if self._of_strokes:
+            sliders = dict.fromkeys(str(load.slider) for load in self._of_strokes.values())
+            places = {name: self._slides[name] for name in sliders}
+            self._shares = StrokeShares(places, self._dt, first)
         mujoco.set_mjcb_control(self._follow)
         try:
             yield
         finally:
-            self._stages = None
+            self._stages = self._shares = None
             mujoco.set_mjcb_control(before)
 
     def _follow(self, _model: Any, data: Any) -> None:
         controls, first = data.ctrl, self.first
+        forward = self._shares.at(data) if self._shares is not None else None
         for k in self._of_motion:
-            controls[first + k] = self.size(self.loads[k], data)
+            load = self.loads[k]
+            if forward is None or load.name not in self._of_strokes:
+                controls[first + k] = self.size(load, data)
+                continue
+            share = forward[str(load.slider)]
+            share = share if load.stroke == "forward" else 1.0 - share
+            controls[first + k] = share * self.size(self._of_strokes[load.name], data)
         if self._stages is not None:
             for k, size in zip(self._of_time, self._stages.at(data.time), strict=True):
                 controls[first + k] = size

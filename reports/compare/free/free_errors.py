@@ -9,6 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from analytic.forces.jolts import jolts
+from analytic.forces.late_impulses import late_impulses
 from models.array import Array
 from models.errors import CrankcheckError
 from models.joints import has_loops
@@ -34,6 +35,8 @@ COURSE = 400
 LEAST_SINE = 0.3
 """Of a transmission angle, where the driver passes a limit of its own: near it the geometry is that
 of another coordinate, which is not singular there."""
+STILL = 1e-12
+"""Over the largest speed of the driver: what does not move."""
 TWICE = 4.0
 """Roundings of a sum in a sum, see `reports.compare.drive_rounding`."""
 
@@ -85,6 +88,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         inertia_share=borne.inertia_share,
         travel_rad=_travel(beside),
         drifted_rad=_drifted(beside),
+        late=late_impulses(scene, reference, run.dt_s),
         free=facts,
     )
 
@@ -172,3 +176,18 @@ def _notes(beside: FreeBeside, facts: FreeFacts) -> Iterable[str]:
         )
     if facts.passages:
         yield f"the driver turns back at {facts.passages} limits of its angle on the way"
+    yield from _held(beside)
+
+
+def _held(beside: FreeBeside) -> Iterable[str]:
+    """A note of where loads that act on one stroke alone hold the truth at rest, as friction does:
+    an engine goes to and fro there, and creeps by what it steps over."""
+    of_strokes = [load.name for load in beside.scene.loads.values() if load.stroke != "both"]
+    still = np.abs(beside.driver_speed) <= STILL * beside.scene.driver.law.peak_speed_rad_s
+    held = np.flatnonzero(still[1:] & still[:-1])
+    if of_strokes and held.size:
+        yield (
+            f"from t = {beside.motion.time_s[held[0]]:.4g} s it is held at rest by loads of one "
+            f"stroke ({', '.join(of_strokes)}), as by friction; engines are given them by the sign "
+            "of a speed, creep there, and do so with the first order of the step at best"
+        )
