@@ -5,22 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from models.characteristics import Characteristic, Constant, Polynomial, Sine
+from models.degrees import within_a_turn
 from models.errors import SceneError
 from models.free_faults import faults_of_free_motion
 from models.friction import ConstantFriction, CoulombFriction, Friction
-from models.joints import block_name
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
-from models.load_tables import (
-    FourierLoad,
-    LawOfLoad,
-    PolynomialLoad,
-    PulseLoad,
-    SineLoad,
-    StepsLoad,
-    TableLoad,
-)
-from models.loads import Load
+from models.load_of_table import load_of
+from models.load_tables import LawOfLoad
 from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
@@ -36,10 +27,7 @@ from models.schema import (
     SliderTable,
 )
 from models.spring_tables import springs_of
-from models.staircase import Staircase
 from models.start_table import start_of
-from models.tabulated import Tabulated
-from models.waves import FourierSum, Pulse
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12
@@ -67,7 +55,7 @@ def scene_from_table(
     links = {name: _link(name, link, points[name], faults) for name, link in table.links.items()}
     longest = max(span(p) for p in points.values())
     sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
-    found = {name: _load(name, load, sliders, faults) for name, load in loads.items()}
+    found = {name: load_of(name, load, sliders, faults) for name, load in loads.items()}
     try:
         law = _law(driver)
     except ValueError as error:
@@ -174,17 +162,12 @@ def _slider(name: str, table: SliderTable, longest: float) -> Slider:
         point=table.point or name,
         on=table.on,
         through_m=table.through_m,
-        direction_rad=_within_a_turn(table.direction_deg),
+        direction_rad=within_a_turn(table.direction_deg),
         link=table.link,
-        angle_rad=_within_a_turn(table.angle_deg),
+        angle_rad=within_a_turn(table.angle_deg),
         mass_kg=mass,
         inertia_kg_m2=inertia,
     )
-
-
-def _within_a_turn(degrees: float) -> float:
-    """An angle that counts but for whole turns, in radians: without them it loses no digits."""
-    return math.radians(math.fmod(degrees, 360.0))
 
 
 def _law(driver: DriverTable) -> Law:
@@ -194,7 +177,7 @@ def _law(driver: DriverTable) -> Law:
             math.radians(driver.centre_deg),
             math.radians(driver.amplitude_deg),
             driver.frequency_rad_s,
-            _within_a_turn(driver.phase_deg),
+            within_a_turn(driver.phase_deg),
         )
     if isinstance(driver, FromRestDriver):
         return FromRest(math.radians(driver.start_deg), driver.speed_rad_s, driver.rise_s)
@@ -204,63 +187,6 @@ def _law(driver: DriverTable) -> Law:
     if isinstance(driver, AcceleratingDriver):
         return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
     return ConstantSpeed(start_rad, driver.speed_rad_s)
-
-
-def _load(
-    name: str, table: LawOfLoad, sliders: Mapping[str, Slider], faults: list[str]
-) -> Load | None:
-    """The load of a table, or None and why it has no magnitude."""
-    body, point = table.link, table.point
-    if table.block is not None:
-        block = sliders[table.block]
-        body, point = block_name(block), block.point
-    assert body is not None
-    try:
-        characteristic = _characteristic(table)
-    except ValueError as error:
-        faults.append(f"loads.{name}: {error}")
-        return None
-    return Load(
-        name=name,
-        body=body,
-        point=None if table.magnitude[0] is None else point,
-        characteristic=characteristic,
-        over=getattr(table, "over", "time"),
-        slider=table.slider,
-        stroke=table.stroke,
-        direction_rad=_within_a_turn(table.direction_deg or 0.0),
-        frame=table.frame or "ground",
-    )
-
-
-def _characteristic(table: LawOfLoad) -> Characteristic:
-    """How the magnitude goes, angles in radians. Raises ValueError."""
-    magnitude = table.force_n if table.force_n is not None else table.torque_n_m
-    if isinstance(table, PolynomialLoad):
-        return Polynomial(tuple(magnitude))  # type: ignore[arg-type]
-    turning = getattr(table, "over", "time") == "angle"
-    if isinstance(table, SineLoad):
-        period = math.radians(table.period) if turning else table.period
-        return Sine(float(magnitude), period, _within_a_turn(table.phase_deg))  # type: ignore[arg-type]
-    if isinstance(table, PulseLoad):
-        return Pulse(float(magnitude), table.period_s, table.start_s)  # type: ignore[arg-type]
-    if isinstance(table, StepsLoad):
-        return Staircase(table.at_s, tuple(magnitude))  # type: ignore[arg-type]
-    if isinstance(table, FourierLoad):
-        period = math.radians(table.period) if turning else table.period
-        count = max(len(table.cosines), len(table.sines))
-        cosines, sines = (
-            (*waves, *[0.0] * (count - len(waves))) for waves in (table.cosines, table.sines)
-        )
-        return FourierSum(float(magnitude), cosines, sines, period)  # type: ignore[arg-type]
-    if isinstance(table, TableLoad):
-        places, values = table.places, tuple(magnitude)  # type: ignore[arg-type]
-        if not turning:
-            return Tabulated(places, values, table.interpolation)
-        period = math.radians(table.period_deg or 360.0)
-        places = tuple(math.radians(place) for place in places)
-        return Tabulated(places, values, table.interpolation, period)
-    return Constant(float(magnitude))  # type: ignore[arg-type]
 
 
 def _friction(joint: str, table: FrictionTable) -> Friction:

@@ -27,11 +27,11 @@ class Constraints:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._joints = Assembly(scene)
-        self.bodies, self.at = self._joints.bodies, self._joints.at
+        self._assembly = Assembly(scene)
+        self.bodies, self.at = self._assembly.bodies, self._assembly.at
         self.size = 3 * len(self.bodies)
         self._driver = self.at[scene.driver.link] + 2
-        equations = self._joints.equations + 1
+        equations = self._assembly.joints.count + 1
         if equations != self.size:
             raise CrankcheckError(
                 f"{scene.name}: {equations} constraint equations for {self.size} coordinates; "
@@ -40,7 +40,7 @@ class Constraints:
 
     def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
         """The point and the two bodies of every two equations of pins, in the order of ``phi``."""
-        return self._joints.pin_pairs()
+        return self._assembly.joints.pin_pairs()
 
     def tip(self, slider: Slider) -> tuple[str, Point]:
         """The body that slides and the place of its point on the line."""
@@ -49,17 +49,17 @@ class Constraints:
 
     def phi(self, q: Array, theta: float) -> Array:
         """The violation of each equation [m or rad] at driver angle ``theta``."""
-        rows = self._joints.gaps(self._joints.at_rest(q[None]))[0]
+        rows = self._assembly.joints.gaps(self._assembly.at_rest(q[None]))[0]
         return np.append(rows, q[self._driver] - theta)
 
     def jacobian(self, q: Array) -> Array:
         """Phi_q (3 n, 3 n)."""
         rows = np.zeros((self.size, self.size))
-        rows[:-1] = self._joints.jacobian(self._joints.at_rest(q[None]))[0]
+        rows[:-1] = self._assembly.joints.jacobian(self._assembly.at_rest(q[None]))[0]
         rows[-1, self._driver] = 1.0
         return rows
 
     def gamma(self, q: Array, rates: Array, alpha: float) -> Array:
         """The right side of the acceleration equations: what q'' has to balance (3 n,)."""
-        now = self._joints.at_rates(q[None], rates[None])
-        return np.append(self._joints.gamma(now)[0], alpha)
+        now = self._assembly.at_rates(q[None], rates[None])
+        return np.append(self._assembly.joints.gamma(now)[0], alpha)

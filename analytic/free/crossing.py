@@ -32,9 +32,8 @@ class FormulaChange:
     at_s: float
 
 
-def first_crossing(formulas: Formulas, looks: Array) -> FormulaChange | None:
-    """The first one at looks [s], (T,); None where all are of the formulas of the first."""
-    rows = formulas(looks)
+def first_crossing(rows: list[Kinked], looks: Array) -> FormulaChange | None:
+    """The first one in formulas at looks [s], (T,); None where all are as at the first look."""
     pieces = np.array([row.pieces for row in rows])
     changed = pieces != pieces[:, :1]
     if not changed.any():
@@ -55,7 +54,7 @@ def precisely(formulas: Formulas, crossing: FormulaChange, first: float, least_s
         near = crossing.at_s + long_s * AROUND
         near = near[(low < near) & (near < high)]
         looks = np.concatenate([[first], [low] if low > first else [], near, [high]])
-        closer = first_crossing(formulas, looks)
+        closer = first_crossing(formulas(looks), looks)
         if closer is None:  # within rounding of it
             break
         crossing = closer

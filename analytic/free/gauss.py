@@ -66,13 +66,13 @@ def _integral(count: int) -> Array:
 
 
 def sums(coefficients: Array, share: Array) -> Array:
-    """The values of series (T, n), one each, at ``share`` (T,) of their windows, by Clenshaw's
-    recurrence."""
+    """The values of series (..., n) at shares of their windows that broadcast with (...,), by
+    Clenshaw's recurrence."""
     x = 2.0 * share - 1.0
     one, two = np.zeros_like(x), np.zeros_like(x)
-    for k in range(coefficients.shape[1] - 1, 0, -1):
+    for k in range(coefficients.shape[-1] - 1, 0, -1):
         one, two = (
-            coefficients[:, k] + (2 * k + 1) / (k + 1) * x * one - (k + 1) / (k + 2) * two,
+            coefficients[..., k] + (2 * k + 1) / (k + 1) * x * one - (k + 1) / (k + 2) * two,
             one,
         )
-    return np.asarray(coefficients[:, 0] + x * one - 0.5 * two)
+    return np.asarray(coefficients[..., 0] + x * one - 0.5 * two)

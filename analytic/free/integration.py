@@ -13,12 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.free.coordinate_history import MOST, CoordinateHistory, Window
-from analytic.free.crossing import FormulaChange, Formulas, first_crossing, precisely
+from analytic.free.coordinate_history import CoordinateHistory, Window
 from analytic.free.gauss import Gauss, sums
-from analytic.free.kinks import Kinked, heeds_direction, is_kinked, kinked
+from analytic.free.kinks import heeds_direction, is_kinked
 from analytic.free.machine import Machine
 from analytic.free.window import Scale, WindowSolution, solve_window
+from analytic.free.window_kinks import BEYOND, SHORT_OF, WindowKinks
 from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError
@@ -38,13 +38,6 @@ TINY = 1e-150
 """A rate that only says which way the machine is about to move."""
 AIMS = 30
 """Windows that are tried so as to end at a change of formula."""
-LEAST_AHEAD = 0.02
-"""The share of a window from which on a change of formula is foretold before it is solved."""
-PRECISELY = 4e-14
-"""To what share of a window a change of formula is found: to rounding of what its formula goes
-over, some hundred times that of the time."""
-SHORT_OF, BEYOND = 1.0 - 2e-4, MOST
-"""They are solved to a little before it, and used up to it."""
 
 
 @dataclass
@@ -79,7 +72,7 @@ class Integration:
     def _to(self, border_s: float) -> None:
         """Windows up to an instant; in between everything over time is smooth."""
         while self.now_s < border_s:
-            if self.v == 0.0 and heeds_direction(self.scene):
+            if self.v == 0.0 and self._heeds_way:
                 way = self._way(np.array([self.now_s]))[0]
                 if way == 0.0:
                     self._rest(border_s)
@@ -116,17 +109,17 @@ class Integration:
         if edge:
             if end_s < border_s:
                 self.edges_s.append(end_s)
-            if heeds_direction(self.scene) and abs(self.v) <= 1e-9 * self.fastest:
+            if self._heeds_way and abs(self.v) <= 1e-9 * self.fastest:
                 self.v = 0.0
 
     def _keep(self, solved: WindowSolution, lasts_s: float, end_s: float, *, bends: bool) -> None:
-        chart, series = self.machine.chart, solved.series()
+        chart, series = self.machine.chart, solved.series
         window = Window(
             chart, self.now_s, end_s, solved.long_s, *series, *solved.changes(),
             wound=self.wound, bends=bends,
         )  # fmt: skip
         self.windows.append(window)
-        self.now_s, (self.u, self.v) = end_s, solved.at(lasts_s)
+        self.now_s, (self.u, self.v) = end_s, solved.after(lasts_s)
         self.fastest = max(self.fastest, abs(self.v), abs(float(series[1][0])))
         if self.wound:
             ends = self.machine.lengths(np.array([self.u]), self.wound)
@@ -139,7 +132,8 @@ class Integration:
         failed: CrankcheckError | None = None
         rough: WindowSolution | None = None
         aimed, start = 0, self._start(long_s, way)
-        if self._kinked and (ahead := self._kink_ahead(long_s, start)):
+        kinks = self._kinks()
+        if kinks and (ahead := kinks.ahead(long_s, (self.u, self.v, start[0]))):
             aimed, long_s = 1, ahead * SHORT_OF
         # What is left up to an instant may be less: a kink comes within rounding of it.
         shortest = min(SHORTEST * self.until_s, 0.5 * long_s)
@@ -152,7 +146,7 @@ class Integration:
                 long_s, aimed, rough = 0.25 * long_s, 0, None
                 start = self._start(long_s, way)
                 continue
-            crossing = self._crossing(solved, beyond=aimed > 0) if self._kinked else None
+            crossing = kinks.within(solved, beyond=aimed > 0) if kinks else None
             end = None if crossing is None else crossing.at_s
             landed = end is not None and long_s <= end <= BEYOND * long_s
             if end is not None and not (landed and solved.converged) and aimed < AIMS:
@@ -162,8 +156,8 @@ class Integration:
             share = 0.9 * max(excess, 1e-30) ** (-1.0 / self.rule.count)
             if solved.converged and excess <= 1.0 and (landed or end is None):
                 self.long_s = max(self.long_s, long_s) if aimed else long_s * min(GROWTH, share)
-                if crossing is not None and landed:
-                    return solved, self._landing(solved, crossing), True
+                if kinks and crossing and landed:
+                    return solved, kinks.landing(solved, crossing), True
                 return solved, long_s, False
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
             aimed, rough = 0, None
@@ -173,24 +167,29 @@ class Integration:
             "is not smooth there, or has no mass"
         )
 
-    def _start(self, long_s: float, way: float) -> float:
-        """The acceleration with which a window starts."""
+    def _start(self, long_s: float, way: float) -> tuple[float, float]:
+        """The acceleration with which a window starts, or hardly another, and its slope [1/s]."""
+        if self.windows and self.windows[-1].bends and self._goes_on:
+            # Tables are bent there and do not jump: as the window before ended.
+            before = self.windows[-1]
+            orders = np.arange(len(before.a))
+            return float(before.a.sum()), float(orders * (orders + 1) @ before.a) / before.long_s
         start = self._acceleration(
             np.array([self.now_s + 1e-3 * long_s]),
             np.array([self.u]),
             np.array([self.v or way * TINY]),
         )
-        return float(start[0])
+        return float(start[0]), 0.0
 
     def _tried(
-        self, long_s: float, start: float, rough: WindowSolution | None
+        self, long_s: float, start: tuple[float, float], rough: WindowSolution | None
     ) -> WindowSolution | None:
-        """A window, begun from a ``rough`` one that was longer, or the acceleration ``start``."""
+        """A window, begun from a ``rough`` one that was longer, or the acceleration ``start`` and
+        its slope."""
         if rough is not None and rough.long_s >= long_s:
-            ones = np.ones((self.rule.count, 1))
-            first = sums(ones * rough.series()[2], self.rule.places * (long_s / rough.long_s))
+            first = sums(rough.series[2][None], self.rule.places * (long_s / rough.long_s))
         else:
-            first = np.full(self.rule.count, start)
+            first = start[0] + start[1] * long_s * self.rule.places
         if not np.isfinite(first).all():
             return None
         state = (self.now_s, self.u, self.v)
@@ -205,56 +204,28 @@ class Integration:
             max(1.0, abs(self.u)) if self.machine.chart.limit is None else 1.0, self.fastest
         )
 
+    @property
+    def _goes_on(self) -> bool:
+        """Whether the coordinate is that of the window before, and nothing turns with the way."""
+        return self.windows[-1].chart is self.machine.chart and not self._heeds_way
+
+    @cached_property
+    def _heeds_way(self) -> bool:
+        return heeds_direction(self.scene)
+
     @cached_property
     def _kinked(self) -> bool:
         return is_kinked(self.scene)
 
+    def _kinks(self) -> WindowKinks | None:
+        """Those of the next window; None where no formula has any."""
+        if not self._kinked:
+            return None
+        smooth = bool(self.windows) and not self.windows[-1].bends
+        return WindowKinks(self.machine, self.rule, smooth)
+
     def _driver_deg(self) -> float:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
-
-    def _kink_ahead(self, long_s: float, a: float) -> float | None:
-        """When a formula first gives way, as far as the acceleration at the start tells [s]."""
-        if not math.isfinite(a):
-            return None
-
-        def formulas(after_s: Array) -> list[Kinked]:
-            u = self.u + after_s * (self.v + 0.5 * a * after_s)
-            return kinked(self.machine, u, self.v + a * after_s)
-
-        try:
-            crossing = first_crossing(formulas, self._looks(long_s, long_s))
-        except CrankcheckError:  # out of its reach, where the motion itself does not come
-            return None
-        return crossing.at_s if crossing and crossing.at_s > LEAST_AHEAD * long_s else None
-
-    def _crossing(self, solved: WindowSolution, *, beyond: bool = False) -> FormulaChange | None:
-        """Where in a window, or a little beyond it, a formula first gives way to another."""
-        h = solved.long_s
-        return first_crossing(self._along(solved), self._looks(h, BEYOND * h if beyond else h))
-
-    def _landing(self, solved: WindowSolution, crossing: FormulaChange) -> float:
-        """How long after the start of a window a formula has just given way [s]."""
-        h = solved.long_s
-        first = float(self._looks(h, h)[0])
-        return precisely(self._along(solved), crossing, first, PRECISELY * h)
-
-    def _looks(self, long_s: float, end_s: float) -> Array:
-        """The times after the start of a window at which formulas are looked at [s]."""
-        looks = np.append(long_s * self.rule.places, end_s)
-        if self.windows and not self.windows[-1].bends:
-            return np.concatenate([[0.0], looks])
-        return looks  # it starts between two formulas
-
-    def _along(self, solved: WindowSolution) -> Formulas:
-        """The formulas along a window."""
-        u, v, _ = solved.series()
-
-        def formulas(after_s: Array) -> list[Kinked]:
-            share = after_s / solved.long_s
-            ones = np.ones((len(share), 1))
-            return kinked(self.machine, sums(ones * u, share), sums(ones * v, share))
-
-        return formulas
 
     def _way(self, time_s: Array) -> Array:
         """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,).

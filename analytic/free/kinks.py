@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
+from analytic.dyads.chunk import Chunk
 from analytic.free.machine import Machine
 from models.array import Array
 from models.scene import Scene
@@ -68,28 +70,31 @@ class Kinked:
 
 def kinked(machine: Machine, u: Array, v: Array) -> list[Kinked]:
     """All formulas of the scene that have kinks, at coordinates and rates (T,)."""
-    unit = machine.chart.unit(u)
-    chunk = machine.moving(u, v, unit)
     zero = np.zeros(1)
+
+    @cache  # loads over the angle ask for no more than the driver
+    def unit() -> Chunk:
+        return machine.chart.unit(u)
 
     def whole(x: object) -> Array:
         return np.broadcast_to(np.asarray(x, dtype=np.float64), u.shape)
 
     rows = [Kinked(v, zero, sign=True)] if heeds_direction(machine.scene) else []
-    rows += [Kinked(whole(rate), zero, sign=True) for _, rate in machine.rubbing(unit)]
+    if machine.scene.friction:
+        rows += [Kinked(whole(rate), zero, sign=True) for _, rate in machine.rubbing(unit())]
     for load in machine.scene.loads.values():
-        sliding = None if load.slider is None else chunk.sliders[load.slider]
-        if load.stroke != "both" and sliding is not None:
-            rows.append(Kinked(whole(sliding.speed), zero, sign=True))
+        if load.stroke != "both" and load.slider is not None:
+            rows.append(Kinked(whole(unit().sliders[load.slider].speed * v), zero, sign=True))
         if load.over == "time" or not load.characteristic.kinks:
             continue
         if load.over == "angle":
-            x = chunk.theta
+            x = machine.chart.driver(u)[0]
         elif load.over == "omega":
-            x = chunk.bodies[load.body].omega
+            x = unit().bodies[load.body].omega * v
         else:
-            assert sliding is not None
-            x = sliding.s if load.over == "displacement" else sliding.speed
+            assert load.slider is not None
+            sliding = unit().sliders[load.slider]
+            x = sliding.s if load.over == "displacement" else sliding.speed * v
         kinks = np.array(load.characteristic.kinks)
         rows.append(Kinked(whole(x), kinks, load.characteristic.repeats_after))
     return rows

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from analytic.dyads.chunk import Chunk
-from analytic.dyads.plane import STEADY, Real
+from analytic.dyads.plane import Real
 from analytic.forces.reduced_machine import inertia_and_slope, loaded_bodies
 from analytic.forces.springs import spring_lengths
 from analytic.forces.virtual_power import torque_by_power
@@ -66,18 +66,18 @@ class Machine:
 
     def push(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
         """Q at times [s], coordinates and their rates, (T,)."""
-        push = self._push(time_s, u, v, self.chart.unit(u), wound)
+        push = self._push(time_s, v, self.chart.unit(u), wound)
         return np.asarray(np.broadcast_to(push, u.shape))
 
     def acceleration(self, time_s: Array, u: Array, v: Array, wound: Wound = UNWOUND) -> Array:
         """u'' at times [s], coordinates and their rates, (T,)."""
         unit = self.chart.unit(u)
         inertia, slope = inertia_and_slope(self.scene, unit)
-        push = self._push(time_s, u, v, unit, wound)
+        push = self._push(time_s, v, unit, wound)
         return np.asarray((push - 0.5 * slope * v**2) / inertia)
 
-    def _push(self, time_s: Array, u: Array, v: Array, unit: Chunk, wound: Wound) -> Real:
-        push = self._weights_and_loads(self.scene, time_s, u, v, unit)
+    def _push(self, time_s: Array, v: Array, unit: Chunk, wound: Wound) -> Real:
+        push = self._weights_and_loads(self.scene, time_s, v, unit)
         return push + self._springs(unit, v, wound) + self._friction(unit, v)
 
     def kinetic(self, u: Array, v: Array) -> Array:
@@ -99,7 +99,7 @@ class Machine:
     def power(self, time_s: Array, u: Array, v: Array) -> Array:
         """What loads, dampers and friction do in a second [W]: what is not kept as energy."""
         unit = self.chart.unit(u)
-        push = self._weights_and_loads(self._weightless, time_s, u, v, unit)
+        push = self._weights_and_loads(self._weightless, time_s, v, unit)
         for spring, _, rate in spring_lengths(self.scene, unit):
             push = push - spring.damping * rate**2 * v
         return np.asarray((push + self._friction(unit, v)) * v)
@@ -142,14 +142,20 @@ class Machine:
         loads = self.scene.loads.values()
         return any(load.over in ("speed", "omega") or load.stroke != "both" for load in loads)
 
-    def moving(self, u: Array, v: Array, unit: Chunk) -> Chunk:
-        """The mechanism with its rates, where any load asks for them."""
-        return self.chart.chunk(u, v, STEADY) if self._heeds_rates else unit
+    def _moving(self, unit: Chunk, v: Array) -> Chunk:
+        """The mechanism with those rates that loads ask for; all others are per unit still."""
+        if not self._heeds_rates:
+            return unit
+        bodies, sliders = dict(unit.bodies), dict(unit.sliders)
+        for load in self.scene.loads.values():
+            if load.over == "omega" and (body := unit.bodies.get(load.body)):
+                bodies[load.body] = replace(body, omega=body.omega * v)
+            if load.slider is not None and (sliding := unit.sliders.get(load.slider)):
+                sliders[load.slider] = replace(sliding, speed=sliding.speed * v)
+        return replace(unit, bodies=bodies, sliders=sliders)
 
-    def _weights_and_loads(
-        self, scene: Scene, time_s: Array, u: Array, v: Array, unit: Chunk
-    ) -> Real:
-        chunk = self.moving(u, v, unit)
+    def _weights_and_loads(self, scene: Scene, time_s: Array, v: Array, unit: Chunk) -> Real:
+        chunk = self._moving(unit, v)
         bodies = loaded_bodies(scene, chunk, time_s)
         return -torque_by_power(bodies, unit, chunk).value
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -46,14 +47,21 @@ class WindowSolution:
     by_v: Array
     converged: bool
 
-    def at(self, after_s: float) -> tuple[float, float]:
+    def after(self, lasts_s: float) -> tuple[float, float]:
         """u and u' a while after the start [s]: at the end, or hardly beyond it."""
-        if after_s == self.long_s:
+        if lasts_s == self.long_s:
             return self.end
-        share = np.array([after_s / self.long_s])
-        u, v, _ = (float(sums(each[None], share)[0]) for each in self.series())
-        return u, v
+        u, v = self.at(np.array([lasts_s]))[:, 0]
+        return float(u), float(v)
 
+    def at(self, after_s: Array) -> Array:
+        """u and u' at times after the start [s], (2, T)."""
+        u, v, _ = self.series
+        both = np.zeros((2, 1, u.size))
+        both[0, 0], both[1, 0, : v.size] = u, v
+        return sums(both, after_s / self.long_s)
+
+    @cached_property
     def series(self) -> tuple[Array, Array, Array]:
         """The coefficients of u, u', u''."""
         h, own = self.long_s, self.rule.series @ self.a
@@ -65,7 +73,7 @@ class WindowSolution:
 
     def excess(self, scale: Scale) -> float:
         """What is cut off of the polynomials over what may be: at most 1 is short enough."""
-        own, h, n = np.abs(self.rule.series @ self.a), self.long_s, self.rule.count
+        own, h, n = np.abs(self.series[2]), self.long_s, self.rule.count
         tail = float(max(own[-1], own[-2]))
         rate = max(scale.v, abs(self.v0), SLOW * scale.u / h)
         room = min(4e-15 * n * n * scale.u / h**2, 2e-14 * n * rate / h)

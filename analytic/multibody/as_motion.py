@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from models.array import Array
 from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
 

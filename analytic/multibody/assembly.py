@@ -1,47 +1,19 @@
-"""The bodies of a scene, their markers, and the constraint equations of its joints.
-
-Nothing here knows of dyads or of an order of solving. Every pin and every prismatic pair gives two
-equations, whatever they leave free::
-
-    pin      r_a - r_b = 0
-    slider   n . (r - r_guide) = 0          n across the line, which turns with its guide
-             angle - angle of the line = 0
-
-The equations and their derivatives come from those of markers. Source: E. J. Haug, Computer Aided
-Kinematics and Dynamics of Mechanical Systems, chapters 3, 4 and 6.
-"""
+"""The bodies of a scene and the markers that they carry, in one set of coordinates."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from analytic.multibody.body_set import BodySet
+from analytic.multibody.configuration import Configuration
+from analytic.multibody.joint_equations import JointEquations, JointMarkers
 from analytic.multibody.rigid import RigidBodies, inertias
-from models.array import Array, Mask
-from models.joints import joined_at, local_point, sliding_angle, sliding_body
-from models.scene import GROUND, Point, Scene, Slider
-
-
-@dataclass(frozen=True)
-class Configuration:
-    """Coordinates with their rates at T samples, (T, n), and what they make of K markers: places
-    and velocities (T, K, 3), derivatives of places by coordinates (T, K, 3, n), and accelerations
-    where the q'' are 0 (T, K, 3)."""
-
-    q: Array
-    rates: Array
-    place: Array
-    gradient: Array
-    velocity: Array
-    drift: Array
-
-    def some(self, samples: Mask) -> Configuration:
-        """Those of some of the samples."""
-        return Configuration(*(own[samples] for own in vars(self).values()))
+from models.array import Array
+from models.joints import joined_at, local_point, sliding_body
+from models.scene import GROUND, Point, Scene
 
 
 @dataclass
@@ -53,11 +25,11 @@ class _MarkerList:
 
 
 class Assembly:
-    """The equations of all bodies and joints of a scene.
+    """All bodies of a scene, and the equations of its ``joints``.
 
     ``bodies`` are those with coordinates, each from ``at`` on in q; ``size`` is n, the number of
-    all coordinates, ``equations`` m, that of the constraints. ``parts`` do the work, each with a
-    slice of the coordinates and of the markers.
+    all coordinates. ``parts`` do the work, each with a slice of the coordinates and of the markers.
+    ``held`` are the markers at each pin, by body.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -66,7 +38,7 @@ class Assembly:
         self.bodies = tuple(own)
         self.at = {body: 3 * i for i, body in enumerate(self.bodies)}
         self._list = _MarkerList()
-        self._held = {
+        self.held = {
             point: {body: self._ask(body, local_point(scene, body, point)) for body in names}
             for point, names in joined_at(scene).items()
         }
@@ -92,7 +64,9 @@ class Assembly:
             (rigid, slice(0, rigid.size), slice(0, len(self._list.moving))),
         )
         self.size = sum(part.size for part, _, _ in self.parts)
-        self._joints()
+        self.joints = JointEquations(
+            scene, self.size, JointMarkers(self.held, self.frames, self.tips, self.guides)
+        )
 
     def _ask(self, body: str, place: Point, angle_rad: float = 0.0) -> int:
         """The number of a marker; those of the ground are below 0, until all are known."""
@@ -116,9 +90,9 @@ class Assembly:
         def number(marker: int) -> int:
             return marker if marker >= 0 else still - 1 - marker
 
-        self._held = {
+        self.held = {
             point: {body: number(marker) for body, marker in each.items()}
-            for point, each in self._held.items()
+            for point, each in self.held.items()
         }
         for numbers in (self.frames, self.tips, self.guides):
             numbers.update({name: number(marker) for name, marker in numbers.items()})
@@ -129,28 +103,9 @@ class Assembly:
         self._still = np.zeros((still + len(places), 3))
         self._still[still:] = np.array(places).reshape(-1, 3)
 
-    def _joints(self) -> None:
-        """The markers of all pairs, in the order of their equations."""
-        pairs = list(self.pin_pairs())
-        self._first = np.array([self._held[p][a] for p, a, _ in pairs], dtype=int)
-        self._other = np.array([self._held[p][b] for p, _, b in pairs], dtype=int)
-        sliders: list[Slider] = list(self.scene.sliders.values())
-        self._tip = np.array([self.tips[s.name] for s in sliders], dtype=int)
-        self._turning = np.array([self.frames[sliding_body(s)] for s in sliders], dtype=int)
-        self._guide = np.array([self.guides[s.name] for s in sliders], dtype=int)
-        self._lean = np.array([sliding_angle(s) - s.direction_rad for s in sliders])
-        self.equations = 2 * len(pairs) + 2 * len(sliders)
-
-    def pin_pairs(self) -> Iterator[tuple[str, str, str]]:
-        """The point and the two bodies of every two equations of pins, in their order."""
-        for point, held in self._held.items():
-            first, *others = held
-            for other in others:
-                yield point, first, other
-
     def marker(self, body: str, point: str) -> int:
         """The number of the marker at a named point of a body."""
-        held = self._held.get(point, {})
+        held = self.held.get(point, {})
         return held[body] if body in held else self.carriers[point][1]
 
     @property
@@ -175,61 +130,6 @@ class Assembly:
     def at_rest(self, q: Array) -> Configuration:
         """All markers at coordinates (T, n) alone."""
         return self.at_rates(q, np.zeros_like(q))
-
-    def gaps(self, now: Configuration) -> Array:
-        """The violation of each equation [m or rad], (T, m); angles but for whole turns."""
-        place = now.place
-        pins = place[:, self._first, :2] - place[:, self._other, :2]
-        rows = np.empty((len(place), self.equations))
-        pinned = 2 * len(self._first)
-        rows[:, :pinned] = pins.reshape(len(place), -1)
-        if len(self._tip):
-            _, across, away = self._lines(now)
-            lean = place[:, self._turning, 2] - place[:, self._guide, 2] - self._lean
-            rows[:, pinned::2] = _dot(across, away)
-            rows[:, pinned + 1 :: 2] = lean - math.tau * np.round(lean / math.tau)
-        return rows
-
-    def jacobian(self, now: Configuration) -> Array:
-        """Their derivatives by the coordinates, (T, m, n)."""
-        gradient = now.gradient
-        rows = np.empty((len(gradient), self.equations, self.size))
-        pinned = 2 * len(self._first)
-        pins = gradient[:, self._first, :2] - gradient[:, self._other, :2]
-        rows[:, :pinned] = pins.reshape(len(gradient), pinned, self.size)
-        if len(self._tip):
-            along, across, away = self._lines(now)
-            guide = gradient[:, self._guide]
-            drawn = gradient[:, self._tip, :2] - guide[:, :, :2]
-            turned = _dot(along, away)[:, :, None] * guide[:, :, 2]
-            rows[:, pinned::2] = np.einsum("tsk,tskn->tsn", across, drawn) - turned
-            rows[:, pinned + 1 :: 2] = gradient[:, self._turning, 2] - guide[:, :, 2]
-        return rows
-
-    def gamma(self, now: Configuration) -> Array:
-        """The right side of the equations of accelerations, Phi_q q'' = gamma, (T, m)."""
-        drift = now.drift
-        rows = np.empty((len(drift), self.equations))
-        pinned = 2 * len(self._first)
-        pins = drift[:, self._other, :2] - drift[:, self._first, :2]
-        rows[:, :pinned] = pins.reshape(len(drift), -1)
-        if len(self._tip):
-            along, across, away = self._lines(now)
-            velocity, guide = now.velocity, drift[:, self._guide]
-            omega = velocity[:, self._guide, 2]
-            drawn = velocity[:, self._tip, :2] - velocity[:, self._guide, :2]
-            bent = _dot(across, drift[:, self._tip, :2] - guide[:, :, :2])
-            turned = 2.0 * omega * _dot(along, drawn) + omega**2 * _dot(across, away)
-            rows[:, pinned::2] = turned + guide[:, :, 2] * _dot(along, away) - bent
-            rows[:, pinned + 1 :: 2] = guide[:, :, 2] - drift[:, self._turning, 2]
-        return rows
-
-    def _lines(self, now: Configuration) -> tuple[Array, Array, Array]:
-        """Along and across the line of every slider, and from guide to what slides (T, S, 2)."""
-        angle = now.place[:, self._guide, 2]
-        c, s = np.cos(angle), np.sin(angle)
-        away = now.place[:, self._tip, :2] - now.place[:, self._guide, :2]
-        return np.stack([c, s], axis=2), np.stack([-s, c], axis=2), away
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
         """The mass matrix of all bodies (T, n, n); weights, and inertia that goes with the squares
@@ -262,7 +162,3 @@ class Assembly:
     def height_energy(self, q: Array) -> Array:
         """The potential energy of all bodies [J], (T,)."""
         return np.asarray(sum(part.height_energy(q[:, own]) for part, own, _ in self.parts))
-
-
-def _dot(a: Array, b: Array) -> Array:
-    return np.asarray((a * b).sum(axis=2))

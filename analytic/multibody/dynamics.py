@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from analytic.multibody.saddle import Saddle
@@ -41,7 +42,7 @@ class Dynamics:
     @property
     def redundant(self) -> bool:
         """Whether some of the constraints follow from others."""
-        return self.rank < self.assembly.equations
+        return self.rank < self.assembly.joints.count
 
     def solve(self, time_s: Array, now: Configuration) -> tuple[Array, Array]:
         """q'' (T, n) and the multipliers (T, m) at times [s]. Raises CrankcheckError where they
@@ -50,13 +51,15 @@ class Dynamics:
 
     def _solved(self, time_s: Array, now: Configuration, pushed: Array) -> tuple[Array, Array]:
         assembly = self.assembly
-        jacobian = assembly.jacobian(now)
+        jacobian = assembly.joints.jacobian(now)
         mass, top = assembly.weigh(now.q, now.rates)
         top += pushed
-        bottom = assembly.gamma(now)
+        bottom = assembly.joints.gamma(now)
         if self.alpha or self.beta:
             open_rate = (jacobian @ now.rates[:, :, None])[:, :, 0]
-            bottom = bottom - 2.0 * self.alpha * open_rate - self.beta**2 * assembly.gaps(now)
+            bottom = (
+                bottom - 2.0 * self.alpha * open_rate - self.beta**2 * assembly.joints.gaps(now)
+            )
         seconds, multipliers = np.empty_like(now.q), np.empty_like(bottom)
         for i in range(len(now.q)):
             saddle = self._saddle(mass[i], jacobian[i], float(time_s[i]))
@@ -67,7 +70,7 @@ class Dynamics:
         """The multipliers (T, m) that go with accelerations q'' (T, n), the smallest ones."""
         mass, right = self.assembly.weigh(now.q, now.rates)
         right += self.forces.on(time_s, now) - (mass @ seconds[:, :, None])[:, :, 0]
-        rows = np.swapaxes(self.assembly.jacobian(now), 1, 2)
+        rows = np.swapaxes(self.assembly.joints.jacobian(now), 1, 2)
         each = zip(rows, right, strict=True)
         return np.array([np.linalg.lstsq(a, b, rcond=WEAK)[0] for a, b in each])
 
@@ -108,12 +111,12 @@ class Dynamics:
         unit = max(1.0, assembly.scene.longest_m)
         now = assembly.at_rest(q[None])
         saddle = Saddle(
-            assembly.mass(now.q)[0], assembly.jacobian(now)[0], redundant=self.redundant
+            assembly.mass(now.q)[0], assembly.joints.jacobian(now)[0], redundant=self.redundant
         )
         for _ in range(MOST_PROJECTIONS):
-            step, _ = saddle.solve(0.0, -assembly.gaps(now)[0])
+            step, _ = saddle.solve(0.0, -assembly.joints.gaps(now)[0])
             now = assembly.at_rest(now.q + step)
             if np.abs(step).max() <= NEAR * unit:
                 break
-        step, _ = saddle.solve(0.0, -assembly.jacobian(now)[0] @ rates)
+        step, _ = saddle.solve(0.0, -assembly.joints.jacobian(now)[0] @ rates)
         return now.q[0], rates + step

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from models.array import Array
 from models.loads import Load
 from models.springs import LineSpring, PinSpring, Spring

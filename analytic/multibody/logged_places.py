@@ -71,15 +71,15 @@ def _closed(assembly: Assembly, rough: Array, freedoms: int) -> Array:
     still, lost = np.zeros((len(q), freedoms)), np.zeros(len(q), dtype=bool)
     for _ in range(ROUNDS):
         now = assembly.at_rest(q)
-        rows = np.concatenate([assembly.jacobian(now) * units, hold], axis=1)
-        left = np.concatenate([-assembly.gaps(now), still], axis=1)
+        rows = np.concatenate([assembly.joints.jacobian(now) * units, hold], axis=1)
+        left = np.concatenate([-assembly.joints.gaps(now), still], axis=1)
         step = (np.linalg.pinv(rows, rcond=LOST) @ left[:, :, None])[:, :, 0]
         size = np.abs(step).max(axis=1)
         lost |= ~(size < FAR)
         q = q + np.where(lost[:, None], 0.0, step * units)
         if np.all(lost | (size < 1e-15)):
             break
-    gaps = np.abs(assembly.gaps(assembly.at_rest(q))).max(axis=1, initial=0.0)
+    gaps = np.abs(assembly.joints.gaps(assembly.at_rest(q))).max(axis=1, initial=0.0)
     lost |= gaps > CLOSED * max(1.0, assembly.scene.longest_m)
     return np.where(lost[:, None], np.nan, q)
 
@@ -87,7 +87,7 @@ def _closed(assembly: Assembly, rough: Array, freedoms: int) -> Array:
 def _kept(assembly: Assembly, q: Array, freedoms: int) -> NDArray[np.intp]:
     """The coordinates that say each position best, (T, f): each the one that what the ones before
     it leave free moves most, angles of links first."""
-    jacobian = assembly.jacobian(assembly.at_rest(q)) * assembly.units
+    jacobian = assembly.joints.jacobian(assembly.at_rest(q)) * assembly.units
     _, _, directions = np.linalg.svd(jacobian)
     free = directions[:, assembly.size - freedoms :, :].copy()  # (T, f, n)
     turning = np.zeros(assembly.size, dtype=bool)

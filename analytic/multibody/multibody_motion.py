@@ -12,7 +12,7 @@ from scipy.linalg import qr  # type: ignore[import-untyped]  # ships no stubs
 
 from analytic.multibody.adaptive import Adaptive
 from analytic.multibody.as_motion import as_motion
-from analytic.multibody.assembly import Configuration
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.fixed_steps import FixedSteps
@@ -105,7 +105,7 @@ class MultibodyMotion:
             seconds, multipliers = self._solved(some, now)
             motion = as_motion(self.dynamics.assembly, some, now, seconds)
             forces = joint_forces(
-                self.scene, self.dynamics.assembly.pin_pairs(), some, -multipliers,
+                self.scene, self.dynamics.assembly.joints.pin_pairs(), some, -multipliers,
                 np.zeros_like(some),
             )  # fmt: skip
             parts.append(replace(motion, forces=forces))
@@ -151,7 +151,7 @@ class MultibodyMotion:
         if not passed.any():
             return self._dynamics.solve(time_s, now)
         seconds = np.empty_like(now.q)
-        multipliers = np.empty((len(time_s), self.dynamics.assembly.equations))
+        multipliers = np.empty((len(time_s), self.dynamics.assembly.joints.count))
         if not passed.all():
             found = self._dynamics.solve(time_s[~passed], now.some(~passed))
             seconds[~passed], multipliers[~passed] = found
@@ -184,7 +184,7 @@ class MultibodyMotion:
         """The largest violation of a constraint at times [s], [m or rad], (T,)."""
         instants = samples(time_s, "time_s")
         gaps = [
-            np.abs(self.dynamics.assembly.gaps(now)).max(axis=1, initial=0.0)
+            np.abs(self.dynamics.assembly.joints.gaps(now)).max(axis=1, initial=0.0)
             for _, now, _ in self._configurations(instants)
         ]
         return np.concatenate(gaps)

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.start_poses import StartPoses
 from models.array import Array
@@ -134,7 +135,7 @@ class Outset:
     def _positioned(self, rough: Array, *, whole: bool) -> Array:
         """The closed position next to a rough one, with the named values that count."""
         now = self.assembly.at_rest(rough[None])
-        rows, counting = self.assembly.jacobian(now)[0], []
+        rows, counting = self.assembly.joints.jacobian(now)[0], []
         rank = self._rank(rows)
         for named in self._named(now, rates=False):
             more = np.vstack([rows, named.row])
@@ -168,7 +169,7 @@ class Outset:
         unit, last = self.assembly.units, math.inf
         for _ in range(MOST_STEPS):
             now = assembly.at_rest(q[None])
-            rows, left = [assembly.jacobian(now)[0]], [assembly.gaps(now)[0]]
+            rows, left = [assembly.joints.jacobian(now)[0]], [assembly.joints.gaps(now)[0]]
             for named in self._named(now, rates=False) if counting else ():
                 if named.words in counting:
                     rows.append(named.row[None])
@@ -181,7 +182,7 @@ class Outset:
             if size <= 4.0 * EPS or (size < 1e-9 and size >= 0.5 * last):
                 break
             last = size
-        open_by = np.abs(assembly.gaps(assembly.at_rest(q[None]))[0]).max(initial=0.0)
+        open_by = np.abs(assembly.joints.gaps(assembly.at_rest(q[None]))[0]).max(initial=0.0)
         if open_by > 1e-10 * assembly.scene.longest_m:
             raise CrankcheckError(
                 f"{assembly.scene.name}: the start cannot be assembled: at {self._said(counting)} "
@@ -199,7 +200,7 @@ class Outset:
         assembly, scene = self.assembly, self.assembly.scene
         now = assembly.at_rest(q[None])
         named = list(self._named(now, rates=True))
-        rows = np.vstack([assembly.jacobian(now)[0], *(one.row for one in named)])
+        rows = np.vstack([assembly.joints.jacobian(now)[0], *(one.row for one in named)])
         values = np.array([one.value for one in named])
         if not values.any():
             return np.zeros(assembly.size)
@@ -209,9 +210,9 @@ class Outset:
                 f"{scene.name}: the start moves, and {free} of its freedoms have no speed; give "
                 "start.rates_rad_s of as many more links, 0 where they do not turn"
             )
-        rates = self._least(rows, np.concatenate([np.zeros(assembly.equations), values]))
+        rates = self._least(rows, np.concatenate([np.zeros(assembly.joints.count), values]))
         off = [abs(float(one.row @ rates) - one.value) for one in named]
-        stuck = float(np.abs(assembly.jacobian(now)[0] @ rates).max(initial=0.0))
+        stuck = float(np.abs(assembly.joints.jacobian(now)[0] @ rates).max(initial=0.0))
         worst = int(np.argmax(off))
         if max(off[worst], stuck) > SAME * max(1.0, scene.longest_m) * float(np.abs(values).max()):
             raise CrankcheckError(
@@ -237,7 +238,7 @@ class Outset:
         """Directions of q that all joints allow, one a row, each of the largest entry 1 in the
         units of coordinates, (f, n)."""
         _, sizes, directions = np.linalg.svd(
-            self.assembly.scaled(self.assembly.jacobian(self.assembly.at_rest(q[None]))[0])
+            self.assembly.scaled(self.assembly.joints.jacobian(self.assembly.at_rest(q[None]))[0])
         )
         rank = int((sizes > INDEPENDENT).sum())
         free = directions[rank:]

@@ -96,7 +96,7 @@ def passage_ahead(
 def smallest_singular(dynamics: Dynamics, q: Array) -> float:
     """The smallest singular value of the constraints that count at coordinates (n,)."""
     assembly = dynamics.assembly
-    rows = assembly.scaled(assembly.jacobian(assembly.at_rest(q[None]))[0])
+    rows = assembly.scaled(assembly.joints.jacobian(assembly.at_rest(q[None]))[0])
     return float(np.linalg.svd(rows, compute_uv=False)[dynamics.rank - 1])
 
 

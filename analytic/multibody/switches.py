@@ -8,7 +8,7 @@ from itertools import islice
 
 import numpy as np
 
-from analytic.multibody.assembly import Configuration
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.loads import Load

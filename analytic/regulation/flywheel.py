@@ -24,8 +24,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.regulation.periodic_solution import StallError
-from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
+from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.array import Array
 from models.errors import CrankcheckError

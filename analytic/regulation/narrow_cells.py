@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.regulation.angle_cells import AngleCells
-from analytic.regulation.periodic_solution import PeriodicSolution, WantedSpeed, repeated
+from analytic.regulation.periodic_newton import repeated
+from analytic.regulation.periodic_solution import PeriodicSolution, WantedSpeed
 from analytic.regulation.unsmooth import rated_breaks
 from models.errors import CrankcheckError
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
+from analytic.regulation.cycle_search import cycle_of
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.steady_cycle import SteadyCycle, cycle_of
+from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.errors import CrankcheckError
 from models.scene import Scene

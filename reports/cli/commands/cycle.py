@@ -6,7 +6,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from analytic.regulation.steady_cycle import SteadyCycle, cycle_of
+from analytic.regulation.cycle_search import cycle_of
+from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.errors import harmless
 from models.files import find_scene, load_scene

@@ -22,13 +22,15 @@ def test_derivatives_are_those_of_the_equations(name: str) -> None:
     rates = np.cos(np.arange(len(q)))  # no rates that joints allow: what they are open counts too
     sides = [assembly.at_rates((q + e * rates)[None], rates[None]) for e in (-STEP, STEP)]
     now = assembly.at_rates(q[None], rates[None])
-    assert np.abs(assembly.gaps(now)).max() < 1e-13
-    slope = (assembly.gaps(sides[1]) - assembly.gaps(sides[0]))[0] / (2 * STEP)
-    rows = assembly.jacobian(now)[0]
+    assert np.abs(assembly.joints.gaps(now)).max() < 1e-13
+    slope = (assembly.joints.gaps(sides[1]) - assembly.joints.gaps(sides[0]))[0] / (2 * STEP)
+    rows = assembly.joints.jacobian(now)[0]
     assert slope == pytest.approx(rows @ rates, abs=1e-8)
     # d/dt (Phi_q q') = Phi_q q'' - gamma, and here q'' is 0.
-    flow = [(assembly.jacobian(side)[0] @ rates) for side in sides]
-    assert (flow[1] - flow[0]) / (2 * STEP) == pytest.approx(-assembly.gamma(now)[0], abs=1e-7)
+    flow = [(assembly.joints.jacobian(side)[0] @ rates) for side in sides]
+    assert (flow[1] - flow[0]) / (2 * STEP) == pytest.approx(
+        -assembly.joints.gamma(now)[0], abs=1e-7
+    )
     places = (sides[1].place - sides[0].place) / (2 * STEP)
     assert places == pytest.approx(now.velocity, abs=1e-8)
     drift = (sides[1].velocity - sides[0].velocity) / (2 * STEP)
@@ -43,5 +45,5 @@ def test_samples_at_once_are_those_one_by_one() -> None:
     whole = assembly.at_rates(q, np.ones_like(q))
     for i in range(3):
         one = assembly.at_rates(q[i : i + 1], np.ones((1, assembly.size)))
-        assert np.array_equal(assembly.jacobian(whole)[i], assembly.jacobian(one)[0])
-        assert np.array_equal(assembly.gamma(whole)[i], assembly.gamma(one)[0])
+        assert np.array_equal(assembly.joints.jacobian(whole)[i], assembly.joints.jacobian(one)[0])
+        assert np.array_equal(assembly.joints.gamma(whole)[i], assembly.joints.gamma(one)[0])

@@ -12,7 +12,8 @@ from analytic.check.moved_scene import scaled
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
-from analytic.multibody.assembly import Assembly, Configuration
+from analytic.multibody.configuration import Configuration
+from analytic.multibody.joint_equations import JointEquations
 from analytic.multibody.multibody_motion import MultibodyMotion, Projection
 from analytic.multibody.release_multibody import release_multibody
 from analytic.multibody.rigid import RigidBodies
@@ -113,9 +114,9 @@ def test_joints_stay_closed_and_energy_balances(name: str) -> None:
 def test_faults_in_the_equations_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     time_s = np.linspace(0.0, 0.1, 5)
     right = let_go(CASES["spun"], 0.1).at(time_s).links["crank"].theta
-    gamma, weigh = Assembly.gamma, RigidBodies.weigh
+    gamma, weigh = JointEquations.gamma, RigidBodies.weigh
 
-    def bent(self: Assembly, now: Configuration) -> Array:
+    def bent(self: JointEquations, now: Configuration) -> Array:
         return gamma(self, now) * (1.0 + 1e-6)
 
     def heavy(self: RigidBodies, q: Array, rates: Array) -> tuple[Array, Array]:
@@ -124,7 +125,7 @@ def test_faults_in_the_equations_are_seen(monkeypatch: pytest.MonkeyPatch) -> No
         return mass, push
 
     with monkeypatch.context() as patched:
-        patched.setattr(Assembly, "gamma", bent)
+        patched.setattr(JointEquations, "gamma", bent)
         energy = let_go(CASES["spun"], 0.1).energy(time_s)
         assert np.ptp(energy.balance) > 1e-9 * energy.kinetic.max()
     monkeypatch.setattr(RigidBodies, "weigh", heavy)

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from analytic.regulation.cycle_scene import cycle_scene, with_flywheel
+from analytic.regulation.cycle_search import steady_cycle
 from analytic.regulation.flywheel import WantedFlywheel, wanted_flywheel
-from analytic.regulation.steady_cycle import steady_cycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
 from models.errors import CrankcheckError

@@ -12,8 +12,9 @@ from scipy.integrate import solve_ivp
 from analytic.check.moved_scene import mirrored
 from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
+from analytic.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.regulation.periodic_solution import StallError
-from analytic.regulation.steady_cycle import SteadyCycle, cycle_of, steady_cycle
+from analytic.regulation.steady_cycle import SteadyCycle
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Constant, Polynomial, Sine
 from models.errors import CrankcheckError

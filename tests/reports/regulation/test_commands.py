@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import crankcheck
-from analytic.regulation.steady_cycle import cycle_of
+from analytic.regulation.cycle_search import cycle_of
 from analytic.regulation.turning_machine import TurningMachine
 from models.characteristics import Polynomial, Sine
 from models.files import load_scene
