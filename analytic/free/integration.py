@@ -101,10 +101,14 @@ class Integration:
         if 0.5 * left < long_s < left:
             long_s = 0.5 * left  # two alike instead of a short one at the end
         solved, lasts_s, edge = self._solved(long_s, way)
-        end_s = border_s if lasts_s == left else self.now_s + lasts_s
+        end_s = self.now_s + lasts_s
+        if (over := end_s - border_s) >= -4.0 * math.ulp(border_s):
+            # A change of formula that comes with the instant, or only after it.
+            lasts_s, end_s, edge = left, border_s, edge and over <= 4.0 * math.ulp(border_s)
         self._keep(solved, lasts_s, end_s, bends=edge)
         if edge:
-            self.edges_s.append(end_s)
+            if end_s < border_s:
+                self.edges_s.append(end_s)
             if self._heeds_way and abs(self.v) <= 1e-9 * self.fastest:
                 self.v = 0.0
 
@@ -131,7 +135,9 @@ class Integration:
         kinks = self._kinks()
         if kinks and (ahead := kinks.ahead(long_s, (self.u, self.v, start[0]))):
             aimed, long_s = 1, ahead * SHORT_OF
-        while long_s > SHORTEST * self.until_s or 0 < aimed < AIMS:
+        # What is left up to an instant may be less: a kink comes within rounding of it.
+        shortest = min(SHORTEST * self.until_s, 0.5 * long_s)
+        while long_s > shortest or 0 < aimed < AIMS:
             try:
                 solved = self._tried(long_s, start, rough)
             except CrankcheckError as error:
@@ -222,11 +228,20 @@ class Integration:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
     def _way(self, time_s: Array) -> Array:
-        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,)."""
+        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,).
+
+        Where a load on one stroke lets it leave both ways, that in which it is pushed without: at
+        rest no stroke has begun.
+        """
         u, v = np.full_like(time_s, self.u), np.full_like(time_s, TINY)
         ahead = self._acceleration(time_s, u, v)
         back = self._acceleration(time_s, u, -v)
-        return np.where(ahead > 0.0, 1.0, np.where(back < 0.0, -1.0, 0.0))
+        way = np.where(ahead > 0.0, 1.0, np.where(back < 0.0, -1.0, 0.0))
+        either = (ahead > 0.0) & (back < 0.0)
+        if either.any():
+            still = self._acceleration(time_s, u, np.zeros_like(v))
+            way[either & (still < 0.0)] = -1.0
+        return way
 
     def _rest(self, border_s: float) -> None:
         """A window at rest, until something moves the machine, or to an instant."""

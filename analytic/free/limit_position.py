@@ -35,10 +35,13 @@ from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import Scene
 
-REACH, AHEAD = 0.8, 0.1
-"""The share of a range within which its limit is the place to count from, and of which is looked
-beyond it."""
+REACH, AHEADS = 0.8, (0.1, 0.01, 1e-3, 0.0)
+"""The share of a range within which its limit is the place to count from, and shares of which is
+looked beyond it: less where what comes before the dyad is open, and its square is not smooth."""
 COUNTS = (24, 32, 48, 64, 96, 128, 192, 256)
+SMOOTH, ROUNDED, ROUGH = 1e-14, 2e-13, 1e-9
+"""The end of a series over its largest: what is wanted, what rounding may leave of it, and what is
+no series of the square."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,25 +73,41 @@ class LimitPosition:
 
     def root(self, u: Array) -> Array:
         """The root of the dyad at coordinates (T,), without its sign."""
-        low, high = -AHEAD * self.length_rad, REACH * self.length_rad
-        square = chebyshev.chebval((2.0 * u * u - low - high) / (high - low), self._quotient)
+        low, series = self._quotient
+        high = REACH * self.length_rad
+        square = chebyshev.chebval((2.0 * u * u - low - high) / (high - low), series)
         return np.asarray(np.abs(u) * np.sqrt(np.maximum(square, 0.0)))
 
     @cached_property
-    def _quotient(self) -> Array:
-        """The square of the root over u^2, in Chebyshev's polynomials of u^2 from a little before
-        the limit, where the dyad is open, to `REACH` of the range."""
-        low, high = -AHEAD * self.length_rad, REACH * self.length_rad
-        for count in COUNTS:
-            x = chebyshev.chebpts1(count)
-            w = 0.5 * (low + high) + 0.5 * (high - low) * x
-            closure = prepared(self.scene).stretched(self.driver_rad - self.side * w).closures
-            square = np.asarray(closure[self.dyad].square)
-            series = chebyshev.chebvander(x, count - 1).T @ square * (2.0 / count)
-            series[0] *= 0.5
-            if np.abs(series[-2:]).max() <= 1e-14 * np.abs(series).max():
+    def _quotient(self) -> tuple[float, Array]:
+        """The square of the root over u^2, in Chebyshev's polynomials of u^2 from ``low``, a little
+        before the limit, where the dyad is open, to `REACH` of the range. Raises CrankcheckError
+        where the square is not smooth."""
+        best, least, high = (0.0, np.zeros(1)), math.inf, REACH * self.length_rad
+        for low in (-ahead * self.length_rad for ahead in AHEADS):
+            for count in COUNTS:
+                series = self._square(low, high, count)
+                left = float(np.abs(series[-2:]).max() / np.abs(series).max())
+                if left < least:
+                    best, least = (low, series), left
+                if left <= SMOOTH:
+                    break
+            if least <= ROUNDED:
                 break
-        return _over_argument(_trimmed(series), low, high)
+        if not least <= ROUGH:
+            raise self._unclear()
+        low, series = best
+        return low, _over_argument(_trimmed(series), low, high)
+
+    def _square(self, low: float, high: float, count: int) -> Array:
+        """The series of the square of the root, of ``count`` polynomials of u^2."""
+        x = chebyshev.chebpts1(count)
+        w = 0.5 * (low + high) + 0.5 * (high - low) * x
+        closure = prepared(self.scene).stretched(self.driver_rad - self.side * w).closures
+        square = np.asarray(closure[self.dyad].square)
+        series = chebyshev.chebvander(x, count - 1).T @ square * (2.0 / count)
+        series[0] *= 0.5
+        return np.asarray(series)
 
     def _driver_error(self, u: Array, theta: Array, rates: Rates) -> AngleError:
         """What the driver may be wrong by where u and its rates are by ``rates.error``."""
@@ -117,13 +136,16 @@ class LimitPosition:
                 elif piece.doubt > 4.0 * least and least < LEAST_CERTAIN:
                     break
         if best is None or least >= LEAST_CERTAIN:
-            raise CrankcheckError(
-                f"{self.scene.name}: {self.scene.driver.link} comes to its limit at "
-                f"{math.degrees(self.driver_rad):.6g} deg, where the dyad of {self.dyad} has no "
-                "smooth way into its other assembly that can be told from others to within "
-                "rounding; another singular position is too near: change a length"
-            )
+            raise self._unclear()
         return best
+
+    def _unclear(self) -> CrankcheckError:
+        return CrankcheckError(
+            f"{self.scene.name}: {self.scene.driver.link} comes to its limit at "
+            f"{math.degrees(self.driver_rad):.6g} deg, where the dyad of {self.dyad} has no "
+            "smooth way into its other assembly that can be told from others to within "
+            "rounding; another singular position is too near: change a length"
+        )
 
     def _solved(self, u: Array) -> tuple[Unknown, Unknown]:
         """The unknowns of the dyad as it stands, per unit of the rate of u."""

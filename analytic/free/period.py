@@ -128,6 +128,11 @@ def _turning_points(
             )
     if not ends:
         return None
+    if len(ends) < 2:
+        raise CrankcheckError(
+            f"{arc.scene.name}: what {arc.scene.driver.link} does not get over is narrower than "
+            f"{math.degrees(turn / SCAN):.3g} deg; no period is told so near to a turn"
+        )
     if ends[1] - ends[0] <= 2.0 * turn / SCAN:
         raise CrankcheckError(
             f"{arc.scene.name}: it rests where it is let go, or nearly; no period"

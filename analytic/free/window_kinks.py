@@ -16,6 +16,7 @@ from analytic.free.kinks import Kinked, kinked
 from analytic.free.machine import Machine
 from analytic.free.window import WindowSolution
 from models.array import Array
+from models.errors import CrankcheckError
 
 LEAST_AHEAD = 0.02
 """The share of a window from which on a change of formula is foretold before it is solved."""
@@ -41,7 +42,10 @@ class WindowKinks:
         if not math.isfinite(a):
             return None
         looks = long_s * looked_at(self.rule.count, 1.0, smooth=self.smooth)[0]
-        rows = kinked(self.machine, u + looks * (v + 0.5 * a * looks), v + a * looks)
+        try:
+            rows = kinked(self.machine, u + looks * (v + 0.5 * a * looks), v + a * looks)
+        except CrankcheckError:  # out of its reach, where the motion itself does not come
+            return None
         change = first_crossing(rows, looks)
         return change.at_s if change and change.at_s > LEAST_AHEAD * long_s else None
 

@@ -95,7 +95,9 @@ class Adaptive:
         cells = state_cells(own, self.dynamics.forces, state)
         if not any(switch.turning for switch in own):
             return cells
-        slope = self.dynamics.rates(0.0, state, strokes(own, cells))
+        # Where it starts at rest, no stroke has begun.
+        off = dict.fromkeys(strokes(own, cells), False)
+        slope = self.dynamics.rates(0.0, state, off)
         ahead = state_cells(own, self.dynamics.forces, state + 1e-9 * slope)
         return np.where([switch.turning for switch in own], ahead, cells)
 

@@ -85,7 +85,9 @@ def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:
         raise CrankcheckError(f"{assembly.scene.name}: nothing of it can move; it has no freedom")
     mass = assembly.mass(q[None])[0]
     masses = np.linalg.eigvalsh(free @ mass @ free.T)
-    if masses[0] <= LIGHT * max(masses[-1], np.abs(mass).max()):
+    # In the units of coordinates: small mechanisms have small moments of inertia.
+    heaviest = np.abs(mass * np.outer(assembly.units, assembly.units)).max()
+    if masses[0] <= LIGHT * max(masses[-1], heaviest):
         raise CrankcheckError(
             f"{assembly.scene.name}: {int((masses <= LIGHT * masses[-1]).sum()) or 1} of its "
             f"{count} freedoms moves nothing that has a mass; give links or sliders a mass"

@@ -46,6 +46,12 @@ INSIDE: Array = integrals_to(PLACES)
 """Butcher's matrix (NODES, NODES): the integrals to each node."""
 WHOLE: Array = integrals_to(np.array(1.0))
 """The weights of Gauss's quadrature, (NODES,)."""
+LEGENDRE: Array = (
+    (2 * np.arange(NODES) + 1)
+    * WHOLE[:, None]
+    * np.polynomial.legendre.legvander(2.0 * PLACES - 1.0, NODES - 1)
+)
+"""The coefficients of Legendre's polynomials, by column, of a quantity at the nodes (by row)."""
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ from models.tabulated import Tabulated
 
 MOST_TURNS = 12
 """Of the mechanism's own cycle, within which that of the loads has to come round."""
+MOST_PERIODS = 2000
+"""Of a load in a cycle; all of them are worked out."""
 CLOSE = 1e-9
 """What a period may be off a whole part of the cycle by, over it."""
 
@@ -44,6 +46,7 @@ def cycle_angle(scene: Scene) -> float:
         whole = turns * own
         if all(abs(whole / p - round(whole / p)) <= CLOSE * max(1.0, whole / p) for p in periods):
             _check_springs(scene, whole)
+            _check_periods(scene, whole)
             return whole
     told = few([f"{math.degrees(p):.6g} deg" for p in periods], 6)
     raise CrankcheckError(
@@ -87,6 +90,18 @@ def _period(scene: Scene, load: Load) -> float | None:
             f"{scene.name}: loads.{load.name} follows the angle and never repeats; give {key}"
         )
     return own.repeats_after
+
+
+def _check_periods(scene: Scene, whole_rad: float) -> None:
+    """Refuse loads that repeat more often in a cycle than can be worked out."""
+    for load in scene.loads.values():
+        period = _period(scene, load)
+        if period is not None and whole_rad / period > MOST_PERIODS:
+            raise CrankcheckError(
+                f"{scene.name}: loads.{load.name} repeats after {math.degrees(period):.6g} deg, "
+                f"{whole_rad / period:.6g} times in a cycle of {math.degrees(whole_rad):.6g} deg; "
+                f"at most {MOST_PERIODS} are worked out: give a longer period, or its mean"
+            )
 
 
 def _check_springs(scene: Scene, whole_rad: float) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from analytic.regulation.angle_cells import AngleCells
 from analytic.regulation.mean_balance import other_way, settled_speed
+from analytic.regulation.narrow_cells import resolved
 from analytic.regulation.periodic_newton import repeated
 from analytic.regulation.periodic_solution import PeriodicSolution, WantedSpeed
 from analytic.regulation.steady_cycle import SteadyCycle
@@ -63,7 +64,7 @@ def steady_cycle(machine: TurningMachine, flywheel_kg_m2: float = 0.0) -> Steady
         more = rated_breaks(machine, solution.speed_at)
         cells = AngleCells.of(machine.cycle_rad, np.concatenate([cells.borders, more]))
         solution = repeated(machine, cells, flywheel_kg_m2, solution, wanted)
-    return _with_extremes(solution, wanted)
+    return _with_extremes(resolved(solution, wanted), wanted)
 
 
 def _with_extremes(solution: PeriodicSolution, wanted: WantedSpeed) -> SteadyCycle:

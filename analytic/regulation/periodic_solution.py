@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic.regulation.angle_cells import AngleCells, integrals_to
+from analytic.regulation.angle_cells import LEGENDRE, AngleCells, integrals_to
 from analytic.regulation.turning_machine import TurningMachine
 from models.array import Array
 from models.errors import CrankcheckError
@@ -41,6 +41,16 @@ class PeriodicSolution:
     def speed(self) -> Array:
         """w at the nodes [rad/s]."""
         return np.asarray(np.sqrt(2.0 * self.energy / self.inertia))
+
+    @property
+    def roughness(self) -> Array:
+        """What the highest polynomial of the torque in a cell has of the energy, over the largest
+        energy, (C,): what that leaves out is less. Where a wave has none of that polynomial the one
+        before tells, as if each had the same share of the one before it."""
+        parts = np.abs(self.torque @ LEGENDRE)
+        size = np.maximum(parts.max(axis=1), np.finfo(float).tiny)
+        last = np.maximum(parts[:, -1], size * (parts[:, -2] / size) ** (4.0 / 3.0))
+        return np.asarray(self.cells.widths * last / float(np.max(self.energy)))
 
     def energy_at(self, u: Array) -> Array:
         """T at angles (T,) [J]."""

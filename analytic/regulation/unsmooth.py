@@ -9,11 +9,13 @@ from functools import lru_cache
 
 import numpy as np
 
+from analytic.regulation.angle_cells import CELLS
 from analytic.regulation.turning_machine import TurningMachine, follows_speed
 from analytic.structure.mobility import analyse
 from models.array import Array
-from models.characteristics import Constant
+from models.characteristics import Constant, Sine
 from models.loads import Load
+from models.waves import FourierSum
 
 LOOKS = 720
 """Of a turn, for where a slider passes a row of a table."""
@@ -34,9 +36,21 @@ def breaks(machine: TurningMachine) -> Array:
             at = _slider(machine, load, "s")
             found.append(crossings(at, u, load.characteristic.kinks))
         elif load.over == "angle":
-            found.append(_rows(machine, load))
+            found += [_rows(machine, load), _short_waves(machine, load)]
     found += [_turnings(machine, joint, u) for joint in machine.scene.friction]
     return np.concatenate(found)
+
+
+def _short_waves(machine: TurningMachine, load: Load) -> Array:
+    """Quarters of the shortest wave of a load over the angle, where even cells would miss it."""
+    own = load.characteristic
+    if not isinstance(own, Sine | FourierSum):
+        return np.zeros(0)
+    waves = len(own.sines) if isinstance(own, FourierSum) else 1
+    quarters = round(4.0 * max(waves, 1) * machine.cycle_rad / own.period)
+    if quarters <= CELLS * machine.cycle_rad / math.tau:
+        return np.zeros(0)
+    return np.linspace(0.0, machine.cycle_rad, quarters + 1)
 
 
 def rated_breaks(machine: TurningMachine, speed: Callable[[Array], Array]) -> Array:

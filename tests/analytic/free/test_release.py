@@ -15,13 +15,16 @@ from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.period import period
 from analytic.free.release import release
-from analytic.kinematics import reach
+from analytic.kinematics import reach, solve
+from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.characteristics import Constant
 from models.errors import CrankcheckError
+from models.files import parse_scene
 from models.friction import ConstantFriction, CoulombFriction
 from models.loads import Load
 from models.poses import centre_of, mass_of
+from models.released import let_go
 from models.scene import Scene
 from models.springs import LineSpring, PinSpring
 from models.staircase import Staircase
@@ -30,10 +33,24 @@ from models.tabulated import Tabulated
 from models.waves import Pulse
 from tests.analytic.free.mechanisms import fourbar, past_limits, slider_crank, weightless
 from tests.analytic.free.second_method import driver_by_steps
+from tests.worlds.loading import loaded_mechanism
 
 
 def torque(characteristic: object, over: str = "time") -> dict[str, Load]:
     return {"motor": Load("motor", "crank", None, characteristic, over)}  # type: ignore[arg-type]
+
+
+def on_top_of_its_swing() -> Scene:
+    """A rod that starts 0.001 deg below the top."""
+    text = """
+        name = "rod"
+        source = "a test"
+        gravity_m_s2 = [0.0, -9.81]
+        ground = { points = { A = [0.0, 0.0] } }
+        links = { crank = { bar = ["A", "B"], length_m = 1.0 } }
+        driver = { link = "crank", law = "free", start_deg = 89.999 }
+    """
+    return parse_scene(text, "rod")
 
 
 SPRINGS = {
@@ -195,6 +212,7 @@ def test_turns_take_the_period_that_quadrature_has() -> None:
     [
         (replace(fourbar(), loads=torque(Constant(1.0))), "loads, dampers or friction"),
         (past_limits(), "comes to its limit"),
+        (on_top_of_its_swing(), "narrower than 0.5 deg"),
     ],
 )
 def test_a_period_is_refused_where_there_is_none(scene: Scene, said: str) -> None:
@@ -211,6 +229,48 @@ def test_the_sensitivity_is_what_a_nudge_grows_by(start_deg: float, growth: floa
     grown = np.abs(nudged.law.at(time_s)[0] - free.law.at(time_s)[0]).max() / 1e-7
     assert grown == pytest.approx(growth, rel=0.01)
     assert free.sensitivity(time_s[-1:])[0] == pytest.approx(grown, rel=0.03)
+
+
+def test_where_a_stroke_lets_it_go_both_ways_it_goes_where_it_is_pushed_without() -> None:
+    """At rest no stroke has begun. Weights pull the block back; on its way forward a load would
+    push it on."""
+    scene = slider_crank()
+    push = Load("push", "block C", "C", Constant(100.0), "time", "C", "forward")
+    assert release(scene, 0.05).at(np.array([0.05])).sliders["C"].speed[0] < 0.0
+    free = release(replace(scene, loads={"push": push}), 0.05)
+    at = free.at(np.array([0.05]))
+    assert at.sliders["C"].speed[0] < 0.0
+    near = solve(scene, np.zeros(1), bound=False).state()
+    bodies = release_multibody(free.scene, 0.05, near=near).at(at.time_s)
+    assert bodies.links["crank"].theta[0] == pytest.approx(at.links["crank"].theta[0], abs=1e-11)
+
+
+def test_a_kink_may_come_with_the_end() -> None:
+    """A rotor comes to a row of a table within rounding of the end of its time."""
+    scene = replace(fourbar(start_deg=0.0, speed_rad_s=30.0), loads=torque(TABLE, "angle"))
+    edge = release(scene, 0.2).edges_s[0]
+    for end in (edge, math.nextafter(edge, 1.0), edge + 1e-15, edge + 1e-14):
+        assert release(scene, end).until_s == end
+
+
+def test_a_kink_is_foretold_beyond_the_reach_without_harm() -> None:
+    """A stiff damper brakes at first by so much that the tangent of the start leaves the range."""
+    damper = PinSpring("damper", 0.0, 2e3, 0.0, "A", ("ground", "crank"))
+    scene = past_limits(start_deg=60.0, speed_rad_s=100.0)
+    free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 1.0)
+    assert 0.0 < math.degrees(free.range_rad) < 1.0
+
+
+def test_a_limit_with_another_singular_position_beside_it_is_passed() -> None:
+    """Less than 0.1 of the range beyond a limit of the driver an earlier dyad is open as well."""
+    scene, _ = loaded_mechanism(36)
+    scene = let_go(replace(scene, loads={}), 0.2)
+    free = release(scene, 0.2)
+    time_s = np.array([0.1, 0.2])
+    near = solve(scene, np.zeros(1), bound=False).state()
+    here, there = free.at(time_s), release_multibody(scene, 0.2, near=near).at(time_s)
+    for name, link in here.links.items():
+        assert np.abs(link.theta - there.links[name].theta).max() < 1e-10
 
 
 def test_friction_holds_a_mechanism_that_has_come_to_rest() -> None:

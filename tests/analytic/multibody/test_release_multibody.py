@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.check.moved_scene import scaled
 from analytic.free.release import release
 from analytic.free.window_chain import ChainMotion
 from analytic.kinematics import solve
@@ -71,6 +72,16 @@ def let_go(mechanism: Scene, until_s: float) -> MultibodyMotion:
     """By the multibody form, from the assembly that the closed form has."""
     near = solve(mechanism, np.zeros(1), bound=False).state()
     return release_multibody(mechanism, until_s, near=near)
+
+
+def test_a_mechanism_of_micrometres_has_masses_too() -> None:
+    """Its moments of inertia are 1e-12 of its masses, in SI units."""
+    small = scaled(load_scene("fourbar-swing"), 1e-6)
+    found, free = let_go(small, 0.05), release(small, 0.05)
+    time_s = np.array([0.05])
+    here, there = (one.at(time_s).links["crank"].theta[0] for one in (found, free))
+    assert abs(here - float(free.law.at(np.zeros(1))[0][0])) > 1e-2
+    assert here == pytest.approx(there, abs=1e-10)
 
 
 @pytest.mark.parametrize("name", CASES)

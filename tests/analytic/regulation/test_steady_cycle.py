@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 from analytic.check.moved_scene import mirrored
 from analytic.forces.kinetostatics import forces
+from analytic.free.release import release
 from analytic.regulation.cycle_search import cycle_of, steady_cycle
 from analytic.regulation.periodic_solution import StallError
 from analytic.regulation.steady_cycle import SteadyCycle
@@ -20,6 +21,7 @@ from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.friction import ConstantFriction, CoulombFriction
 from models.laws import Accelerating, ConstantSpeed
+from models.released import Released
 from models.scene import GROUND, Driver, Scene
 from models.springs import LineSpring, PinSpring, SlideSpring
 from models.staircase import Staircase
@@ -157,6 +159,31 @@ def test_the_cycle_is_what_an_integration_repeats() -> None:
     assert found.time_s(np.array([found.machine.cycle_rad]))[0] == pytest.approx(found.period_s)
 
 
+def test_a_steep_motor_is_followed_after_each_kink() -> None:
+    """The speed comes back to that of the motor within 3 deg: J w dw/du = -20 (w - 10) + ..."""
+    loads = Tabulated((0.0, 1.0, 1.5, 4.0), (-8.0, 20.0, -30.0, 4.0), "linear", math.tau)
+    motor = Polynomial((200.0, -20.0))
+    scene = shaft({"motor": (motor, "omega"), "ang": (loads, "angle")}, free=True, inertia=0.05)
+    found = cycle(scene)
+    solution = found.solution
+    begin = float(solution.speed_at(np.zeros(1))[0])
+    free = release(shaft_from(scene, begin), found.period_s)
+    theta, omega, _ = free.law.at(np.linspace(0.0, found.period_s, 2000))
+    off = np.abs(solution.speed_at(theta) - omega)
+    assert off.max() < 1e-8
+
+
+def shaft_from(scene: Scene, speed_rad_s: float) -> Scene:
+    """The scene let go with a speed."""
+    return replace(scene, driver=Driver("crank", Released(0.0, speed_rad_s, 1.0)))
+
+
+def test_a_load_of_short_waves_by_hand() -> None:
+    """J w^2 / 2 = T(0) + A (1 - cos(k u)) / k: 2 A / k = J mean (w_max - w_min)."""
+    found = cycle(shaft({"pull": (Sine(2000.0, math.tau / 120), "angle")}))
+    assert found.delta == pytest.approx(2.0 * 2000.0 / 120 / (2.0 * 10.0**2), rel=1e-9)
+
+
 @pytest.mark.parametrize("backward", [False, True])
 def test_torques_are_those_that_kinetostatics_has_at_constant_speed(backward: bool) -> None:
     """torque of the drive = J' w^2 / 2 - M, friction and dampers among what acts."""
@@ -235,6 +262,10 @@ REFUSED = {
     "no period": (shaft({"pull": (Polynomial((1.0, 1.0)), "angle")}), "never repeats"),
     "one pulse": (shaft({"pull": (Pulse(1.0, 3.0), "angle")}), "never repeats"),
     "no common cycle": (shaft(TWO), "repeat after 114.592 deg, 171.887 deg"),
+    "hardly a period": (shaft({"pull": (Sine(1.0, math.tau / 5000), "angle")}),
+                        "5000 times in a cycle of 360 deg"),
+    "waves too short": (shaft({"pull": (Sine(2e4, math.tau / 1999), "angle")}),
+                        "torques change too fast"),
     "a wound spring": (replace(shaft({}), springs={"main": SPRUNG}),
                        "springs.main is wound up by 360 deg"),
     "no turn": (load_scene("fourbar-double-rocker"), "swings or speeds up"),
