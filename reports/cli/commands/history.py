@@ -13,6 +13,7 @@ from models.files import find_scenes
 from reports.cli.changes import HistoryRequest
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify
+from reports.cli.commands.verify_files import IN_FOLDER
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
@@ -147,7 +148,7 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
     check_folder(request.folder, "-o", FILES, inputs=read)
     for version in versions:
         refuse_link(request.folder / version.name, "-o")
-        check_folder(request.folder / version.name, "-o", verify.IN_FOLDER, inputs=read)
+        check_folder(request.folder / version.name, "-o", IN_FOLDER, inputs=read)
 
 
 def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
