@@ -59,7 +59,6 @@ StepS = Annotated[
 StepsPerTurn = Annotated[
     float | None, typer.Option(help="Steps in a turn, in place of --dt (default 720).")
 ]
-Turns = Annotated[float, typer.Option(help="Turns (periods) of the driver.")]
 Duration = Annotated[
     float | None,
     typer.Option("--duration", metavar="SECONDS", help="Of free motion; default: the scene's."),

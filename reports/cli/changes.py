@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Jobs, StepS, StepsPerTurn, Turns, command
+from reports.cli.application import Duration, Jobs, StepS, StepsPerTurn, command
 from reports.output.console import terminal
 
 
@@ -64,7 +64,11 @@ class HistoryRequest:
     ] = ()
     dt_s: StepS = None
     steps_per_turn: StepsPerTurn = None
-    turns: Turns = 2.0
+    turns: Annotated[float | None, typer.Option(help="Turns of the driver (default 2).")] = None
+    free: Annotated[
+        bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
+    ] = False
+    duration_s: Duration = None
     jobs: Jobs = 0
     cache: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Where environments and results are kept.")

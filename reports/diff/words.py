@@ -92,7 +92,7 @@ def remarks(diff: Diff) -> list[str]:
 def footer(diff: Diff) -> list[str]:
     """Units, the rule of the verdict, and where both runs come from."""
     return [
-        "Largest errors against the closed form as pure numbers: angles in rad, lengths over the "
+        "Largest errors against the reference as pure numbers: angles in rad, lengths over the "
         "longest link, rates over the driver's peak speed and its square.",
         f"Worse: an error above {diff.factor:g} times the old one by more than rounding explains, "
         "or a cell that ended well before.",

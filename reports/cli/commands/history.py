@@ -13,6 +13,7 @@ from models.files import find_scenes
 from reports.cli.changes import HistoryRequest
 from reports.cli.checking import VerifyRequest
 from reports.cli.commands import verify
+from reports.cli.commands.verify_files import IN_FOLDER
 from reports.history.cache import alone, cache_folder
 from reports.history.document import page, table_text
 from reports.history.environments import EngineVersion, NotMeasuredError, ready, uv_here, wanted
@@ -23,7 +24,9 @@ from reports.judge.cell import Cell
 from reports.output.provenance import provenance
 from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
+from reports.plan.free import free_names
 from reports.results.changes.reading import scene_digests
+from reports.verify.footer import DRIVEN_SAID, FREE_SAID
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
 
@@ -38,13 +41,14 @@ def run_history(request: HistoryRequest, console: Console, progress: Console) ->
     if not versions:
         raise CrankcheckError(f"history {request.engine}: name versions, such as 3.6.0 3.7.0")
     cells = verify.plan(_verification(request))
+    names = free_names(request.scenes) if request.free else request.scenes
     cache = cache_folder(request.cache)
     _check_outputs(request, versions)
     uv = uv_here()
-    if note := left_out_note(request.scenes):
+    if note := left_out_note(names):
         progress.print(note, markup=False, highlight=False, soft_wrap=True)
     # The files of a result hold the digests of the scenes' texts, by which they are compared later.
-    key, results = key_of([*cells, scene_digests(request.scenes)]), []
+    key, results = key_of([*cells, scene_digests(names)]), []
     with Progress(console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("", total=2 * len(versions))
         for asked in versions:
@@ -87,18 +91,23 @@ def _verification(request: HistoryRequest) -> VerifyRequest:
         dt_s=request.dt_s,
         steps_per_turn=request.steps_per_turn,
         turns=request.turns,
+        free=request.free,
+        duration_s=request.duration_s,
         jobs=request.jobs,
     )
 
 
 def _arguments(request: HistoryRequest) -> list[str]:
     """The same verification as arguments of the command line; the engine goes before them."""
-    options = [f"--turns={request.turns!r}", f"--jobs={request.jobs}"]
+    options = [f"--jobs={request.jobs}", *["--free"] * request.free]
     options += [f"--profile={name}" for name in request.profiles]
-    if request.dt_s is not None:
-        options.append(f"--dt={request.dt_s!r}")
-    if request.steps_per_turn is not None:
-        options.append(f"--steps-per-turn={request.steps_per_turn!r}")
+    numbers = {
+        "--turns": request.turns,
+        "--duration": request.duration_s,
+        "--dt": request.dt_s,
+        "--steps-per-turn": request.steps_per_turn,
+    }
+    options += [f"{option}={value!r}" for option, value in numbers.items() if value is not None]
     return [*options, "--", *request.scenes]
 
 
@@ -139,7 +148,7 @@ def _check_outputs(request: HistoryRequest, versions: Sequence[EngineVersion]) -
     check_folder(request.folder, "-o", FILES, inputs=read)
     for version in versions:
         refuse_link(request.folder / version.name, "-o")
-        check_folder(request.folder / version.name, "-o", verify.IN_FOLDER, inputs=read)
+        check_folder(request.folder / version.name, "-o", IN_FOLDER, inputs=read)
 
 
 def _write(request: HistoryRequest, results: Sequence[VersionResult], footer: str) -> None:
@@ -158,17 +167,17 @@ def _footer(
 ) -> str:
     """Units, settings and versions; the result's place where no -o was given."""
     first = cells[0]
-    step = f"{first.steps_per_turn:.4g} steps a turn"
+    step, long = f"{first.steps_per_turn:.4g} steps a turn", f"{first.turns:.4g} turns"
+    if first.drive == "free":
+        step, long = f"dt {first.dt_s:.4g} s", f"let go for {first.turns:.4g} s"
     if len({round(cell.steps_per_turn, 3) for cell in cells}) > 1:
         step = f"dt {first.dt_s:.4g} s"
     measured = [result for result in results if result.folder]
     names = " ".join(result.version for result in measured) or "none"
     facts = provenance({request.engine: names})
     lines = [
-        "Largest errors against the closed form at the commanded time; L longest link, w driver's "
-        "peak speed.",
-        f"{step}, {first.turns:.4g} turns; settings are those of this crankcheck's profiles in "
-        "every version.",
+        FREE_SAID if first.drive == "free" else DRIVEN_SAID,
+        f"{step}, {long}; settings are those of this crankcheck's profiles in every version.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]
     if request.folder is None and measured:

@@ -51,6 +51,27 @@ def run_solve(request: SolveRequest, console: Console) -> None:
 
         run_solve_free(scene, request, console)
         return
+    _check_driven(scene, request)
+    along = [_along(scene, text) for text in request.along]
+    structure = analyse(scene)
+    motion = (
+        _over(scene, request)
+        if request.at_deg is None
+        else _at(scene, request.at_deg, clockwise=request.clockwise)
+    )
+    if request.forces:
+        motion = with_forces(scene, motion, by_law=request.at_deg is None)
+    if request.output is not None or request.figures is not None:
+        _tell_written(console, scene, motion, request)
+        return
+    speeds = speed_facts(scene, along, clockwise=request.clockwise)
+    show_heading(console, scene, structure, along, speeds)
+    _show(console, scene, motion, request)
+    show_notes(console, scene, motion)
+
+
+def _check_driven(scene: Scene, request: SolveRequest) -> None:
+    """Refuse what can not be asked of a scene that is driven. Raises CrankcheckError."""
     _refuse_times(scene, request)
     if request.at_deg is not None and (request.turns or request.steps_per_turn):
         raise CrankcheckError(
@@ -61,41 +82,35 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         raise CrankcheckError("--clockwise: it is of one position; give --at-deg, such as 90")
     _check_figures(request)
     _check_page(request)
-    along = [_along(scene, text) for text in request.along]
-    structure = analyse(scene)
-    motion = (
-        _over(scene, request)
-        if request.at_deg is None
-        else _at(scene, request.at_deg, clockwise=request.clockwise)
-    )
-    if request.forces:
-        motion = with_forces(scene, motion, by_law=request.at_deg is None)
+
+
+def _tell_written(console: Console, scene: Scene, motion: Motion, request: SolveRequest) -> None:
+    """Write what was asked for, and say so."""
+    told = []
     if request.figures is not None:
         from reports.figures.forces.writing import written_figures
 
-        told = harmless(written_figures(scene, request.figures))
-        console.print(told, highlight=False, markup=False, soft_wrap=True)
-        if request.output is None:
-            return
+        told.append(written_figures(scene, request.figures))
     if request.output is not None:
-        told = harmless(_write(request.output, scene, motion))
-        console.print(told, highlight=False, markup=False, soft_wrap=True)
-        return
-    speeds = speed_facts(scene, along, clockwise=request.clockwise)
-    show_heading(console, scene, structure, along, speeds)
+        told.append(_write(request.output, scene, motion))
+    for each in told:
+        console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
+
+
+def _show(console: Console, scene: Scene, motion: Motion, request: SolveRequest) -> None:
+    """Print one position, or a motion."""
     if request.at_deg is not None:
         show_position(console, scene, motion)
         if request.forces:
             show_friction(console, scene)
-    else:
-        show_motion(console, scene, motion)
-        if request.forces:
-            show_largest(console, scene)
-            show_friction(console, scene)
-        console.print(
-            "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
-        )
-    show_notes(console, scene, motion)
+        return
+    show_motion(console, scene, motion)
+    if request.forces:
+        show_largest(console, scene)
+        show_friction(console, scene)
+    console.print(
+        "Points, and more digits: -o out.csv, .parquet or .xlsx", style="dim", highlight=False
+    )
 
 
 def _refuse_times(scene: Scene, request: SolveRequest) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -15,9 +13,8 @@ from models.errors import CrankcheckError
 from models.files import find_scenes
 from models.scene import Scene
 from reports.cli.checking import PRESCRIBED, VerifyRequest
+from reports.cli.commands.verify_files import IN_FOLDER, Results, write_results
 from reports.judge.cell import Cell, Checked
-from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import cell_row
 from reports.judge.tolerance import (
     check_names,
     parse,
@@ -25,11 +22,8 @@ from reports.judge.tolerance import (
     refuse_of_other_motion,
 )
 from reports.output.console import tell
-from reports.output.frame_file import csv, parquet
-from reports.output.junit import junit
-from reports.output.numbers import finite
 from reports.output.provenance import provenance
-from reports.output.write import check_outputs, write
+from reports.output.write import check_outputs
 from reports.plan.chosen import (
     chosen_engines,
     chosen_profiles,
@@ -48,7 +42,6 @@ from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
 from reports.plan.steps import TURNS, counted, counted_free
 from reports.verify.all_cells import check_all
-from reports.verify.junit import suite
 from reports.verify.table import show
 from sim.engine import Drive
 from sim.registry import engine
@@ -58,19 +51,6 @@ if (
 ):  # what reads stored runs takes half a second to import: where there is one to read
     from reports.results.changes.changes import Diff
     from reports.results.changes.runs import StoredRun
-
-IN_FOLDER = ("verify.csv", "verify.json", "verify.junit.xml", "errors.parquet")
-
-
-@dataclass(frozen=True)
-class Results:
-    """What there is to write: cells, where they come from, the digests of the texts of their
-    scenes, and what changed since the baseline."""
-
-    checked: Sequence[Checked]
-    facts: Mapping[str, str]
-    digests: Mapping[str, str]
-    diff: Diff | None = None
 
 
 def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
@@ -95,7 +75,7 @@ def verify(request: VerifyRequest, console: Console, progress: Console) -> int:
     facts = provenance({name: engine(name).version() for name in engines})
     diff = _changes(base, checked, facts, digests, request.factor) if base else None
     try:
-        _write(request, Results(checked, facts, digests, diff))
+        write_results(request, Results(checked, facts, digests, diff))
     finally:  # a full disk costs the file, and not the verdict with it
         show(console, checked, facts)
         if diff:
@@ -250,48 +230,3 @@ def _changes(
     from reports.results.changes.runs import run_of
 
     return compare(base, run_of(checked, facts, digests), factor)
-
-
-def _write(request: VerifyRequest, results: Results) -> None:
-    """Every output that was asked for, each whole or not at all."""
-    folder = request.folder
-    *texts, table = IN_FOLDER
-    for name, path in zip(texts, (request.csv, request.json, request.junit), strict=True):
-        for target in filter(None, (path, folder and folder / name)):
-            write(target, _content(name, results))
-    if folder:
-        write(folder / table, parquet(error_frame(results.checked)))
-
-
-def _content(name: str, results: Results) -> str:
-    """The text of one output."""
-    if name.endswith(".csv"):
-        return csv(cell_frame(results.checked))
-    if name.endswith(".xml"):
-        verification = suite(results.checked, results.facts)
-        if results.diff is None:
-            return junit(verification)
-        from reports.diff.junit import suite as diff_suite
-
-        return junit(verification, diff_suite(results.diff))
-    return _json(results)
-
-
-def _json(results: Results) -> str:
-    """Facts, digests of scenes, and cells with their findings; what is not finite is null."""
-    cells = [
-        cell_row(one)
-        | {
-            "settings": dict(one.settings),
-            "not_reported": list(one.errors.not_reported) if one.errors else [],
-            "notes": list(one.errors.notes) if one.errors else [],
-            "findings": [vars(finding) for finding in one.findings],
-        }
-        for one in results.checked
-    ]
-    content = {
-        "provenance": dict(results.facts),
-        "scenes": dict(results.digests),
-        "cells": cells,
-    }
-    return json.dumps(finite(content), indent=1) + "\n"

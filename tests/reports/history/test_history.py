@@ -276,6 +276,8 @@ def test_a_mistake_is_told_before_anything_is_installed(
         ({"scenes": ["fourbar-lecture-9"]}, "neither a shipped scene"),
         ({"profiles": ["tund"]}, "did you mean tuned"),
         ({"turns": -1.0}, "--turns"),
+        ({"scenes": ["fourbar-swing"], "turns": 1.0}, "what is let go has no turns"),
+        ({"duration_s": 1.0}, "--duration: it is of scenes that are let go"),
         ({"cache": tmp_path / "file"}, "--cache"),
         ({"folder": tmp_path / "file"}, "-o"),
     ):

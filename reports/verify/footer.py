@@ -1,0 +1,86 @@
+"""What stands under the tables of a verification: units, steps and versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.markup import escape
+
+from reports.compare.errors import largest
+from reports.judge.cell import Checked
+
+DRIVEN_SAID = (
+    "Largest errors against the closed form at the commanded time; L longest link, w driver's peak "
+    "speed."
+)
+FREE_SAID = (
+    "Let go: errors at the same time over G, by how much a small change of the start has grown; "
+    "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
+    "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
+    "when 1e-3 holds."
+)
+FORCES_SAID = (
+    "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
+    "torque over the run."
+)
+
+
+def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
+    """Units, steps and versions."""
+    free = [one for one in checked if one.cell.drive == "free"]
+    driven = [one for one in checked if one.cell.drive != "free"]
+    lines = [
+        *([DRIVEN_SAID] if driven else ()),
+        *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
+        *(_free_words(free) if free else ()),
+        *_notes(checked),
+        *(_driven_steps(driven) if driven else ()),
+        ", ".join(f"{name} {value}" for name, value in facts.items()),
+    ]
+    return escape("\n".join(lines))
+
+
+def _driven_steps(driven: Sequence[Checked]) -> list[str]:
+    """How driven cells were stepped."""
+    steps = sorted({round(one.cell.steps_per_turn, 3) for one in driven})
+    turns = sorted({round(one.cell.turns, 3) for one in driven})
+    dts = sorted({one.cell.dt_s for one in driven})
+    drives = [e for one in driven if one.errors and (e := one.errors.worst("drive"))]
+    drive = largest(drives)
+    turned = f"{_span(turns)} turn" + ("" if turns == [1.0] else "s")
+    return [
+        f"dt {_span(dts)} s, {_span(steps)} steps a turn, {turned}; "
+        + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
+        + "- not reported."
+    ]
+
+
+def _free_words(free: Sequence[Checked]) -> list[str]:
+    """What the numbers of free cells are, and how these were stepped."""
+    dts = sorted({one.cell.dt_s for one in free})
+    lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
+    growth = sorted(one.errors.free.sensitivity for one in free if one.errors and one.errors.free)
+    return [
+        FREE_SAID,
+        f"dt {_span(dts)} s over {_span(lasts)} s"
+        + (f"; G up to {_span(growth)}" if growth else "")
+        + "; - not reported.",
+    ]
+
+
+def _notes(checked: Sequence[Checked]) -> list[str]:
+    """What is to be said of forces, and of free motion, once for a scene: counts may differ by a
+    sample."""
+    notes = dict[tuple[str, str], str]()
+    for one in checked:
+        told = one.cell.with_forces or one.cell.drive == "free"
+        for note in one.errors.notes if told and one.errors else ():
+            words = "".join(letter for letter in note if not letter.isdigit())
+            notes.setdefault((one.cell.scene.name, words), f"{one.cell.scene.name}: {note}.")
+    return list(notes.values())
+
+
+def _span(values: Sequence[float]) -> str:
+    """One value, or the smallest and the largest."""
+    low, high = f"{values[0]:.4g}", f"{values[-1]:.4g}"
+    return low if low == high else f"{low} to {high}"
