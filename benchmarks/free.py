@@ -126,7 +126,7 @@ def methods() -> None:
     print(
         f"{LASTS_S:g} s of motion; ms, over the reference, largest difference of the angle, calls\n"
     )
-    print(f"{'scene':22}{'method':40}{'ms':>9}{'ratio':>8}{'rad':>10}{'calls':>8}")
+    print(f"{'scene':22}{'method':46}{'ms':>9}{'ratio':>8}{'rad':>10}{'calls':>8}")
     for name in SCENES:
         scene = load_scene(name)
         free = release(scene, LASTS_S)
@@ -134,9 +134,9 @@ def methods() -> None:
         again = least_s(lambda scene=scene: afresh(scene))
         doubt = float(free.error_rad(time_s).max())
         print(
-            f"{name:22}{'reference (its own estimate)':40}{1e3 * base:9.1f}{1.0:8.2f}{doubt:10.1e}"
+            f"{name:22}{'reference (its own estimate)':46}{1e3 * base:9.1f}{1.0:8.2f}{doubt:10.1e}"
         )
-        print(f"{'':22}{'again (A/A)':40}{1e3 * again:9.1f}{again / base:8.2f}")
+        print(f"{'':22}{'again (A/A)':46}{1e3 * again:9.1f}{again / base:8.2f}")
         for by_differences in (False, True):
             equation = Equation(Machine(scene), by_differences)
             for longest_s in (np.inf, PACED_S):
@@ -146,7 +146,7 @@ def methods() -> None:
                 words = "DOP853, J' " + ("by differences" if by_differences else "in closed form")
                 words += "" if longest_s == np.inf else f", steps <= {PACED_S:g} s"
                 off = float(np.abs(angle - true).max())
-                print(f"{'':22}{words:40}{1e3 * spent:9.1f}{spent / base:8.2f}{off:10.1e}{calls:8}")
+                print(f"{'':22}{words:46}{1e3 * spent:9.1f}{spent / base:8.2f}{off:10.1e}{calls:8}")
         sys.stdout.flush()
 
 

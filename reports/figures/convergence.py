@@ -162,7 +162,9 @@ def _count(axes: Axes, lines: Sequence[Line], period_s: float = 1.0) -> None:
 
 def _time(axes: Axes, lines: Sequence[Line]) -> None:
     """Ticks of an axis over steps of time at those that were run, as many as have room."""
-    _ticks(axes, {float(s): duration(float(s)) for line in lines for s in line.cells["dt_s"]})
+    steps = {float(s) for line in lines for s in line.cells["dt_s"]}
+    parts = {step: duration(step).split() for step in steps}
+    _ticks(axes, {step: f"{float(size):g} {unit}" for step, (size, unit) in parts.items()})
 
 
 def _ticks(axes: Axes, texts: Mapping[float, str]) -> None:

@@ -71,6 +71,40 @@ class _Body:
         )
 
 
+@dataclass(frozen=True)
+class _Demand:
+    """What the joints have to bring about: in ``b``, from the row ``at`` of a body on, a force and
+    its moment about the body's origin. What acts is taken off it."""
+
+    scene: Scene
+    bodies: Mapping[str, _Body]
+    at: Mapping[str, int]
+    b: matrix
+
+    def couple(self, name: str, size: Number) -> None:
+        """A moment on a body."""
+        if name != GROUND:
+            self.b[self.at[name] + 2] -= size
+
+    def push(self, name: str, place: Pair, force: Pair) -> None:
+        """A force on a body at a place of the plane."""
+        if name == GROUND:
+            return
+        (ox, oy), row = self.bodies[name].origin, self.at[name]
+        self.b[row] -= force[0]
+        self.b[row + 1] -= force[1]
+        self.couple(name, (place[0] - ox) * force[1] - (place[1] - oy) * force[0])
+
+    def along_line(self, slider: Slider, size: Number) -> None:
+        """A force of the guide on what slides, along its line."""
+        body = sliding_body(slider)
+        angle = self.bodies[slider.on].theta + mpf(slider.direction_rad)
+        place = self.bodies[body].place(local_point(self.scene, body, slider.point))
+        fx, fy = size * mp.cos(angle), size * mp.sin(angle)
+        self.push(body, place, (fx, fy))
+        self.push(slider.on, place, (-fx, -fy))
+
+
 def exact_forces(
     scene: Scene, time_s: float, solved: Solved, friction: Mapping[str, Number] | None = None
 ) -> ExactForces:
@@ -78,7 +112,8 @@ def exact_forces(
     bodies = _bodies(scene, solved)
     names = [name for name in bodies if name != GROUND]
     at = {name: 3 * k for k, name in enumerate(names)}
-    a, b = matrix(3 * len(names), 3 * len(names)), matrix(3 * len(names), 1)
+    a = matrix(3 * len(names), 3 * len(names))
+    demand = _Demand(scene, bodies, at, matrix(3 * len(names), 1))
     column = 0
 
     def force(body: str, place: Pair, along: Pair, sign: int) -> None:
@@ -113,14 +148,14 @@ def exact_forces(
         slides.append(slider.name)
     a[at[scene.driver.link] + 2, column] += 1
     for name in names:
-        _inertia(scene, name, bodies[name], b, at[name])
+        _inertia(demand, name)
     for load in scene.loads.values():
-        _apply(scene, load, time_s, solved, bodies, b, at[load.body])
+        _apply(demand, load, time_s, solved)
     for spring in scene.springs.values():
-        _stretch(scene, spring, solved, bodies, b, at)
+        _stretch(demand, spring, solved)
     for joint, size in (friction or {}).items():
-        _rub(scene, joint, size, bodies, b, at)
-    found = list(mp.lu_solve(a, b))
+        _rub(demand, joint, size)
+    found = list(mp.lu_solve(a, demand.b))
     pins: dict[str, dict[str, Pair]] = {}
     for k, (point, one, other) in enumerate(hinges):
         for body, sign in ((one, 1), (other, -1)):
@@ -161,8 +196,9 @@ def _bodies(scene: Scene, solved: Solved) -> dict[str, _Body]:
     return found
 
 
-def _inertia(scene: Scene, name: str, body: _Body, b: matrix, row: int) -> None:
+def _inertia(demand: _Demand, name: str) -> None:
     """What joints and loads have to bring about: m (a - g), and the same about the origin."""
+    scene, body = demand.scene, demand.bodies[name]
     if name in scene.links:
         holder = scene.links[name]
         mass, moment, centre = holder.mass_kg, holder.inertia_kg_m2, holder.centre_m
@@ -173,21 +209,15 @@ def _inertia(scene: Scene, name: str, body: _Body, b: matrix, row: int) -> None:
     x, y = body.arm(centre)
     fx = mpf(mass) * (ax - mpf(scene.gravity_m_s2[0]))
     fy = mpf(mass) * (ay - mpf(scene.gravity_m_s2[1]))
-    b[row] += fx
-    b[row + 1] += fy
-    b[row + 2] += x * fy - y * fx + mpf(moment) * body.alpha
+    row = demand.at[name]
+    demand.b[row] += fx
+    demand.b[row + 1] += fy
+    demand.b[row + 2] += x * fy - y * fx + mpf(moment) * body.alpha
 
 
-def _apply(
-    scene: Scene,
-    load: Load,
-    time_s: float,
-    solved: Solved,
-    bodies: Mapping[str, _Body],
-    b: matrix,
-    row: int,
-) -> None:
+def _apply(demand: _Demand, load: Load, time_s: float, solved: Solved) -> None:
     """Take a load off what the joints have to bring about."""
+    scene, body = demand.scene, demand.bodies[load.body]
     slider = None if load.slider is None else solved.sliders[load.slider]
     x = mpf(time_s)
     if load.over == "angle":
@@ -200,89 +230,37 @@ def _apply(
         assert slider is not None
         size = size if slider.rate * (1 if load.stroke == "forward" else -1) > 0 else mpf(0)
     if load.point is None:
-        b[row + 2] -= size
+        demand.couple(load.body, size)
         return
-    body = bodies[load.body]
     angle = mpf(load.direction_rad) + (body.theta if load.frame == "body" else 0)
     fx, fy = size * mp.cos(angle), size * mp.sin(angle)
-    ax, ay = body.arm(local_point(scene, load.body, load.point))
-    b[row] -= fx
-    b[row + 1] -= fy
-    b[row + 2] -= ax * fy - ay * fx
+    demand.push(load.body, body.place(local_point(scene, load.body, load.point)), (fx, fy))
 
 
-def _rub(
-    scene: Scene,
-    joint: str,
-    size: Number,
-    bodies: Mapping[str, _Body],
-    b: matrix,
-    at: Mapping[str, int],
-) -> None:
+def _rub(demand: _Demand, joint: str, size: Number) -> None:
     """Take friction off what the joints have to bring about: a couple, or a force along a line."""
-    if joint not in scene.sliders:
-        first, second = _pins(scene)[joint]
-        for body, sign in ((first, -1), (second, 1)):
-            if body != GROUND:
-                b[at[body] + 2] -= sign * size
+    if joint in demand.scene.sliders:
+        demand.along_line(demand.scene.sliders[joint], size)
         return
-    _along_line(scene, scene.sliders[joint], size, bodies, b, at)
+    first, second = _pins(demand.scene)[joint]
+    demand.couple(first, -size)
+    demand.couple(second, size)
 
 
-def _along_line(
-    scene: Scene,
-    slider: Slider,
-    size: Number,
-    bodies: Mapping[str, _Body],
-    b: matrix,
-    at: Mapping[str, int],
-) -> None:
-    """A force of the guide on what slides."""
-    body, angle = sliding_body(slider), bodies[slider.on].theta + mpf(slider.direction_rad)
-    place = bodies[body].place(local_point(scene, body, slider.point))
-    fx, fy = size * mp.cos(angle), size * mp.sin(angle)
-    _push(body, place, (fx, fy), bodies, b, at)
-    _push(slider.on, place, (-fx, -fy), bodies, b, at)
-
-
-def _push(
-    name: str,
-    place: Pair,
-    force: Pair,
-    bodies: Mapping[str, _Body],
-    b: matrix,
-    at: Mapping[str, int],
-) -> None:
-    """Take a force on a body off what its joints have to bring about."""
-    if name == GROUND:
-        return
-    ox, oy = bodies[name].origin
-    b[at[name]] -= force[0]
-    b[at[name] + 1] -= force[1]
-    b[at[name] + 2] -= (place[0] - ox) * force[1] - (place[1] - oy) * force[0]
-
-
-def _stretch(
-    scene: Scene,
-    spring: Spring,
-    solved: Solved,
-    bodies: Mapping[str, _Body],
-    b: matrix,
-    at: Mapping[str, int],
-) -> None:
+def _stretch(demand: _Demand, spring: Spring, solved: Solved) -> None:
     """A spring; in a pin its whole turns are those of the floats."""
+    scene = demand.scene
     rate, damping, free = mpf(spring.rate), mpf(spring.damping), mpf(spring.free)
     if isinstance(spring, SlideSpring):
         sliding = solved.sliders[spring.slider]
         size = -(rate * (sliding.value - free) + damping * sliding.rate)
-        _along_line(scene, scene.sliders[spring.slider], size, bodies, b, at)
+        demand.along_line(scene.sliders[spring.slider], size)
     elif isinstance(spring, PinSpring):
-        one, other = (bodies[name] for name in spring.bodies)
+        one, other = (demand.bodies[name] for name in spring.bodies)
         off = other.theta - one.theta - free - 2 * mp.pi * _turns_at_start(scene, spring)
         size = rate * off + damping * (other.omega - one.omega)
         for name, own in zip(spring.bodies, (size, -size), strict=True):
-            if name != GROUND:
-                b[at[name] + 2] -= own
+            demand.couple(name, own)
     else:
         held = _pins(scene)
         ends = [solved.points[name] for name in spring.points]
@@ -292,7 +270,7 @@ def _stretch(
         pull = (rate * (length - free) + damping * speed) / length
         for name, end, sign in zip(spring.points, ends, (1, -1), strict=True):
             force = (sign * pull * x.value, sign * pull * y.value)
-            _push(held[name][0], (end.x.value, end.y.value), force, bodies, b, at)
+            demand.push(held[name][0], (end.x.value, end.y.value), force)
 
 
 def _turns_at_start(scene: Scene, spring: PinSpring) -> int:

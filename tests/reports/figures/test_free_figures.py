@@ -23,7 +23,7 @@ LABELS = {
     "let-go": ("angle of crank [deg]", "speed [rad/s]", "error of angle / G [rad]", "time [s]"),
     "energy": ("change of energy / largest kinetic energy", "drift", "means over windows"),
     "phase": ("angular velocity [rad/s]", "truth, integrated", "pymunk as-shipped"),
-    "convergence": ("time step", "4.00 ms", "2.00 ms", "largest error / sensitivity"),
+    "convergence": ("time step", "4 ms", "2 ms", "largest error / sensitivity"),
     "mechanism": ("integrated", "x [m]"),
 }
 
