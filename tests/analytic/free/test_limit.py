@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from analytic.free.limit import REACH
+from tests.analytic.free.let_go import fourbar
+
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
-from tests.analytic.free.let_go import fourbar
 
 
 @pytest.mark.parametrize("k", [2, 10])
