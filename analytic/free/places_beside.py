@@ -76,6 +76,7 @@ def _fitted(
         u[near] = np.clip(u[near] - np.nan_to_num(step), -most, most)
     way, _ = _off(scene, chart, u, logged, np.arange(len(u)))
     off = np.nan_to_num(np.abs(way).max(axis=(0, 1)), nan=np.inf)
+    off = np.maximum(off, scene.longest_m * _turned(chart, u, logged))
     return u, np.where(inside, off, np.inf)
 
 
@@ -90,6 +91,18 @@ def _off(scene: Scene, chart: Chart, u: Array, logged: Motion, index: Index) -> 
             way.append([at.p.x - place[:, 0], at.p.y - place[:, 1]])
             slope.append([at.v.x + 0.0 * u, at.v.y + 0.0 * u])
     return np.array(way).swapaxes(0, 1), np.array(slope).swapaxes(0, 1)
+
+
+def _turned(chart: Chart, u: Array, logged: Motion) -> Array:
+    """How far the links of the mechanism are turned from those of a run, (T,): a link that swings
+    about a fixed point and guides a block may have all its named points at rest in both
+    assemblies."""
+    unit, most = chart.unit(u), np.zeros_like(u)
+    for name, link in logged.links.items():
+        turn = unit.bodies[name].unit(0.0)
+        apart = np.hypot(turn.x - np.cos(link.theta), turn.y - np.sin(link.theta))
+        most = np.maximum(most, np.nan_to_num(apart, nan=np.inf))
+    return most
 
 
 def _positions(

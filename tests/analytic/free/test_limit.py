@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from analytic.free.limit import REACH
-from tests.analytic.free.let_go import fourbar
 
+from analytic.free.limit_position import REACH
 from analytic.free.machine_motion import MachineMotion
 from analytic.free.release import release
+from models.files import parse_scene
+from tests.analytic.free.mechanisms import fourbar
 
 
 @pytest.mark.parametrize("k", [2, 10])
@@ -28,4 +29,40 @@ def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does(k: int) -> Non
     assert np.allclose(
         motion.beside(motion.at(time_s)).links["rocker"].theta,
         motion.at(time_s).links["rocker"].theta,
+    )
+
+
+OFFSET_SLOT = """
+name = "offset-slot"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0], C = [0.12, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+[links.lever]
+points = { C = [0.0, 0.0] }
+mass_kg = 1.0
+centre_m = [0.05, 0.02]
+inertia_kg_m2 = 0.01
+[sliders.B]
+on = "lever"
+through_m = [0.0, 0.05]
+mass_kg = 0.1
+[driver]
+link = "crank"
+law = "free"
+start_deg = 90.0
+speed_rad_s = -6.0
+duration_s = 1.0
+"""
+
+
+def test_a_link_whose_points_are_the_same_in_both_assemblies_tells_them_apart() -> None:
+    """A lever that turns about a fixed pivot has no other named point: by points alone both of its
+    assemblies were as near, and runs in the second one were held to the first."""
+    motion = release(parse_scene(OFFSET_SLOT, "offset-slot"), 1.0)
+    assert motion.passages
+    true = motion.at(np.linspace(0.0, 1.0, 41), bound=False)
+    np.testing.assert_allclose(
+        motion.beside(true).links["lever"].theta, true.links["lever"].theta, atol=1e-9
     )
