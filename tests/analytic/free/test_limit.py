@@ -19,7 +19,7 @@ def test_a_limit_reaches_as_far_as_it_says_whatever_rounding_does(k: int) -> Non
     scene = fourbar(0.2 + 0.0031 * k, 0.2, 0.25, 0.41 + 0.0017 * k, start_deg=60.0)
     motion = release(scene, 0.02)
     assert isinstance(motion, MachineMotion)
-    chart = motion.track.windows[0].chart
+    chart = motion.history.windows[0].chart
     assert chart.limit is not None
     most = REACH * chart.limit.length_rad
     u = np.array([np.sqrt(most)])
