@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from models.one_or_more import names_in
+from models.released import let_go
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.face.cell_verdict import CellVerdict, verdict_of_run
@@ -70,6 +71,7 @@ def judge(
     map: None = None,
     require: str | Iterable[str] = (),
     forces: bool = False,
+    free: bool = False,
 ) -> CellVerdict: ...
 
 
@@ -84,6 +86,7 @@ def judge(
     map: MapLike = None,
     require: str | Iterable[str] = (),
     forces: bool = False,
+    free: bool = False,
 ) -> LogVerdict: ...
 
 
@@ -98,6 +101,7 @@ def judge(
     map: MapLike = None,
     require: str | Iterable[str] = (),
     forces: bool = False,
+    free: bool = False,
 ) -> CellVerdict | LogVerdict:
     """Hold a log of your own to the closed form, as `crankcheck judge` does.
 
@@ -122,6 +126,8 @@ def judge(
         Quantities or bodies that have to be in the log.
     forces : bool
         Judge its columns of forces and torque as well; of a run, those that it was asked for.
+    free : bool
+        The log is of a driven scene that was let go at time 0; of a run this is known.
 
     Raises
     ------
@@ -129,7 +135,7 @@ def judge(
         A log that can not be read, or of which nothing is of the scene; no target and no step.
     """
     options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
-    options["forces"] = is_true(forces, "forces")
+    options |= {"forces": is_true(forces, "forces"), "free": is_true(free, "free")}
     return judged(scene, log, target_of(target), **options)
 
 
@@ -143,6 +149,7 @@ def judged(
     map: MapLike,
     require: str | Iterable[str],
     forces: bool = False,
+    free: bool = False,
 ) -> CellVerdict | LogVerdict:
     """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
     scene = scene_of(scene)
@@ -157,6 +164,8 @@ def judged(
         every_name = FREE if scene.is_free else DEFAULTS
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
+    if free:
+        scene = let_go(scene)
     refuse_of_other_motion("--target", [*limits.keys() - {EVERY}], [scene.is_free])
     request = LogRequest(
         target=limits,

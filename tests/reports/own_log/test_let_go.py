@@ -92,6 +92,11 @@ def test_a_run_itself_may_be_judged_and_compared() -> None:
 def test_a_driven_scene_may_be_let_go_and_judged() -> None:
     done = crankcheck.run("slider-crank-central", drive="free", duration_s=0.2)
     assert crankcheck.judge("slider-crank-central", done).verdict == "within"
+    log = crankcheck.judge("slider-crank-central", done.frame(), step_s=done.dt_s, free=True)
+    assert log.verdict == "within"
+    assert log.errors.worst("phase") == crankcheck.compare("slider-crank-central", done).worst(
+        "phase"
+    )
 
 
 def test_a_linkage_that_is_open_is_told_from_a_phase_that_runs_away() -> None:
