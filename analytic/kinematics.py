@@ -3,42 +3,26 @@
 `solve` runs the driver's law through the mechanism's Assur groups in solving order, in chunks that
 stay in cache, and writes what was asked for. With ``bound`` every number carries a bound of its own
 error, propagated from group to group (`analytic.dyads.closure`).
-
-What does not depend on the samples, structure, constants of the groups and change points, is worked
-out once for a scene: a pure function of it, whose results for the last `KEPT` scenes are kept.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
-from analytic.change_points.find import passages, passed
-from analytic.change_points.sign import ChangePoints
-from analytic.dyads.chunk import Chunk, Passage
-from analytic.dyads.parts import OpenError
+from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
-from analytic.dyads.steps import Step, prepare, stretched
-from analytic.reach import Range, describe_reach, ranges
-from analytic.result import MotionArrays, Selection
-from analytic.structure.mobility import analyse
-from analytic.turns.cells import CellSolver
-from analytic.turns.count import Counter, Turns
+from analytic.prepared import Driven, prepared, spans
+from analytic.reach import Range, ranges
+from analytic.result import Selection
+from analytic.turns.count import Counter
 from models.array import Array
-from models.errors import CrankcheckError, ReachError
+from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Law
 from models.motion import Motion
 from models.samples import beside, samples
-from models.scene import KEPT, Same, Scene
-
-CHUNK = 12288
-"""Samples solved at a time: their intermediate arrays fit the second-level cache."""
-Driven = tuple[Array, Real, Real, AngleError | None]
-"""Angles, rates and accelerations of the driver, and what they may be wrong by."""
+from models.scene import Scene
 
 
 def solve(
@@ -123,8 +107,7 @@ def chunks(scene: Scene, time_s: Array, *, bound: bool) -> Iterator[tuple[slice,
     """The solved mechanism at the given times (T,), a chunk of samples at a time, for what builds
     on more than its motion. Raises as `solve`."""
     driver, ready = _driver_of(scene, time_s, bound=bound), prepared(scene)
-    for first in range(0, len(time_s), CHUNK):
-        span = slice(first, first + CHUNK)
+    for span in spans(len(time_s)):
         yield span, ready.chunk(*driver(span))
 
 
@@ -146,7 +129,7 @@ def counted_angle(chunk: Chunk, link: str) -> Array:
     if body.theta is not None:
         return np.broadcast_to(body.theta, chunk.theta.shape)
     angle = np.broadcast_to(np.arctan2(body.turn.y, body.turn.x), chunk.theta.shape).copy()
-    Counter(_prepared(Same(chunk.scene)).turns, chunk.theta).count(link, angle)
+    Counter(prepared(chunk.scene).turns, chunk.theta).count(link, angle)
     return angle
 
 
@@ -198,85 +181,3 @@ def repeats_after(scene: Scene) -> float:
     """The driver angle [rad] after which the positions repeat: a turn, or more of them where the
     mechanism goes through an odd number of change points in one."""
     return prepared(scene).period
-
-
-def prepared(scene: Scene) -> Prepared:
-    """The scene made ready to be solved. Raises StructureError."""
-    return _prepared(Same(scene))
-
-
-@lru_cache(maxsize=KEPT)
-def _prepared(same: Same) -> Prepared:
-    steps = prepare(same.scene, analyse(same.scene))
-    start = float(same.scene.driver.law.at(np.zeros(1))[0][0])
-    return Prepared(same.scene, steps, passages(same.scene, steps), start)
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """A scene made ready to be solved; ``start`` is the driver's angle at time 0."""
-
-    scene: Scene
-    steps: Sequence[Step]
-    passages: Mapping[str, ChangePoints]
-    start: float
-
-    @cached_property
-    def turns(self) -> Turns:
-        """The whole turns of the links, worked out when they are first asked for."""
-        look = CellSolver(self.scene, self.steps, self.passages)
-        return Turns.of(look, self.start, self.period)
-
-    @property
-    def period(self) -> float:
-        """The driver angle [rad] after which the positions repeat."""
-        return max((passage.period for passage in self.passages.values()), default=math.tau)
-
-    def stretched(self, theta: Array) -> Chunk:
-        return stretched(self.scene, self.steps, theta, self.passages)
-
-    def motion(
-        self, wanted: Selection, time_s: Array, driver: Callable[[slice], Driven], *, bound: bool
-    ) -> Motion:
-        """The motion, chunk by chunk, with the change points on the way from time 0 through it."""
-        result = MotionArrays(wanted, time_s, self.steps, bound=bound)
-        low = high = self.start
-        for first in range(0, len(time_s), CHUNK):
-            span = slice(first, first + CHUNK)
-            driven = driver(span)
-            low = min(low, float(driven[0].min()))
-            high = max(high, float(driven[0].max()))
-            counted = wanted.links and low < high  # at the start itself there is nothing to count
-            counter = Counter(self.turns, driven[0]) if counted else None
-            result.write(span, self.chunk(*driven), counter)
-        return replace(result.motion(), crossings=passed(self.passages, low, high))
-
-    @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # rates where there are none
-    def chunk(
-        self,
-        theta: Array,
-        omega: Real,
-        alpha: Real,
-        error: AngleError | None,
-        passing: Mapping[str, Passage] | None = None,
-        roots: Mapping[str, Real] | None = None,
-    ) -> Chunk:
-        """One chunk through all steps; dyads that go through a limit of the driver as ``passing``
-        has it, with ``roots`` that are known better than by the driver. Raises ReachError."""
-        passages = self.passages if passing is None else {**self.passages, **passing}
-        chunk = Chunk.begin(self.scene, theta, omega, alpha, error, passages=passages, roots=roots)
-        for step in self.steps:
-            try:
-                step.advance(chunk)
-            except OpenError as opened:
-                raise ReachError(self._open(step, theta, opened.short_m)) from None
-        return chunk
-
-    def _open(self, step: Step, theta: Array, short_m: Array) -> str:
-        """Where the loop cannot close, by how much, and where it can."""
-        scene, index = self.scene, int(np.argmax(short_m))
-        return (
-            f"{scene.name}: {scene.driver.link} at {math.degrees(theta[index]):.6g} deg: the loop "
-            f"cannot close at {step.key}, it is open by {float(np.ravel(short_m)[index]):.3g} m. "
-            f"{describe_reach(scene, self.stretched)}"
-        )

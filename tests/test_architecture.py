@@ -45,6 +45,7 @@ FLOORS: Mapping[str, str] = {
         free regulation
         mechanism forces
         nearness kinematics
+        prepared
         change_points check reach result
         turns
         dyads

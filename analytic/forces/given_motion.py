@@ -19,7 +19,7 @@ from analytic.dyads.plane import (
     fixed_body,
 )
 from analytic.dyads.riding import rounding_of_angles
-from analytic.kinematics import CHUNK
+from analytic.prepared import CHUNK
 from models.errors import CrankcheckError
 from models.joints import block_name
 from models.motion import Motion

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analytic.free.limit_position import LimitPosition
-from analytic.kinematics import Prepared, prepared, solve_driven
+from analytic.kinematics import solve_driven
+from analytic.prepared import Prepared, prepared
 from analytic.reach import ranges
 from models.array import Array
 from models.errors import CrankcheckError

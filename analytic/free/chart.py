@@ -19,7 +19,7 @@ from analytic.dyads.chunk import Chunk
 from analytic.dyads.plane import EPS, EXACT_ANGLE, STEADY, AngleError, Real
 from analytic.free.arc import Arc
 from analytic.free.limit_position import LimitPosition
-from analytic.kinematics import prepared
+from analytic.prepared import prepared
 from models.array import Array
 
 HOP = 0.6

@@ -30,7 +30,7 @@ from analytic.change_points.smooth import Index, Piece, Rates, Unknown, put
 from analytic.dyads.chunk import Chunk
 from analytic.dyads.parts import Dyad, First, OpenError, Second
 from analytic.dyads.plane import EPS, EXACT_ANGLE, AngleError
-from analytic.kinematics import prepared
+from analytic.prepared import prepared
 from models.array import Array
 from models.errors import CrankcheckError, ReachError
 from models.scene import Scene

@@ -12,7 +12,7 @@ from analytic.dyads.plane import AngleError
 from analytic.free.chart import Chart
 from analytic.free.coordinate_history import CoordinateHistory
 from analytic.free.doubt import Doubt
-from analytic.kinematics import CHUNK, prepared
+from analytic.prepared import CHUNK, prepared
 from analytic.result import MotionArrays, Selection
 from analytic.turns.count import Counter
 from models.array import Array

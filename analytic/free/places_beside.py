@@ -18,7 +18,8 @@ from analytic.free.chart import Chart
 from analytic.free.coordinate_history import CoordinateHistory
 from analytic.free.limit_position import REACH
 from analytic.free.motion_along import reordered
-from analytic.kinematics import prepared, solve_driven
+from analytic.kinematics import solve_driven
+from analytic.prepared import prepared
 from analytic.result import MotionArrays, Selection
 from models.array import Array
 from models.motion import Motion

@@ -9,7 +9,8 @@ import numpy as np
 
 from analytic.change_points.sign import AT_START
 from analytic.free.machine import Machine
-from analytic.kinematics import prepared, solve_driven
+from analytic.kinematics import solve_driven
+from analytic.prepared import prepared
 from models.errors import CrankcheckError, SceneError
 from models.motion import Motion
 from models.released import Released

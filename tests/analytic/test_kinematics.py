@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analytic import kinematics
+from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
 from models.errors import CrankcheckError, ReachError
 from models.files import load_scene, parse_scene
@@ -24,7 +24,7 @@ from tests.worlds.strategies import FORMS, mechanisms
 def test_angles_are_continuous(name: str, turns: int) -> None:
     """Over three turns of the driver, more samples than a chunk; whole turns are counted."""
     scene = load_scene(name)
-    count = 2 * kinematics.CHUNK + 77
+    count = 2 * prepared.CHUNK + 77
     motion = solve(scene, np.linspace(0.0, 3 * scene.driver.law.period_s, count), bound=False)
     output = list(motion.links.values())[-1]
     assert np.abs(np.diff(output.theta)).max() < 0.01
@@ -36,7 +36,7 @@ def test_motion_does_not_depend_on_chunks(name: str, monkeypatch: pytest.MonkeyP
     scene = load_scene(name)
     time_s = np.linspace(0.0, 2.5 * scene.driver.law.period_s, 1001)
     whole = solve(scene, time_s)
-    monkeypatch.setattr(kinematics, "CHUNK", 97)
+    monkeypatch.setattr(prepared, "CHUNK", 97)
     parts = solve(scene, time_s)
     assert whole.bound is not None
     for link, m in whole.links.items():

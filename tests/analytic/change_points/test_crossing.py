@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from analytic import kinematics
+from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.mechanism.travel import travel
 from models.array import Array
@@ -482,7 +482,7 @@ def test_motion_through_change_points_does_not_depend_on_chunks(
     scene = parse_scene(LEVER.format(pivot=0.1), "test")
     time_s = np.linspace(0.0, 5 * scene.driver.law.period_s, 1001)
     whole = solve(scene, time_s)
-    monkeypatch.setattr(kinematics, "CHUNK", 97)
+    monkeypatch.setattr(prepared, "CHUNK", 97)
     parts = solve(scene, time_s)
     assert whole.crossings == parts.crossings
     for name, link in whole.links.items():

@@ -6,7 +6,7 @@ import pytest
 from analytic.dyads.chunk import Chunk
 from analytic.free.integration import Integration
 from analytic.free.release import release
-from analytic.kinematics import Prepared
+from analytic.prepared import Prepared
 from models.files import load_scene
 
 

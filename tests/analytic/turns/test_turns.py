@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from analytic import kinematics
+from analytic import prepared
 from analytic.kinematics import reach, solve, solve_driven
 from analytic.turns.cells import CellSolver
 from models.array import Array
@@ -174,7 +174,7 @@ def test_no_angle_in_a_cell_is_farther_off_than_said(designed: Designed, seed: i
     """Also in cells that are too wide to be sure, and where the mechanism is open in the middle;
     and one that is said to be open all over does not close anywhere."""
     scene = designed.scene
-    ready = kinematics.prepared(scene)
+    ready = prepared.prepared(scene)
     look = CellSolver(scene, ready.steps, ready.passages)
     rng = np.random.default_rng(seed)
     middle, half = rng.uniform(-math.pi, math.pi, 200), 10.0 ** rng.uniform(-4.0, 0.0, 200)
@@ -349,7 +349,7 @@ def test_samples_that_follow_from_one_another_are_not_looked_up(
     scene = load_scene("fourbar-double-crank")
     time_s = np.linspace(0.0, 2.0 * scene.driver.law.period_s, 2000)
     quick = sampled(scene, time_s)
-    ready = kinematics.prepared(scene)
+    ready = prepared.prepared(scene)
     monkeypatch.setitem(vars(ready), "turns", replace(ready.turns, step_rad=0.0))
     for link, angle in sampled(scene, time_s).items():
         assert np.array_equal(angle, quick[link])
@@ -360,12 +360,12 @@ def test_an_angle_that_is_not_sure_leads_nobody_astray(monkeypatch: pytest.Monke
     scene = whitworth(0.1)
     time_s = np.linspace(0.0, PERIOD, 2000)
     wanted = sampled(scene, time_s)["lever"]
-    ready = kinematics.prepared(scene)
+    ready = prepared.prepared(scene)
     wrapped = np.remainder(wanted + math.pi, math.tau) - math.pi
     over = int(np.argmax(wrapped > 3.1))
     for lost in (slice(over + 1, over + 20), slice(over - 1, over)):
         angle, last = wrapped.copy(), lost.stop + (lost.start > over) * 500
         angle[lost] = 0.0
-        kinematics.Counter(ready.turns, 10.0 * time_s[:last]).count("lever", angle[:last])
+        prepared.Counter(ready.turns, 10.0 * time_s[:last]).count("lever", angle[:last])
         sure = np.delete(np.arange(last), np.arange(len(angle))[lost])
         assert np.allclose(angle[sure], wanted[sure], rtol=0, atol=1e-12)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from analytic import kinematics
+from analytic import prepared
 from benchmarks.verify_overhead import LINKS, chain
 from models.array import Array
 from models.files import load_scene, parse_scene
@@ -25,7 +25,7 @@ FULL = STEPS + 1
 def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
     """Preparations, as "prepared", and solutions by their number of samples."""
     counts: Counter[object] = Counter()
-    analyse, motion = kinematics.analyse, kinematics.Prepared.motion
+    analyse, motion = prepared.analyse, prepared.Prepared.motion
 
     def analysed(scene: Scene) -> object:
         counts["prepared"] += 1
@@ -35,8 +35,8 @@ def worked(monkeypatch: pytest.MonkeyPatch) -> Counter[object]:
         counts[len(time_s)] += 1
         return motion(ready, names, time_s, *args, **bound)
 
-    monkeypatch.setattr(kinematics, "analyse", analysed)
-    monkeypatch.setattr(kinematics.Prepared, "motion", moved)
+    monkeypatch.setattr(prepared, "analyse", analysed)
+    monkeypatch.setattr(prepared.Prepared, "motion", moved)
     return counts
 
 
