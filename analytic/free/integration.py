@@ -140,13 +140,13 @@ class Integration:
         while long_s > shortest or 0 < aimed < AIMS:
             try:
                 solved = self._tried(long_s, start, rough)
-            except CrankcheckError as error:
+                crossing = kinks.within(solved, beyond=aimed > 0) if kinks and solved else None
+            except CrankcheckError as error:  # it leads out of reach: too long
                 solved, failed = None, error
             if solved is None:
                 long_s, aimed, rough = 0.25 * long_s, 0, None
                 start = self._start(long_s, way)
                 continue
-            crossing = kinks.within(solved, beyond=aimed > 0) if kinks else None
             end = None if crossing is None else crossing.at_s
             landed = end is not None and long_s <= end <= BEYOND * long_s
             if end is not None and not (landed and solved.converged) and aimed < AIMS:

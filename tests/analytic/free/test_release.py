@@ -11,10 +11,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from analytic.check.constraints import Constraints
+from analytic.free.crossing import FormulaChange
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.period import period
 from analytic.free.release import release
+from analytic.free.window import WindowSolution
+from analytic.free.window_kinks import WindowKinks
 from analytic.kinematics import reach, solve
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
@@ -259,6 +262,21 @@ def test_a_kink_is_foretold_beyond_the_reach_without_harm() -> None:
     scene = past_limits(start_deg=60.0, speed_rad_s=100.0)
     free = release(replace(scene, loads=torque(TABLE, "angle"), springs={"damper": damper}), 1.0)
     assert 0.0 < math.degrees(free.range_rad) < 1.0
+
+
+def test_a_window_that_leads_out_of_reach_is_made_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    within = WindowKinks.within
+
+    def near(own: WindowKinks, solved: WindowSolution, *, beyond: bool) -> FormulaChange | None:
+        if solved.long_s > 2e-3:
+            raise CrankcheckError("open")
+        return within(own, solved, beyond=beyond)
+
+    scene = replace(fourbar(speed_rad_s=10.0), loads=torque(TABLE, "angle"))
+    whole, end = release(scene, 0.1), np.array([0.05])
+    monkeypatch.setattr(WindowKinks, "within", near)
+    parts = release(scene, 0.05)
+    assert parts.law.at(end)[0] == pytest.approx(whole.law.at(end)[0], abs=1e-12)
 
 
 def test_a_limit_with_another_singular_position_beside_it_is_passed() -> None:

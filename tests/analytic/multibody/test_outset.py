@@ -13,6 +13,7 @@ from analytic.multibody.release_multibody import release_multibody, start_state
 from models.errors import CrankcheckError
 from models.files import load_scene
 from models.friction import ConstantFriction
+from models.released import let_go
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,
     FIVE_BAR,
@@ -21,6 +22,7 @@ from tests.analytic.multibody.scenes import (
     THESIS,
     scene,
 )
+from tests.worlds.loading import loaded_mechanism
 
 
 def test_angles_read_off_a_drawing_lead_to_the_assembly() -> None:
@@ -44,6 +46,18 @@ def test_a_start_of_two_freedoms_has_both_speeds() -> None:
     start = start_state(scene(FIVE_BAR))
     assert (start.omega["left"], start.omega["right"]) == pytest.approx((0.5, -0.5), abs=1e-13)
     assert start.position["C"][0] == pytest.approx(0.15, abs=1e-12)  # left and right are alike
+
+
+def test_beside_a_limit_a_slow_driver_moves_the_others_fast() -> None:
+    """What they are off by is rounding of their own rates, and not of the driver's."""
+    scene_let_go = let_go(loaded_mechanism(81)[0], 1.0)
+    driver = scene_let_go.driver
+    law = replace(driver.law, speed_rad_s=-0.056)  # type: ignore[call-arg]
+    slow = replace(scene_let_go, driver=replace(driver, law=law))
+    near = solve(slow, np.zeros(1), bound=False).state()
+    start = start_state(slow, near)
+    assert max(abs(omega) for omega in start.omega.values()) > 1.0
+    assert start.omega[driver.link] == pytest.approx(-0.056, rel=1e-6)
 
 
 REFUSED = {
