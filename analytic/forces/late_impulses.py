@@ -45,7 +45,7 @@ ON_TIME = LateImpulses()
 
 def late_impulses(scene: Scene, motion: Motion, dt_s: float) -> LateImpulses:
     """What steps of ``dt_s`` [s] may make of the energy of a motion, given at instants (T,) that
-    follow each other evenly; nothing where nothing moves. Raises CrankcheckError as
+    follow each other evenly; nothing where nothing moves, or steps are not known (0). Raises CrankcheckError as
     `analytic.forces.kinetostatics.forces`."""
     samples = len(motion.time_s)
     kinetic, stirred, changed = np.zeros(samples), np.zeros(samples), np.zeros(max(samples - 1, 0))
@@ -57,7 +57,7 @@ def late_impulses(scene: Scene, motion: Motion, dt_s: float) -> LateImpulses:
         stirred += push**2 @ weights
         changed += np.diff(push, axis=0) ** 2 @ weights
     largest = float(np.max(kinetic))
-    if not largest > 0.0 or samples < 2:
+    if not largest > 0.0 or samples < 2 or not dt_s:
         return ON_TIME
     # Differences over a longer time than a step are those of so many steps.
     steps = float(motion.time_s[-1] - motion.time_s[0]) / ((samples - 1) * dt_s)
