@@ -45,8 +45,8 @@ ON_TIME = LateImpulses()
 
 def late_impulses(scene: Scene, motion: Motion, dt_s: float) -> LateImpulses:
     """What steps of ``dt_s`` [s] may make of the energy of a motion, given at instants (T,) that
-    follow each other evenly; nothing where nothing moves, or steps are not known (0). Raises CrankcheckError as
-    `analytic.forces.kinetostatics.forces`."""
+    follow each other evenly; nothing where nothing moves, or steps are not known (0). Raises
+    CrankcheckError as `analytic.forces.kinetostatics.forces`."""
     samples = len(motion.time_s)
     kinetic, stirred, changed = np.zeros(samples), np.zeros(samples), np.zeros(max(samples - 1, 0))
     for name in bodies(scene):
