@@ -27,26 +27,25 @@ from models.scene import Scene
 
 @dataclass(frozen=True)
 class LateImpulses:
-    """Shares of the largest kinetic energy: ``offset`` comes and goes with the motion and is
-    ``start`` at its start, ``loss`` has added up over it."""
+    """Shares of the largest kinetic energy: ``start`` at the start of the motion; ``offset`` comes
+    and goes with it, and is the mean over its first or its last while, the larger; ``loss`` has
+    added up over it."""
 
     start: float = 0.0
     offset: float = 0.0
     loss: float = 0.0
 
-    @property
-    def share(self) -> float:
-        """What comes and goes, and what has added up."""
-        return self.offset + self.loss
-
 
 ON_TIME = LateImpulses()
 
 
-def late_impulses(scene: Scene, motion: Motion, dt_s: float) -> LateImpulses:
-    """What steps of ``dt_s`` [s] may make of the energy of a motion, given at instants (T,) that
-    follow each other evenly; nothing where nothing moves, or steps are not known (0). Raises
-    CrankcheckError as `analytic.forces.kinetostatics.forces`."""
+def late_impulses(scene: Scene, motion: Motion, dt_s: float, while_s: float) -> LateImpulses:
+    """What steps of ``dt_s`` [s] may make of the energy of a motion, given at instants (T,), and of
+    its means over ``while_s`` [s]; nothing where nothing moves, or steps are not known (0).
+
+    Instants that are further apart than a step count as so many steps on the average, and are to
+    follow the motion. Raises CrankcheckError as `analytic.forces.kinetostatics.forces`.
+    """
     samples = len(motion.time_s)
     kinetic, stirred, changed = np.zeros(samples), np.zeros(samples), np.zeros(max(samples - 1, 0))
     for name in bodies(scene):
@@ -61,7 +60,10 @@ def late_impulses(scene: Scene, motion: Motion, dt_s: float) -> LateImpulses:
         return ON_TIME
     # Differences over a longer time than a step are those of so many steps.
     steps = float(motion.time_s[-1] - motion.time_s[0]) / ((samples - 1) * dt_s)
-    parts = stirred[0], np.max(stirred), np.sum(changed) / steps
+    time_s = motion.time_s
+    first, last = time_s <= time_s[0] + while_s, time_s >= time_s[-1] - while_s
+    offset = max(np.mean(stirred[first]), np.mean(stirred[last]))
+    parts = stirred[0], offset, np.sum(changed) / steps
     return LateImpulses(*(2.0 * dt_s**2 * float(part) / largest for part in parts))
 
 

@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
+from models.errors import CrankcheckError
 from models.one_or_more import names_in
 from models.released import let_go
+from models.scene import Scene
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.face.cell_verdict import CellVerdict, verdict_of_run
@@ -20,7 +22,7 @@ from reports.output.provenance import provenance
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.log_limits import EVERY
-from reports.plan.steps import positive
+from reports.plan.steps import LEAST_STEPS, positive
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -161,6 +163,8 @@ def judged(
         refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
         scene = scene_of_run(scene, log)
+        refuse_of_other_motion("--target", [*limits.keys() - {EVERY}], [scene.is_free])
+        _refuse_few_steps(scene, log)
         every_name = FREE if scene.is_free else DEFAULTS
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
@@ -177,6 +181,15 @@ def judged(
     found = judge_log(log_of(scene, log, map, forces=forces), request)
     notes = tuple(in_python(note) for note in found.notes)
     return LogVerdict(**parts_in_python(found) | {"notes": notes}, facts=provenance({}))
+
+
+def _refuse_few_steps(scene: Scene, run: Run) -> None:
+    """Refuse a free run that has hardly begun, whose drift and order are those of its start."""
+    if scene.is_free and run.steps < LEAST_STEPS:
+        raise CrankcheckError(
+            f"{scene.name}: the run has {run.steps} steps; free motion is judged from "
+            f"{LEAST_STEPS} on: take shorter ones, or a longer time"
+        )
 
 
 def target_of(target: Target) -> dict[str, float]:

@@ -18,7 +18,7 @@ from reports.own_log.log_limits import EVERY
 from reports.plan.free import refuse_unreleased
 
 LEAST_ROWS = 2
-MOST_TIMES = 100.0
+MOST_TIMES = 10.0
 """How much longer than its scene says a log may last: each second of its truth takes a part of a
 second to integrate, or some seconds."""
 BEGUN = 1e-3

@@ -48,8 +48,8 @@ class Measure:
 class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
     the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
-    ``lasting``, ``drifting``, ``opening`` and ``late`` are of free motion, which is ever further
-    off the longer it lasts."""
+    ``lasting``, ``drifting``, ``opening``, ``arc`` and ``late`` are of free motion, which is ever
+    further off the longer it lasts."""
 
     reason: str
     cap: float = math.inf
@@ -71,6 +71,7 @@ class Tolerance:
     lasting: float = 0.0
     drifting: float = 0.0
     opening: float = 0.0
+    arc: float = 0.0
     late: float = 0.0
 
 

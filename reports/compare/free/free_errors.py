@@ -19,7 +19,7 @@ from reports.compare.curvature import curvature
 from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
-from reports.compare.free.energy_drift import energy_rows
+from reports.compare.free.energy_drift import energy_rows, window_s
 from reports.compare.free.free_beside import FreeBeside
 from reports.compare.free.free_branch import free_departure
 from reports.compare.free.free_facts import FreeFacts
@@ -53,6 +53,7 @@ def free_errors(beside: FreeBeside) -> Errors:
     # In an open chain joint coordinates are as good as their integrator: nothing is too near.
     far = uneven(scene, reference, at.driver_rad) if has_loops(scene) else {}
     facts = _facts(beside, same_time)
+    while_s = window_s(scene, float(np.ptp(reference.time_s)))
     return Errors(
         rows=(
             *_phase_and_places(beside, same_time, at),
@@ -88,7 +89,7 @@ def free_errors(beside: FreeBeside) -> Errors:
         inertia_share=borne.inertia_share,
         travel_rad=_travel(beside),
         drifted_rad=_drifted(beside),
-        late=late_impulses(scene, reference, run.dt_s),
+        late=late_impulses(scene, reference, run.dt_s, while_s),
         free=facts,
     )
 

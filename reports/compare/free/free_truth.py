@@ -69,7 +69,8 @@ class FreeTruth(Truth):
     def _solved(self, time_s: Array) -> Motion:
         if time_s.size and time_s[0] < 0.0:
             early = self.free.outside(time_s[time_s < 0.0], bound=self.bound)
-            return Motion.joined([early, self.at(time_s[time_s >= 0.0])])
+            begun = time_s[time_s >= 0.0]
+            return Motion.joined([early, self.at(begun)]) if begun.size else early
         after = time_s > self.free.until_s
         if after.any():
             late = self.free.outside(time_s[after], bound=self.bound)

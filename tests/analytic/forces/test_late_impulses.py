@@ -35,7 +35,7 @@ def rotor() -> Scene:
 
 def of_steps(every: int) -> LateImpulses:
     times = every * DT_S * np.arange(3000 // every + 1)
-    return late_impulses(rotor(), solve(rotor(), times), DT_S)
+    return late_impulses(rotor(), solve(rotor(), times), DT_S, 0.3)
 
 
 def test_a_body_that_turns_evenly_has_the_accelerations_of_its_centre_alone() -> None:
@@ -63,4 +63,15 @@ def test_what_does_not_move_has_none() -> None:
         for name, point in motion.points.items()
     }
     stopped = replace(motion, links=still, points=points)
-    assert late_impulses(rotor(), stopped, DT_S) == ON_TIME
+    assert late_impulses(rotor(), stopped, DT_S, 0.3) == ON_TIME
+
+
+def test_what_comes_and_goes_counts_by_its_mean_over_the_first_or_the_last_while() -> None:
+    times = DT_S * np.arange(1001)
+    even = solve(rotor(), times)
+    links = {
+        name: replace(link, alpha=np.where(times == 0.5, 1e6, link.alpha))
+        for name, link in even.links.items()
+    }
+    whole = late_impulses(rotor(), replace(even, links=links), DT_S, 0.1)
+    assert whole.offset == pytest.approx(late_impulses(rotor(), even, DT_S, 0.1).offset)

@@ -185,3 +185,31 @@ def test_its_page_is_written() -> None:
     page = log_page(one, {"made": "2026-01-02"})
     assert "geometry of rocker" in page
     assert "free motion of fourbar-swing" in page
+
+
+def test_readings_half_a_step_before_the_start_are_read() -> None:
+    """As of leapfrog, whose velocities are half a step behind its places."""
+    early = TIME_S - 1e-3
+    motion = kept_motion(load_scene(SWING), 0.4).at(TIME_S)
+    columns = angles(motion, "crank")
+    assert judged(columns, time_s=early, step_s=2e-3, every=0.1).errors is not None
+
+
+def test_limits_of_free_motion_are_given_from_python_as_well() -> None:
+    done = ran(SWING, "mujoco", 0.3)
+    found = crankcheck.judge(SWING, done.frame(), step_s=done.dt_s, target={"phase": 1e-12})
+    assert "CC127" in [finding.rule for finding in found.failures]
+
+
+@pytest.mark.parametrize(("scene", "limit"), [(SWING, "drive"), ("fourbar-lecture-1", "phase")])
+def test_limits_of_the_other_kind_of_motion_are_refused_of_runs_too(scene: str, limit: str) -> None:
+    options = {"duration_s": 0.3} if scene == SWING else {"turns": 1}
+    done = crankcheck.run(scene, "mujoco", **options)  # type: ignore[arg-type]
+    with pytest.raises(CrankcheckError, match=f"{limit}: it is of"):
+        crankcheck.judge(scene, done, target={limit: 1e-3})
+
+
+def test_a_free_run_that_has_hardly_begun_is_not_judged() -> None:
+    done = crankcheck.run(SWING, "mujoco", duration_s=5e-3)
+    with pytest.raises(CrankcheckError, match="5 steps; free motion is judged from"):
+        crankcheck.judge(SWING, done)
