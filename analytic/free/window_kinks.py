@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from analytic.free.coordinate_history import MOST
-from analytic.free.crossing import FormulaChange, first_crossing, precisely
+from analytic.free.formula_change import FormulaChange, first_crossing, precisely
 from analytic.free.gauss import Gauss, gauss
 from analytic.free.kinks import Kinked, kinked
 from analytic.free.machine import Machine

@@ -112,7 +112,7 @@ def compare(
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.beside_truth import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone, truth_of_log
-    from reports.own_log.let_go import known_log, refuse_drives
+    from reports.own_log.free_log import known_log, refuse_drives
 
     chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
     refuse_geometry_alone(chosen, forces=is_true(forces, "forces"))

@@ -26,7 +26,7 @@ from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
-from reports.own_log.let_go import (
+from reports.own_log.free_log import (
     known_log,
     refuse_drives,
     told_apart,

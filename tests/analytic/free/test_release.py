@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from analytic.check.constraints import Constraints
-from analytic.free.crossing import FormulaChange
+from analytic.free.formula_change import FormulaChange
 from analytic.free.free_motion import FreeMotion
 from analytic.free.machine import Machine
 from analytic.free.period import period
