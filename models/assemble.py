@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 
 from models.degrees import within_a_turn
+from models.elastic_schema import ElasticTable
+from models.elastic_tables import elastic_of, faults_of_beams, mass_of
 from models.errors import SceneError
 from models.free_faults import faults_of_free_motion
 from models.friction import ConstantFriction, CoulombFriction, Friction
@@ -15,7 +17,6 @@ from models.load_tables import LawOfLoad
 from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
-    LARGEST,
     AcceleratingDriver,
     DriverTable,
     FreeDriver,
@@ -28,6 +29,7 @@ from models.schema import (
 )
 from models.spring_tables import springs_of
 from models.start_table import start_of
+from models.table_fields import LARGEST
 
 ROD_KG_PER_M = 1.0
 FARTHEST = 1e12
@@ -52,7 +54,10 @@ def scene_from_table(
     faults += _faults_of_lengths(table, points)
     if faults:
         raise SceneError(place, faults)
-    links = {name: _link(name, link, points[name], faults) for name, link in table.links.items()}
+    links = {
+        name: _link(name, link, points[name], table.elastic.get(name), faults)
+        for name, link in table.links.items()
+    }
     longest = max(span(p) for p in points.values())
     sliders = {name: _slider(name, slider, longest) for name, slider in table.sliders.items()}
     found = {name: load_of(name, load, sliders, faults) for name, load in loads.items()}
@@ -81,8 +86,9 @@ def scene_from_table(
         friction={joint: _friction(joint, table) for joint, table in table.friction.items()},
         springs=springs_of(table),
         start=start_of(table.start),
+        elastic=elastic_of(table),
     )
-    if impossible := list(faults_of_free_motion(scene)):
+    if impossible := [*faults_of_free_motion(scene), *faults_of_beams(scene)]:
         raise SceneError(place, impossible)
     return scene
 
@@ -136,10 +142,22 @@ def _longest(points: Mapping[str, Point]) -> tuple[float, Point, Point]:
     return max(pairs, key=lambda pair: pair[0])
 
 
-def _link(name: str, table: LinkTable, points: dict[str, Point], faults: list[str]) -> Link:
+def _link(
+    name: str,
+    table: LinkTable,
+    points: dict[str, Point],
+    elastic: ElasticTable | None,
+    faults: list[str],
+) -> Link:
     """A link whose missing mass data are those of a uniform slender rod on its longest span."""
     length, a, b = _longest(points)
-    mass = ROD_KG_PER_M * length if table.mass_kg is None else table.mass_kg
+    given, own = mass_of(elastic, length), table.mass_kg
+    if given is not None and own is not None:
+        faults.append(
+            f"links.{name}: mass_kg is {own:g}, and its section and density_kg_m3 give {given:g}; "
+            "give one of them"
+        )
+    mass = next((one for one in (own, given) if one is not None), ROD_KG_PER_M * length)
     centre = ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) if table.centre_m is None else table.centre_m
     inertia = mass * length**2 / 12 if table.inertia_kg_m2 is None else table.inertia_kg_m2
     if mass == 0.0 and inertia > 0.0:

@@ -247,6 +247,7 @@ def _line(
 def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     """The keys that the table holding the unknown key ``loc`` may have."""
     from models import schema
+    from models.elastic_schema import ElasticTable
 
     tables: dict[str, type[BaseModel]] = {
         "ground": schema.GroundTable,
@@ -255,6 +256,7 @@ def _keys_at(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
         "friction": schema.FrictionTable,
         "springs": schema.SpringTable,
         "start": schema.StartTable,
+        "elastic": ElasticTable,
     }
     owner = tables.get(str(loc[0]), model) if len(loc) > 1 else model
     return list(owner.model_fields)

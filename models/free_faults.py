@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from models.released import Released
 from models.scene import Scene
@@ -17,7 +18,7 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
     """One line per fault of a scene that is let go, and of one that is driven and has a start."""
     law = scene.driver.law
     if not isinstance(law, Released):
-        if scene.start:
+        if replace(scene.start, shape=None):
             yield 'start: it goes with law = "free"; a driven mechanism starts as its law has it'
         return
     yield from _of_driver(scene, law)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from models.loads import Over, Stroke
-from models.schema import Degrees, Name, Number, Positive, Table
+from models.table_fields import Degrees, Name, Number, Positive, Table
 from models.tabulated import Interpolation
 
 UNIT: dict[str, str] = {

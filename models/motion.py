@@ -45,6 +45,16 @@ class SliderMotion:
 
 
 @dataclass(frozen=True)
+class ElasticMotion:
+    """How an elastic link is bent and stretched, each (T,) [m]: ``middle`` is how far its middle is
+    from the line between its pins, positive to the left of the way from the first to the second,
+    and ``extension`` by how much these are further apart than at rest."""
+
+    middle: Array
+    extension: Array
+
+
+@dataclass(frozen=True)
 class Bound:
     """What a motion may be wrong by: the same keys, arrays of shape (T,), never negative.
 
@@ -97,13 +107,18 @@ class Motion:
     bound: Bound | None = None
     crossings: tuple[Crossing, ...] = ()
     forces: Forces | None = None
+    elastic: Mapping[str, ElasticMotion] = field(default_factory=dict)
 
     def each_series(self, change: Callable[[Array], Array]) -> Motion:
         """The motion with every series of its bodies changed; its instants stay."""
-        links, points = _each(self.links, change), _each(self.points, change)
         forces = self.forces and self.forces.each_series(change)
         return replace(
-            self, links=links, points=points, sliders=_each(self.sliders, change), forces=forces
+            self,
+            links=_each(self.links, change),
+            points=_each(self.points, change),
+            sliders=_each(self.sliders, change),
+            elastic=_each(self.elastic, change),
+            forces=forces,
         )
 
     @staticmethod
@@ -145,7 +160,7 @@ class Motion:
         )
 
 
-BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion)
+BodyMotion = TypeVar("BodyMotion", LinkMotion, PointMotion, SliderMotion, ElasticMotion)
 
 
 def _each(

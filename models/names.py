@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Any
 
+from models.elastic_tables import faults_of_elastic
 from models.errors import cut
 from models.friction_names import faults_of_friction
 from models.scene import GROUND
@@ -34,6 +35,9 @@ def faults_of_names(raw: Mapping[str, Any]) -> list[str]:
         *faults_of_friction(_table(raw, "friction"), ground, points, sliders),
         *faults_of_springs(_table(raw, "springs"), ground, points, sliders),
         *faults_of_start(_table(raw, "start"), points, sliders),
+        *faults_of_elastic(
+            _table(raw, "elastic"), ground, points, sliders, _table(raw, "driver").get("link")
+        ),
         *_branch(_table(raw, "branch"), ground.union(*points.values(), sliders)),
     ]
 

@@ -19,6 +19,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from models.elastic import ElasticLink
 from models.fixed import FixedMapping
 from models.friction import CoulombFriction, Friction
 from models.laws import Law
@@ -91,6 +92,7 @@ class Scene:
     is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
     unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies,
     ``springs`` between bodies. ``start`` says more of the start of free motion than the driver.
+    ``elastic`` are the links that bend or stretch, by name; the others are rigid.
     """
 
     name: str
@@ -107,10 +109,12 @@ class Scene:
     friction: Mapping[str, Friction] = field(default_factory=dict)
     springs: Mapping[str, Spring] = field(default_factory=dict)
     start: Start = field(default_factory=Start)
+    elastic: Mapping[str, ElasticLink] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in (
             "ground", "links", "sliders", "branch", "tolerance", "loads", "friction", "springs",
+            "elastic",
         ):  # fmt: skip
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 

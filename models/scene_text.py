@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
+from models.elastic import ElasticLink
 from models.errors import CrankcheckError
 from models.friction import ConstantFriction, Friction
 from models.laws import Accelerating, ConstantSpeed, FromRest, Law, Oscillating
@@ -61,6 +62,8 @@ def _tables(scene: Scene, flywheels: Mapping[str, float]) -> Iterator[tuple[str,
         yield f"springs.{name}", _spring(spring)
     if scene.start:
         yield "start", _start(scene.start)
+    for name, own in scene.elastic.items():
+        yield f"elastic.{name}", _elastic(own)
     for joint, friction in scene.friction.items():
         yield f"friction.{joint}", _friction(friction, slides=joint in scene.sliders)
 
@@ -94,6 +97,18 @@ def _start(start: Start) -> Table:
         "rates_rad_s": start.rates_rad_s,
         "displacements_m": start.displacements_m,
         "speeds_m_s": start.speeds_m_s,
+        **({"shape": start.shape} if start.shape else {}),
+    }
+
+
+def _elastic(own: ElasticLink) -> Table:
+    return {
+        "bends": own.bends,
+        "stretches": own.stretches,
+        **({"flexural_n_m2": own.flexural_n_m2} if own.bends else {}),
+        **({"axial_n": own.axial_n} if own.stretches else {}),
+        "damping_s": own.damping_s,
+        **({"height_m": own.height_m} if own.height_m is not None else {}),
     }
 
 
@@ -135,6 +150,8 @@ def _value(value: object) -> str:
     """A value in TOML."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
     if isinstance(value, Sequence):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from models.elastic import Shape
 from models.fixed import FixedMapping
 
 
@@ -21,9 +22,10 @@ class Start:
     rates_rad_s: Mapping[str, float] = field(default_factory=dict)
     displacements_m: Mapping[str, float] = field(default_factory=dict)
     speeds_m_s: Mapping[str, float] = field(default_factory=dict)
+    shape: Shape | None = None
 
     def __post_init__(self) -> None:
-        for name in vars(self):
+        for name in ("angles_rad", "rates_rad_s", "displacements_m", "speeds_m_s"):
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 
     def __bool__(self) -> bool:

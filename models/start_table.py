@@ -20,6 +20,7 @@ def start_of(table: StartTable) -> Start:
         dict(table.rates_rad_s),
         dict(table.displacements_m),
         dict(table.speeds_m_s),
+        table.shape,
     )
 
 

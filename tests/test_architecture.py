@@ -42,6 +42,7 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
+        elastic
         free regulation
         mechanism forces
         nearness kinematics

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import numpy as np
 
-from analytic.multibody.body_set import BodySet
+from analytic.multibody.body_set import BodySet, Flexible, FlexibleBody
 from analytic.multibody.configuration import Configuration
 from analytic.multibody.joint_equations import JointEquations, JointMarkers
-from analytic.multibody.rigid import RigidBodies, inertias
+from analytic.multibody.rigid import Inertia, RigidBodies, inertias
 from models.array import Array
 from models.joints import joined_at, local_point, sliding_body
 from models.scene import GROUND, Point, Scene
 
+RIGID: Mapping[str, Flexible] = MappingProxyType({})
+"""No link is flexible."""
+
 
 @dataclass
 class _MarkerList:
-    """The markers that are asked for: a place of a body, and an angle against it."""
+    """The markers that are asked for: a place of a body, or None for its frame, and an angle
+    against it."""
 
     ground: dict[tuple[Point, float], int] = field(default_factory=dict)
-    moving: dict[tuple[str, Point, float], int] = field(default_factory=dict)
+    moving: dict[tuple[str, Point | None, float], int] = field(default_factory=dict)
 
 
 class Assembly:
@@ -29,20 +34,23 @@ class Assembly:
 
     ``bodies`` are those with coordinates, each from ``at`` on in q; ``size`` is n, the number of
     all coordinates. ``parts`` do the work, each with a slice of the coordinates and of the markers.
-    ``held`` are the markers at each pin, by body.
+    ``held`` are the markers at each pin, by body; ``elastic`` the bodies of links that are not
+    rigid, by name, each with its slice of the coordinates.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, flexible: Mapping[str, Flexible] = RIGID) -> None:
         self.scene = scene
         own = inertias(scene)
         self.bodies = tuple(own)
-        self.at = {body: 3 * i for i, body in enumerate(self.bodies)}
         self._list = _MarkerList()
         self.held = {
             point: {body: self._ask(body, local_point(scene, body, point)) for body in names}
             for point, names in joined_at(scene).items()
         }
-        self.frames = {body: self._ask(body, (0.0, 0.0)) for body in (GROUND, *self.bodies)}
+        self.frames = {
+            body: self._ask(body, None if body in flexible else (0.0, 0.0))
+            for body in (GROUND, *self.bodies)
+        }
         self.tips, self.guides = {}, {}
         for name, slider in scene.sliders.items():
             body = sliding_body(slider)
@@ -53,26 +61,41 @@ class Assembly:
             point: (names[0], self._ask(names[0], local_point(scene, names[0], point)))
             for point, names in self._named_points()
         }
-        self._number_markers()
-        numbers = {name: i for i, name in enumerate(self.bodies)}
-        rigid = RigidBodies(
-            own,
-            [(numbers[body], place, angle) for body, place, angle in self._list.moving],
-            scene.gravity_m_s2,
-        )
-        self.parts: tuple[tuple[BodySet, slice, slice], ...] = (
-            (rigid, slice(0, rigid.size), slice(0, len(self._list.moving))),
-        )
+        self._number_markers(flexible)
+        self._make_parts({name: one for name, one in own.items() if name not in flexible}, flexible)
         self.size = sum(part.size for part, _, _ in self.parts)
         self.joints = JointEquations(
             scene, self.size, JointMarkers(self.held, self.frames, self.tips, self.guides)
         )
 
-    def _ask(self, body: str, place: Point, angle_rad: float = 0.0) -> int:
+    def _make_parts(self, rigid: Mapping[str, Inertia], flexible: Mapping[str, Flexible]) -> None:
+        """The bodies that do the work: all rigid ones at once, then each that is not."""
+        gravity, moving = self.scene.gravity_m_s2, self._list.moving
+        numbers = {name: i for i, name in enumerate(rigid)}
+        asked = [
+            (numbers[body], place or (0.0, 0.0), angle)
+            for body, place, angle in moving
+            if body in numbers
+        ]
+        bodies = RigidBodies(rigid, asked, gravity)
+        own, marked = slice(0, bodies.size), slice(0, len(asked))
+        parts: list[tuple[BodySet, slice, slice]] = [(bodies, own, marked)]
+        self.at = {body: 3 * i for body, i in numbers.items()}
+        self.elastic: dict[str, tuple[FlexibleBody, slice]] = {}
+        for name, one in flexible.items():
+            markers = [(place, angle) for body, place, angle in moving if body == name]
+            link = one.body(markers, gravity)
+            own = slice(own.stop, own.stop + link.size)
+            marked = slice(marked.stop, marked.stop + len(markers))
+            parts.append((link, own, marked))
+            self.at[name], self.elastic[name] = own.start, (link, own)
+        self.parts = tuple(parts)
+
+    def _ask(self, body: str, place: Point | None, angle_rad: float = 0.0) -> int:
         """The number of a marker; those of the ground are below 0, until all are known."""
         if body == GROUND:
             ground = self._list.ground
-            return -1 - ground.setdefault((place, angle_rad), len(ground))
+            return -1 - ground.setdefault((place or (0.0, 0.0), angle_rad), len(ground))
         moving = self._list.moving
         return moving.setdefault((body, place, angle_rad), len(moving))
 
@@ -83,12 +106,16 @@ class Assembly:
             if slider.point not in self.scene.pins:
                 yield slider.point, (sliding_body(slider),)
 
-    def _number_markers(self) -> None:
-        """Those of the ground after all others, where they hold still."""
-        still = len(self._list.moving)
+    def _number_markers(self, flexible: Mapping[str, Flexible]) -> None:
+        """Those of rigid bodies first, then those of each that is not, last those of the ground,
+        where they hold still."""
+        still, order = len(self._list.moving), {name: i for i, name in enumerate(flexible, 1)}
+        moving = enumerate(self._list.moving)
+        final = sorted(moving, key=lambda asked: order.get(asked[1][0], 0))  # keeps their order
+        new = {marker: number for number, (marker, _) in enumerate(final)}
 
         def number(marker: int) -> int:
-            return marker if marker >= 0 else still - 1 - marker
+            return new[marker] if marker >= 0 else still - 1 - marker
 
         self.held = {
             point: {body: number(marker) for body, marker in each.items()}
@@ -143,10 +170,8 @@ class Assembly:
     @property
     def units(self) -> Array:
         """What each coordinate counts as one of: the longest link [m], or a radian."""
-        unit = np.ones(self.size)
-        for at in self.at.values():
-            unit[at : at + 2] = self.scene.longest_m
-        return unit
+        angular = np.concatenate([part.angular for part, _, _ in self.parts])
+        return np.where(angular, 1.0, self.scene.longest_m)
 
     def scaled(self, rows: Array) -> Array:
         """Rows of derivatives by coordinates (m, n) that count in their units, each of the largest

@@ -7,10 +7,12 @@ else; so they need not know what a body is, and a body not what it is joined to.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from models.array import Array
+from models.array import Array, Mask
+from models.scene import Point
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,10 @@ class BodySet(Protocol):
     def size(self) -> int:
         """n."""
 
+    @property
+    def angular(self) -> Mask:
+        """Which of the coordinates are in radians, and not in metres, (n,)."""
+
     def mark(self, q: Array, rates: Array) -> Markers:
         """Its markers at coordinates and rates (T, n)."""
 
@@ -40,3 +46,40 @@ class BodySet(Protocol):
 
     def height_energy(self, q: Array) -> Array:
         """The potential energy of its weight [J], (T,), and of its elasticity."""
+
+    def lost(self, rates: Array) -> Array:
+        """The power that damping of its own takes [W], (T,)."""
+
+
+class FlexibleBody(BodySet, Protocol):
+    """A link that bends or stretches between two pins. Its first three coordinates are those of a
+    frame, the others, its k coefficients, say how it is deformed."""
+
+    @property
+    def length_m(self) -> float:
+        """Between its pins at rest."""
+
+    @property
+    def stiffness(self) -> Array:
+        """(k, k): strain has the energy c K c / 2."""
+
+    @property
+    def damping(self) -> Array:
+        """(k, k), for the rates of the coefficients."""
+
+    def deflections(self, q: Array, x: Array) -> Array:
+        """How far it is from the line between its pins [m] at coordinates (T, n) and places x (X,)
+        from the first pin [m], (T, X); positive to the left of the way to the second."""
+
+    def extension(self, q: Array) -> Array:
+        """By how much its pins are further apart than at rest [m], (T,)."""
+
+
+Marker = tuple[Point | None, float]
+"""A place in the frame of a body [m], or None for its frame, and an angle against it [rad]."""
+
+
+class Flexible(Protocol):
+    """What makes the body of a link that is not rigid, of the markers that are asked of it."""
+
+    def body(self, markers: Sequence[Marker], gravity: Point) -> FlexibleBody: ...

@@ -48,6 +48,7 @@ class RigidBodies:
         gravity: Point,
     ) -> None:
         self.size = n = 3 * len(bodies)
+        self.angular = np.arange(n) % 3 == 2
         self._owner = np.array([body for body, _, _ in markers], dtype=int)
         local = np.array([place for _, place, _ in markers]).reshape(-1, 2)
         self._local_x, self._local_y = local.T
@@ -114,3 +115,6 @@ class RigidBodies:
         arm_x, arm_y = self._arms(q)
         lifted = (q[:, 0::3] + arm_x) * self._gravity[0] + (q[:, 1::3] + arm_y) * self._gravity[1]
         return np.asarray(-lifted @ self._mass)
+
+    def lost(self, rates: Array) -> Array:
+        return np.zeros(len(rates))

@@ -1,0 +1,1 @@
+"""Elastic links: the reference of mechanisms whose links bend and stretch."""

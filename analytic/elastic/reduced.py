@@ -1,0 +1,180 @@
+"""A driven mechanism with elastic links by coordinates that are independent of each other.
+
+The driver's angle is told, and the coefficients of the elastic links, z, are free; every other
+coordinate follows from the joints, so that there are no multipliers::
+
+    q = q(t, z)      q' = B z' + b phi'      q'' = B z'' + b phi'' + c
+
+    B^T M B z'' = B^T (Q - M (b phi'' + c))
+
+which is the principle of virtual power over all motions that the joints allow. It is independent of
+the multibody form with multipliers but for the equations of the joints themselves. Source:
+R. von Schwerin, MultiBody System SIMulation, chapter 2 (coordinate partitioning).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from analytic.elastic.coordinates import coordinates
+from analytic.kinematics import solve
+from analytic.multibody.assembly import Assembly
+from analytic.multibody.body_set import FlexibleBody
+from analytic.multibody.configuration import Configuration
+from analytic.multibody.generalised_forces import GeneralisedForces
+from models.array import Array
+from models.errors import CrankcheckError
+from models.laws import Law
+
+MOST_STEPS = 20
+CLOSED = 1e-13
+"""A step of Newton's method, over the longest link or in radians, after which none is taken."""
+
+
+@dataclass(frozen=True)
+class Instant:
+    """Equations of motion at T samples: ``mass`` (T, m, m) and ``force`` (T, m), with which
+    mass z'' = force; ``now`` is the configuration, ``by`` B (T, n, m), ``gained`` b phi'' + c."""
+
+    now: Configuration
+    by: Array
+    gained: Array
+    mass: Array
+    force: Array
+
+    @property
+    def seconds(self) -> Array:
+        """z'' (T, m)."""
+        return np.asarray(np.linalg.solve(self.mass, self.force[:, :, None])[:, :, 0])
+
+    def all_seconds(self, seconds: Array) -> Array:
+        """q'' (T, n) with z'' (T, m)."""
+        return np.asarray((self.by @ seconds[:, :, None])[:, :, 0] + self.gained)
+
+
+class ReducedForm:
+    """The equations of an assembly whose driver follows a law."""
+
+    def __init__(self, assembly: Assembly, forces: GeneralisedForces, law: Law) -> None:
+        self.assembly, self.forces, self.law = assembly, forces, law
+        self._driver = assembly.at[assembly.scene.driver.link] + 2
+        rigid = {at + k for at in assembly.at.values() for k in range(3)}
+        free = [i for i in range(assembly.size) if i not in rigid]
+        self._free = np.array(free, dtype=int)
+        self._rest = np.array(sorted(rigid - {self._driver}), dtype=int)
+        if assembly.joints.count != len(self._rest):
+            raise CrankcheckError(
+                f"{assembly.scene.name}: {assembly.joints.count} equations of joints for "
+                f"{len(self._rest)} coordinates: with a told driver and elastic links the "
+                "mobility has to be 1, and no joint redundant"
+            )
+
+    @property
+    def size(self) -> int:
+        """m."""
+        return len(self._free)
+
+    @property
+    def period_s(self) -> float:
+        """Of a turn of the driver."""
+        return self.law.period_s
+
+    def near(self, time_s: Array) -> Array:
+        """The coordinates of the rigid mechanism at times [s], (T, n)."""
+        assembly = self.assembly
+        return coordinates(assembly, solve(assembly.scene, time_s))
+
+    def at(self, time_s: Array, z: Array, rates: Array, near: Array) -> Instant:
+        """The equations at times (T,), coefficients and their rates (T, m), from rough coordinates
+        ``near`` (T, n) on. Raises CrankcheckError where the joints can not be closed."""
+        phi, omega, alpha = self.law.at(time_s)
+        q = self._closed(np.asarray(phi), z, near)
+        rest = self.assembly.at_rest(q)
+        jacobian = self.assembly.joints.jacobian(rest)
+        told = np.concatenate([self._free, [self._driver]])
+        count, n = q.shape
+        by = np.zeros((count, n, len(told)))
+        by[:, told, range(len(told))] = 1.0
+        by[:, self._rest] = -np.linalg.solve(jacobian[:, :, self._rest], jacobian[:, :, told])
+        q_rates = (by @ np.column_stack([rates, omega])[:, :, None])[:, :, 0]
+        now = self.assembly.at_rates(q, q_rates)
+        gained = by[:, :, -1] * np.asarray(alpha)[:, None]
+        gamma = self.assembly.joints.gamma(now)[:, :, None]
+        gained[:, self._rest] += np.linalg.solve(jacobian[:, :, self._rest], gamma)[:, :, 0]
+        mass, right = self.assembly.weigh(now.q, now.rates)
+        right += self.forces.on(time_s, now)
+        right -= (mass @ gained[:, :, None])[:, :, 0]
+        own = by[:, :, :-1]
+        turned = np.swapaxes(own, 1, 2)
+        return Instant(now, own, gained, turned @ mass @ own, (turned @ right[:, :, None])[:, :, 0])
+
+    def _closed(self, phi: Array, z: Array, near: Array) -> Array:
+        """The coordinates with a told driver and coefficients, by Newton's method."""
+        q = near.copy()
+        q[:, self._driver], q[:, self._free] = phi, z
+        units, size = self.assembly.units[self._rest], np.inf
+        for _ in range(MOST_STEPS):
+            now = self.assembly.at_rest(q)
+            jacobian = self.assembly.joints.jacobian(now)[:, :, self._rest]
+            step = np.linalg.solve(jacobian, -self.assembly.joints.gaps(now)[:, :, None])[:, :, 0]
+            q[:, self._rest] += step
+            last, size = size, float(np.abs(step / units).max())
+            if size <= CLOSED or (size < 1e-8 and size >= 0.5 * last):
+                return q
+        raise CrankcheckError(
+            f"{self.assembly.scene.name}: the joints can not be closed: the elastic links have "
+            "bent or stretched too far"
+        )
+
+    def reactions(self, time_s: Array, now: Instant, seconds: Array) -> tuple[Array, Array]:
+        """The multipliers (T, m) and the torque on the driver (T,) that go with second derivatives
+        of the coefficients."""
+        q, rates = now.now.q, now.now.rates
+        mass, right = self.assembly.weigh(q, rates)
+        right += self.forces.on(time_s, now.now)
+        right -= (mass @ now.all_seconds(seconds)[:, :, None])[:, :, 0]
+        jacobian = self.assembly.joints.jacobian(now.now)
+        across = np.swapaxes(jacobian[:, :, self._rest], 1, 2)
+        multipliers = np.linalg.solve(across, right[:, self._rest, None])[:, :, 0]
+        torque = (jacobian[:, :, self._driver] * multipliers).sum(axis=1) - right[:, self._driver]
+        return np.asarray(multipliers), np.asarray(torque)
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Of the elastic links, (m, m)."""
+        return self._of_links({name: body.stiffness for name, (body, _) in self._elastic.items()})
+
+    @cached_property
+    def damping(self) -> Array:
+        """Of the elastic links, (m, m)."""
+        return self._of_links({name: body.damping for name, (body, _) in self._elastic.items()})
+
+    @property
+    def _elastic(self) -> dict[str, tuple[FlexibleBody, slice]]:
+        return self.assembly.elastic
+
+    def _of_links(self, each: Mapping[str, Array]) -> Array:
+        """Matrices of the coefficients of each elastic link as one of all."""
+        whole = np.zeros((self.assembly.size, self.assembly.size))
+        for name, (_, own) in self._elastic.items():
+            at = slice(own.start + 3, own.stop)
+            whole[at, at] = each[name]
+        return np.asarray(whole[np.ix_(self._free, self._free)])
+
+
+def quasi_static(form: ReducedForm, time_s: float) -> Array:
+    """The coefficients (m,) with which the elastic links neither gain nor lose at an instant: what
+    they would have if they had no inertia of their own vibration."""
+    at, z = np.array([time_s]), np.zeros((1, form.size))
+    near = form.near(at)
+    for _ in range(MOST_STEPS):
+        now = form.at(at, z, np.zeros_like(z), near)
+        step = np.linalg.solve(form.stiffness, now.force[0])
+        z = z + step
+        if np.abs(step).max() <= CLOSED * form.assembly.scene.longest_m:
+            break
+    return np.asarray(z[0])
