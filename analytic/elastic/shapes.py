@@ -71,6 +71,6 @@ def shortening(shapes: Shapes, x: Array) -> Array:
     panel = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(breaks) - 2)
     way = (x - breaks[panel])[:, None]
     within = breaks[panel][:, None] + way * share
-    part = shapes.deflections(within.ravel(), 1).reshape(len(x), len(share), -1)
+    part = shapes.deflections(within.ravel(), 1).reshape(len(x), len(share), shapes.across)
     rest = np.swapaxes(part * (way * weight)[:, :, None], 1, 2) @ part
     return np.asarray(before[panel] + rest)
