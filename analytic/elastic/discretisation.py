@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from analytic.elastic.beam import ElasticBody
 from analytic.elastic.elements import HermiteElements
 from analytic.elastic.modes import SineModes
+from analytic.elastic.polynomials import LegendrePolynomials
 from analytic.elastic.segments import SegmentedBody
+from analytic.elastic.shapes import Shapes
 from models.elastic import ElasticLink
 from models.elastic_line import line_of
+from models.elastic_tables import SLENDER
+from models.errors import CrankcheckError
 from models.scene import Scene
 
 
@@ -22,8 +26,21 @@ class Modes:
     along: int = 2
 
     @property
-    def finer(self) -> Modes:
-        return Modes(self.across + 2, self.along + 1)
+    def finer(self) -> Polynomials:
+        """Polynomials: modes come to what they leave out too slowly to tell how much it is."""
+        return Polynomials(max(REFERENCE.across, self.across + 2), self.along + 2)
+
+
+@dataclass(frozen=True)
+class Polynomials:
+    """So many polynomials across, and along, each elastic link: what the reference takes."""
+
+    across: int = 8
+    along: int = 3
+
+    @property
+    def finer(self) -> Polynomials:
+        return Polynomials(self.across + 2, self.along + 1)
 
 
 @dataclass(frozen=True)
@@ -45,15 +62,54 @@ class Segments:
     count: int = 16
     corrected: bool = False
 
+    @property
+    def finer(self) -> Segments:
+        """As many: a chain is what it is."""
+        return self
 
-Discretisation = Modes | Elements | Segments
+
+Discretisation = Polynomials | Modes | Elements | Segments
+REFERENCE = Polynomials()
+"""Where none is asked for: good to 1e-9 of the largest deflection, and with its resonances where
+those of the beam are."""
 
 
 def flexible_links(
     scene: Scene, by: Discretisation, *, stiffened: bool = True
 ) -> dict[str, ElasticBody | SegmentedBody]:
-    """The elastic links of a scene as what makes their bodies, by name."""
+    """The elastic links of a scene as what makes their bodies, by name.
+
+    Raises
+    ------
+    CrankcheckError
+        Modes that are too short for a beam; none at all.
+    """
+    _check(scene, by)
     return {name: _flexible(scene, link, by, stiffened) for name, link in scene.elastic.items()}
+
+
+def _check(scene: Scene, by: Discretisation) -> None:
+    """Raises CrankcheckError for a description that no elastic link can have."""
+    for name, link in scene.elastic.items():
+        if isinstance(by, Modes | Polynomials):
+            counts = [by.across] * link.bends + [by.along] * link.stretches
+        else:
+            counts = [by.count - isinstance(by, Segments)]
+        if min(counts) < 0 or max(counts) < 1:
+            raise CrankcheckError(f"{scene.name}: {by} does not describe elastic.{name}; take more")
+        if isinstance(by, Modes) and link.bends and link.height_m:
+            _check_waves(scene, name, by.across, SLENDER * link.height_m)
+
+
+def _check_waves(scene: Scene, name: str, count: int, shortest_m: float) -> None:
+    length = line_of(scene, name).length_m
+    most = int(length / shortest_m * (1.0 + 1e-9))
+    if count > most:
+        raise CrankcheckError(
+            f"{scene.name}: found {count} modes across; the half-waves of the last are "
+            f"{length / count:.3g} m long on elastic.{name}, under {SLENDER:g} heights of its "
+            f"section, where a beam bends by shear as well; use {most} or fewer"
+        )
 
 
 def _flexible(
@@ -63,10 +119,9 @@ def _flexible(
     if isinstance(by, Segments):
         return SegmentedBody(link, line, by.count, by.corrected)
     if isinstance(by, Elements):
-        shapes: SineModes | HermiteElements = HermiteElements(
-            line.length_m, by.count, link.bends, link.stretches
-        )
+        shapes: Shapes = HermiteElements(line.length_m, by.count, link.bends, link.stretches)
     else:
         across, along = by.across if link.bends else 0, by.along if link.stretches else 0
-        shapes = SineModes(line.length_m, across, along)
+        kind = SineModes if isinstance(by, Modes) else LegendrePolynomials
+        shapes = kind(line.length_m, across, along)
     return ElasticBody(link, line, shapes, stiffened)
