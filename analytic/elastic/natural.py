@@ -7,11 +7,9 @@ moving mechanism are near to.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh  # type: ignore[import-untyped]  # ships no stubs
 
 from models.array import Array
 from models.elastic_line import line_of
@@ -69,14 +67,9 @@ class NaturalModes:
 
 def natural_modes(mass: Array, stiffness: Array) -> NaturalModes:
     """Of matrices (N, m, m). Where a mode has lost its stiffness its frequency is 0."""
-    squares, shapes = [], []
-    for m, k in zip(mass, stiffness, strict=True):
-        square, shape = eigh(0.5 * (k + k.T), 0.5 * (m + m.T))
-        squares.append(square)
-        shapes.append(shape)
-    return NaturalModes(np.sqrt(np.maximum(squares, 0.0)), np.array(shapes))
-
-
-def order_of(frequency_rad_s: float, period_s: float) -> float:
-    """How many times in a period."""
-    return frequency_rad_s * period_s / math.tau
+    # With M = L L', symmetric for v = L' y.
+    inverse = np.linalg.inv(np.linalg.cholesky(0.5 * (mass + np.swapaxes(mass, 1, 2))))
+    onto = np.swapaxes(inverse, 1, 2)
+    even = 0.5 * (stiffness + np.swapaxes(stiffness, 1, 2))
+    squares, shapes = np.linalg.eigh(inverse @ even @ onto)
+    return NaturalModes(np.sqrt(np.maximum(squares, 0.0)), onto @ shapes)

@@ -125,10 +125,15 @@ def linear_motion(form: ReducedForm, linear: LinearForm) -> PeriodicMotion:
     CrankcheckError
         A resonance.
     """
-    factors = lu_factor(balance(linear, form.period_s))
+    return _looked_at(form, *balanced(linear, form.period_s, form.stiffness))
+
+
+def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Array, Array]:
+    """The coefficients (N, m) that meet linearised equations, and how they change for links of
+    twice the ``stiffness`` (m, m)."""
+    factors = lu_factor(balance(linear, period_s))
     z = lu_solve(factors, linear.force.ravel()).reshape(linear.force.shape)
-    change = lu_solve(factors, (z @ form.stiffness).ravel()).reshape(z.shape)
-    return _looked_at(form, z, change)
+    return z, lu_solve(factors, (z @ stiffness).ravel()).reshape(z.shape)
 
 
 def _first(form: ReducedForm) -> PeriodicMotion:
