@@ -2,24 +2,27 @@
 
 By collocation with trigonometric polynomials over the whole turn: the coefficients of the links at
 an odd number of instants, whose derivatives follow exactly, have to meet the equations of motion
-there, unlinearised. Newton's method takes the derivatives of the linearised equations. Source:
-L. N. Trefethen, Spectral Methods in MATLAB, chapter 3.
+there, unlinearised. Newton's method takes the derivatives of the linearised equations; its first
+step is the motion of these. Source: L. N. Trefethen, Spectral Methods in MATLAB, chapter 3.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve  # type: ignore[import-untyped]  # ships no stubs
 
-from analytic.elastic.linearised import linearise
+from analytic.elastic.linearised import LinearForm, linearise
 from analytic.elastic.reduced import ReducedForm
+from analytic.elastic.resonance import Sensitivity, resonance_text, sensitivity
 from models.array import Array
 from models.errors import CrankcheckError
 
 FEWEST, MOST = 65, 1025
 """Instants of a turn; twice as many are taken as long as the series has not come to an end."""
+MOST_UNKNOWNS = 6000
+"""Coefficients at all instants, beyond which the equations take too much room and time."""
 ENDED = 1e-13
 """A last coefficient of the series, over the largest, at which it has."""
 CLOSE = 1e-13
@@ -28,14 +31,22 @@ MOST_STEPS, SLOW = 60, 0.3
 """Steps; and what one may leave of the one before it until the derivatives are taken anew."""
 FIRST = 1e-4
 """A deflection with which the derivatives are taken first, over the longest link."""
+FAR = 0.5
+"""The share of the largest coefficient by which the motion may differ from that of the linearised
+equations: what differs by more is another of several, or bends too far for a beam."""
+COMES_BACK = 1e-9
+"""What the forces of one turn and the next may differ by, over the largest."""
+CURE = "take a lower speed or stiffer links, or give the links damping_s"
 
 
 @dataclass(frozen=True)
 class PeriodicMotion:
-    """Coefficients at N instants of a period from time 0 on, (N, m), N odd."""
+    """Coefficients at N instants of a period from time 0 on, (N, m), N odd; and how they hang on
+    the stiffness of the links."""
 
     period_s: float
     z: Array
+    sensitivity: Sensitivity
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         """The coefficients, their rates and second derivatives at times [s], (T, m) each."""
@@ -47,10 +58,14 @@ class PeriodicMotion:
         return place, rate, second
 
     @property
+    def time_s(self) -> Array:
+        """The instants [s], (N,)."""
+        return instants(len(self.z), self.period_s)
+
+    @property
     def decay(self) -> float:
         """The last of the coefficients of the Fourier series over the largest."""
-        series = np.abs(np.fft.rfft(self.z, axis=0))
-        return float(series[-1].max() / (series.max() or 1.0))
+        return decay(self.z)
 
 
 def periodic_motion(form: ReducedForm) -> PeriodicMotion:
@@ -59,51 +74,132 @@ def periodic_motion(form: ReducedForm) -> PeriodicMotion:
     Raises
     ------
     CrankcheckError
-        A resonance: next to it no such motion is found.
+        A resonance; links that bend too far; a drive or loads that do not come back after a turn.
     """
-    start = np.zeros((FEWEST, form.size))
+    check_periodic(form)
+    linear = found = _first(form)
     while True:
-        found = PeriodicMotion(form.period_s, _met(form, start))
-        count = len(start)
-        if found.decay <= ENDED or count >= MOST:
-            return found
-        finer = 2 * count - 1
-        start = found.at(form.period_s * np.arange(finer) / finer)[0]
+        z, change = _met(form, found.z)
+        found = _looked_at(form, z, change)
+        _refuse_other(form, found, linear)
+        finer = 2 * len(z) - 1
+        if found.decay <= ENDED or finer > MOST or finer * form.size > MOST_UNKNOWNS:
+            break
+        found = replace(found, z=found.at(instants(finer, form.period_s))[0])
+    return found
 
 
-def _met(form: ReducedForm, start: Array) -> Array:
-    """Coefficients that meet the equations at as many instants as there are in a start (N, m)."""
-    z, (count, m) = start, start.shape
-    period_s, unit = form.period_s, form.assembly.scene.longest_m
-    time_s = period_s * np.arange(count) / count
-    near = form.near(time_s)
+def _refuse_other(form: ReducedForm, found: PeriodicMotion, linear: PeriodicMotion) -> None:
+    """Refuse a motion that small deflections do not lead to. Raises CrankcheckError."""
+    far = np.abs(found.at(linear.time_s)[0] - linear.z).max(initial=0.0)
+    if far > FAR * np.abs(found.z).max(initial=0.0):
+        raise CrankcheckError(
+            f"{form.assembly.scene.name}: the periodic motion that was found of its elastic links "
+            "is far from that of small deflections: it is another of several, or they bend too "
+            f"far for a beam: {CURE}"
+        )
+
+
+def check_periodic(form: ReducedForm) -> None:
+    """Refuse what does not come back after a period. Raises CrankcheckError."""
+    times = instants(9, form.period_s)
+    still = np.zeros((len(times), form.size))
+    bent = still + FIRST * form.assembly.scene.longest_m  # a straight link feels no pull
+    now, later = (form.at(t, bent, still, form.near(t)) for t in (times, times + form.period_s))
+    for first, second in ((now.force, later.force), (now.mass, later.mass)):
+        if np.abs(first - second).max() > COMES_BACK * np.abs(first).max():
+            raise CrankcheckError(
+                f"{form.assembly.scene.name}: its elastic links have no periodic motion: what "
+                f"moves them is not the same {form.period_s:.6g} s later; drive it at a constant "
+                "speed, with loads that repeat each turn, or start from another shape "
+                '([start] shape = "quasi-static")'
+            )
+
+
+def linear_motion(form: ReducedForm, linear: LinearForm) -> PeriodicMotion:
+    """The periodic motion of linearised equations at an odd number of instants of a period: by
+    harmonic balance, which is collocation at these.
+
+    Raises
+    ------
+    CrankcheckError
+        A resonance.
+    """
+    return _looked_at(form, *balanced(linear, form.period_s, form.stiffness))
+
+
+def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Array, Array]:
+    """The coefficients (N, m) that meet linearised equations, and how they change for links of
+    twice the ``stiffness`` (m, m)."""
+    factors = lu_factor(balance(linear, period_s))
+    z = lu_solve(factors, linear.force.ravel()).reshape(linear.force.shape)
+    return z, lu_solve(factors, (z @ stiffness).ravel()).reshape(z.shape)
+
+
+def _first(form: ReducedForm) -> PeriodicMotion:
+    """The motion of the equations linearised about the rigid mechanism."""
+    time_s = instants(FEWEST, form.period_s)
+    return linear_motion(form, linearise(form, time_s, FIRST * form.assembly.scene.longest_m))
+
+
+def _looked_at(form: ReducedForm, z: Array, change: Array) -> PeriodicMotion:
+    """A motion and its change for a stiffness of twice its size. Raises CrankcheckError."""
+    found = sensitivity(form, z, change)
+    if found.resonates:
+        raise CrankcheckError(resonance_text(form, found))
+    return PeriodicMotion(form.period_s, z, found)
+
+
+def balance(linear: LinearForm, period_s: float) -> Array:
+    """What linearised equations make of the coefficients at all N instants, (N m, N m)."""
+    count, m = linear.force.shape
     first = derivative(count, period_s)
+    whole = (first @ first)[:, None, :, None] * linear.mass[:, :, None, :]
+    whole += first[:, None, :, None] * linear.damping[:, :, None, :]
+    whole[range(count), :, range(count), :] += linear.stiffness
+    return np.asarray(whole.reshape(count * m, count * m))
+
+
+def _met(form: ReducedForm, start: Array) -> tuple[Array, Array]:
+    """Coefficients that meet the equations at as many instants as there are in a start (N, m), and
+    how they change for a stiffness of twice its size."""
+    z, (count, _) = start, start.shape
+    unit = form.assembly.scene.longest_m
+    time_s = instants(count, form.period_s)
+    near = form.near(time_s)
+    first = derivative(count, form.period_s)
     second = first @ first
-    scale, size, last, factors = FIRST * unit, np.inf, np.inf, None
+    size, last, factors = np.inf, np.inf, None
     for _ in range(MOST_STEPS):
         rates, seconds = first @ z, second @ z
-        if factors is None:
-            linear = linearise(form, time_s, scale, (z, rates, seconds))
-            whole = np.einsum("tu,tab->taub", second, linear.mass)
-            whole += np.einsum("tu,tab->taub", first, linear.damping)
-            whole[range(count), :, range(count), :] += linear.stiffness
-            factors = lu_factor(whole.reshape(count * m, count * m))
-        now = form.at(time_s, z, rates, near)
-        left = now.force - (now.mass @ seconds[:, :, None])[:, :, 0]
-        step = lu_solve(factors, left.ravel()).reshape(count, m)
-        z = z + step
         largest = float(np.abs(z).max()) or 1.0
+        try:
+            if factors is None:
+                scale = max(1e-2 * largest, 1e-9 * unit)
+                linear = linearise(form, time_s, scale, (z, rates, seconds))
+                factors = lu_factor(balance(linear, form.period_s))
+            now = form.at(time_s, z, rates, near)
+        except CrankcheckError:  # the joints can not be closed
+            break
+        left = now.force - (now.mass @ seconds[:, :, None])[:, :, 0]
+        step = lu_solve(factors, left.ravel()).reshape(z.shape)
+        z = z + step
         last, size = size, float(np.abs(step).max())
         if size <= CLOSE * largest or (size < 1e-9 * largest and size >= 0.5 * last):
-            return np.asarray(z)
+            return z, lu_solve(factors, (z @ form.stiffness).ravel()).reshape(z.shape)
         if not size < unit:
             break
         if size > SLOW * last:
-            scale, factors = max(1e-2 * largest, 1e-9 * unit), None
+            factors = None
     raise CrankcheckError(
-        f"{form.assembly.scene.name}: no periodic motion of its elastic links was found; they are "
-        "next to a resonance, or bend too far: take another speed, or give them damping_s"
+        f"{form.assembly.scene.name}: no periodic motion of its elastic links was found: they bend "
+        f"too far for a beam, or are next to a resonance: {CURE}"
     )
+
+
+def instants(count: int, period_s: float) -> Array:
+    """So many instants of a period from time 0 on [s]."""
+    return np.asarray(period_s * np.arange(count) / count)
 
 
 def derivative(count: int, period_s: float) -> Array:
@@ -114,3 +210,10 @@ def derivative(count: int, period_s: float) -> Array:
     matrix = np.where((k[:, None] - k) % 2, -0.5, 0.5) / np.sin(apart)
     np.fill_diagonal(matrix, 0.0)
     return np.asarray(matrix * 2.0 * np.pi / period_s)
+
+
+def decay(z: Array) -> float:
+    """The last of the coefficients of the Fourier series of what is periodic (N, m), over the
+    largest."""
+    series = np.abs(np.fft.rfft(z, axis=0))
+    return float(series[-1].max() / (series.max() or 1.0))

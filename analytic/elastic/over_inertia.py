@@ -1,0 +1,84 @@
+"""Vibration over the inertia of a link and the speed of the driver: the map of the thesis.
+
+What a coupler moves sets how hard it is pulled and pushed in a turn, and so its stiffness: with a
+heavy rocker the turning feeds the vibration itself. Source: Thesis on vibration of planar
+mechanisms with elastic links (2018), chapter 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.over_speeds import OverSpeeds, over_speeds
+from models.array import Array
+from models.errors import CrankcheckError
+from models.scene import Scene
+
+
+@dataclass(frozen=True)
+class InertiaMap:
+    """The vibration with a ``link`` that is ``factors`` (F,) times as heavy, over speeds each."""
+
+    link: str
+    factors: Array
+    over: tuple[OverSpeeds, ...]
+
+    @property
+    def scene(self) -> Scene:
+        """As it is heaviest."""
+        return self.over[-1].scene
+
+    @property
+    def speeds(self) -> Array:
+        return self.over[0].speeds
+
+    @property
+    def shares(self) -> Array:
+        """The largest deflection over the length, (F, S)."""
+        return np.array([[point.share for point in one.points] for one in self.over])
+
+    @property
+    def multipliers(self) -> Array:
+        """The largest multiplier's size, (F, S)."""
+        return np.array([[point.stability.largest for point in one.points] for one in self.over])
+
+
+def with_inertia(scene: Scene, link: str, factor: float) -> Scene:
+    """The scene with a rigid link so many times as heavy.
+
+    Raises
+    ------
+    CrankcheckError
+        No such link; one that is elastic, or the driver, or without mass.
+    """
+    others = [
+        name
+        for name, own in scene.links.items()
+        if name not in scene.elastic and name != scene.driver.link
+        if own.mass_kg or own.inertia_kg_m2
+    ]
+    if link not in others:
+        found = (
+            "it is elastic, and its own mass is that of the beam"
+            if link in scene.elastic
+            else "its speed is told, whatever its inertia"
+            if link == scene.driver.link
+            else "it has no mass"
+            if link in scene.links
+            else "no link of that name"
+        )
+        use = ", ".join(others) or "a scene with a rigid link that follows"
+        raise CrankcheckError(f"{scene.name}: inertia of {link}: {found}; use {use}")
+    own = scene.links[link]
+    heavy = replace(own, mass_kg=factor * own.mass_kg, inertia_kg_m2=factor * own.inertia_kg_m2)
+    return replace(scene, links={**scene.links, link: heavy})
+
+
+def over_inertia(scene: Scene, by: Modes, speeds: Array, link: str, factors: Array) -> InertiaMap:
+    """The vibration with a link so many times as heavy, for each factor at all speeds. Raises
+    CrankcheckError as `with_inertia` and `over_speeds`."""
+    heavier = [with_inertia(scene, link, float(factor)) for factor in factors]
+    return InertiaMap(link, factors, tuple(over_speeds(each, by, speeds) for each in heavier))
