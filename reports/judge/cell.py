@@ -83,7 +83,7 @@ class Cell:
             from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend
 
             until_s = self.dt_s * (self.steps + 1)
-            return elastic_truth(Same(self.scene), self.segments, self.springs, until_s)
+            return elastic_truth(self.scene, self.segments, self.springs, until_s)
         return truth_of(Same(self.scene))
 
     @property

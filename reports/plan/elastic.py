@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from models.errors import CrankcheckError, EngineError, shown
-from models.scene import Same, Scene
+from models.scene import Scene
 from reports.judge.cell import SEGMENTS, Springs
 from reports.plan.steps import STEPS_PER_TURN
 
@@ -69,7 +69,7 @@ def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
             "give the driver a law, or leave [elastic] out"
         )
     try:
-        truth = elastic_truth(Same(scene), segments, springs, scene.driver.law.period_s)
+        truth = elastic_truth(scene, segments, springs, scene.driver.law.period_s)
     except EngineError:
         return  # a row with its reason
     truth.look()

@@ -48,8 +48,8 @@ def _middle(column: str) -> Measure:
 BENT = Tolerance(
     "What joints are off by, step^2 of the longest link at the curvature, over the deflection; "
     "what a spring's swing of r times the driver's speed is off by, (r step)^2/24 of its phase in "
-    "every swing; and, of what is held to the beam, what the exact chain of as many segments is off "
-    "it by, and what the beam itself is.",
+    "every swing; and, of what is held to the beam, what the exact chain of as many segments is "
+    "off it by, and what the beam itself is.",
     cap=0.2,  # a fifth of the largest deflection: another stiffness, however coarse the chain
     coefficient=0.5,
     power=1.0,

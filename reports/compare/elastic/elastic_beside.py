@@ -23,12 +23,8 @@ class ElasticBeside(Beside):
 
     @cached_property
     def exact(self) -> Motion | None:
-        """The exact chain at the logged instants, None where it takes too long: where the motion
-        is not periodic it is integrated for a few segments alone."""
-        truth = self.elastic
-        if not (truth.is_periodic or truth.few is truth.exact):
-            return None
-        return truth.exact_at(self.motion.time_s)
+        """The exact chain at the logged instants, None where it takes too long to be found."""
+        return self.elastic.exact_at(self.motion.time_s) if self.elastic.is_exact else None
 
     @property
     def has_crank(self) -> bool:

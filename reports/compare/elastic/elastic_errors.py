@@ -7,21 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.array import Array
 from models.motion import Motion
+from reports.compare.elastic.beam_theory import LEAST
 from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.elastic.elastic_facts import ElasticFacts
-from reports.compare.elastic.elastic_truth import FEW
 from reports.compare.error_rows import instants_of, whole_row
 from reports.compare.errors import Error, ErrorKind, Errors
 from reports.compare.series import length
 from reports.quantities import QUANTITIES, named
-from reports.quantities.elastic import largest_deflection
 
 BEAM, CHAIN = ("deflection", "extension"), ("segments",)
 """What is held to the beam, and to the exact chain."""
-THINNED = 400
-"""Samples at which the theories are compared with each other: none of them has a jump."""
 
 
 def with_elastic(errors: Errors, beside: ElasticBeside) -> Errors:
@@ -52,44 +48,19 @@ def _theory_rows(beside: ElasticBeside, other: Motion, kind: ErrorKind) -> Itera
 
 def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     """What is known beside the errors."""
-    truth, time_s = beside.elastic, beside.motion.time_s
-    some = time_s[:: max(1, time_s.size // THINNED)]
-    beam = truth.beam_at(some)
-    largest = largest_deflection(beside.scene, beam)
-    lasts = float(time_s[-1] - time_s[0])
-    share = 1.0
-    if beside.exact is None:
-        share = (FEW / truth.chain.count) ** 2
-    chain = truth.few.at(some) if beside.exact is None else truth.exact.at(some)
+    truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
+    share = 1.0 if truth.is_exact else (LEAST / truth.chain.count) ** 2
+    apart = _apart_by_name(beside, truth.few.at(theory.looks_s), theory.looked)
     return ElasticFacts(
         segments=truth.chain.count,
         springs="corrected" if truth.chain.corrected else "plain",
-        ratio=truth.ratio,
-        cycles=0.0 if truth.is_periodic else truth.lowest_rad_s * lasts / (2.0 * np.pi),
-        slender=beside.scene.longest_m / largest,
-        doubt=_doubt(beside, some, beam) / largest,
-        linear=_apart(truth.linear_at(some), beam) / largest,
-        apart={name: share * size for name, size in _apart_by_name(beside, chain, beam).items()},
-        estimated=beside.exact is None,
-    )
-
-
-def _doubt(beside: ElasticBeside, time_s: Array, beam: Motion) -> float:
-    """What the beam may be off by [m]: by its sines, and by where the chains go to."""
-    truth = beside.elastic
-    off = _apart(truth.fewer_sines_at(time_s), beam)
-    if not truth.is_periodic:
-        return off
-    goal = truth.limit_of_chains_at(time_s)
-    own = (np.abs(goal[name] - beam.elastic[name].middle).max() for name in goal)
-    return max(off, float(max(own)))
-
-
-def _apart(one: Motion, other: Motion) -> float:
-    """The largest difference of deflections [m]."""
-    return max(
-        float(np.abs(one.elastic[name].middle - other.elastic[name].middle).max())
-        for name in other.elastic
+        ratio=theory.lowest_rad_s / beside.scene.driver.law.peak_speed_rad_s,
+        cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
+        slender=beside.scene.longest_m / theory.largest_m,
+        doubt=theory.doubt_m / theory.largest_m,
+        linear=theory.linear_m / theory.largest_m,
+        apart={name: share * size for name, size in apart.items()},
+        estimated=not truth.is_exact,
     )
 
 

@@ -9,7 +9,7 @@ import pytest
 from models.files import load_scene
 from models.scene import Scene
 from models.springs import PinSpring
-from reports.judge.cell import Cell, Checked, check, examined
+from reports.judge.cell import Cell, CellRunner, Checked, check, examined
 from reports.judge.rows import cell_row
 from sim.engine import Run
 from sim.run import run
@@ -64,7 +64,7 @@ def test_a_cell_says_what_its_links_were_given_as(checked: Checked, slider_crank
     assert not {"segments", "springs", "deflection_pure", "deflection_error_m"} & set(rigid)
 
 
-def stiffer(by: float):  # noqa: ANN201
+def stiffer(by: float) -> CellRunner:
     """A runner whose springs are stiffer by a share."""
 
     def runner(scene: Scene, *rest: object, **options: object) -> Run:
