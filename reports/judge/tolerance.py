@@ -142,6 +142,8 @@ def _left(name: str, errors: Errors) -> float:
     own = elastic.apart.get(name.removesuffix("-differenced"), 0.0)
     if elastic.estimated:
         own *= 2.0
+    if name in FORCES:  # springs that are off push by as much more
+        return own + 0.5 * default(ELASTIC["segments"], errors)
     return own + (elastic.doubt if name == "deflection" else 0.0)
 
 

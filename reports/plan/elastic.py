@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError, EngineError, shown
 from models.scene import Scene
 from reports.judge.cell import SEGMENTS, Springs
 from reports.plan.steps import STEPS_PER_TURN
+
+if TYPE_CHECKING:
+    from reports.plan.study import Study
 
 SPRINGS: tuple[Springs, ...] = ("plain", "corrected")
 MOST_SEGMENTS = 64
@@ -39,7 +44,48 @@ def chosen_segments(count: int | None, option: str = "--segments") -> int:
     return count
 
 
-def refuse_rigid(scenes: Iterable[Scene], count: int | None, springs: str | None) -> None:
+@dataclass(frozen=True)
+class GivenAs:
+    """What the elastic links of a scene are given to engines as; ``words`` tell the lines of a
+    sweep apart, and are empty of a rigid scene."""
+
+    segments: int = SEGMENTS
+    springs: Springs = "plain"
+    words: str = ""
+
+
+def given_as(scene: Scene, study: Study) -> list[GivenAs]:
+    """All that a study gives a scene's elastic links as; one of a rigid scene. Raises
+    CrankcheckError for a number of segments out of range."""
+    if not scene.elastic:
+        return [GivenAs()]
+    counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
+    return [
+        GivenAs(
+            count, springs, f", {count} segments" + f", {springs} springs" * (springs != "plain")
+        )
+        for springs in dict.fromkeys(study.springs or SPRINGS[:1])
+        for count in dict.fromkeys(counts)
+    ]
+
+
+def given_of(scene: Scene, segments: int | None, springs: str | None) -> GivenAs:
+    """What the elastic links of one scene are given as. Raises CrankcheckError as `refuse_rigid`,
+    `chosen_segments` and `chosen_springs`."""
+    refuse_rigid([scene], segments, springs)
+    return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
+
+
+def refuse_free_elastic(scene: Scene) -> None:
+    """Refuse elastic links of what is let go. Raises CrankcheckError."""
+    if scene.elastic and scene.is_free:
+        raise CrankcheckError(
+            f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
+            "give the driver a law, or leave [elastic] out"
+        )
+
+
+def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
     """Refuse what is asked of segments, where no scene has any. Raises CrankcheckError."""
     if any(scene.elastic for scene in scenes):
         return
@@ -63,11 +109,7 @@ def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
 
     if not scene.elastic:
         return
-    if scene.is_free:
-        raise CrankcheckError(
-            f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
-            "give the driver a law, or leave [elastic] out"
-        )
+    refuse_free_elastic(scene)
     try:
         truth = elastic_truth(scene, segments, springs, scene.driver.law.period_s)
     except EngineError:

@@ -72,6 +72,10 @@ class ElasticTruth(Truth):
         return self.theory.chain(self.chain.count, corrected=self.chain.corrected)
 
     @property
+    def given(self) -> Scene:
+        return self.chain.rigid
+
+    @property
     def is_exact(self) -> bool:
         """Whether the exact chain is soon found: its periodic motion is, while it takes minutes to
         integrate one of many segments."""
