@@ -76,6 +76,11 @@ def run(
         reason="",
         settings=told.asked,
     )
+    if scene.elastic:
+        raise EngineError(
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and an engine is given rigid "
+            "segments for it: `models.segmented.SegmentedScene(scene, count).rigid`"
+        )
     try:
         refuse_unknown_forces(scene, chosen, with_forces=with_forces)
         session = chosen.open(scene, state, told.asked, dt_s, drive)

@@ -13,11 +13,19 @@ from models.motion import State
 from models.segmented import SegmentedScene
 
 
-def segment_start(own: SegmentedScene, start: Shape) -> State:
-    """The state at time 0 of `SegmentedScene.rigid`, as the exact chain has it: its joints are
-    closed, and its accelerations are those of the equations of motion."""
+def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> DrivenElasticMotion:
+    """The exact motion of the chains of a scene until then [s], their nodes as named points."""
     by = Segments(own.count, own.corrected)
-    motion = DrivenElasticMotion(own.with_nodes, 1.0, by, start, stiffened=True)
+    return DrivenElasticMotion(own.with_nodes, until_s, by, start, stiffened=True)
+
+
+def segment_start(
+    own: SegmentedScene, start: Shape, motion: DrivenElasticMotion | None = None
+) -> State:
+    """The state at time 0 of `SegmentedScene.rigid`, as the exact chain has it: its joints are
+    closed, and its accelerations are those of the equations of motion. ``motion`` is that of
+    `chain_motion`, where it is there already."""
+    motion = motion or chain_motion(own, start)
     instant, assembly = motion.first, motion.form.assembly
     seconds = instant.all_seconds(instant.seconds)
     state = as_motion(assembly, np.zeros(1), instant.now, seconds).state()

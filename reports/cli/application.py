@@ -66,6 +66,14 @@ Duration = Annotated[
 Forces = Annotated[
     bool, typer.Option("--forces", help="Reactions, moments and driving torque as well.")
 ]
+SegmentCount = Annotated[
+    int | None,
+    typer.Option("--segments", metavar="N", help="Of each elastic link in an engine (default 16)."),
+]
+SpringKind = Annotated[
+    str | None,
+    typer.Option("--springs", help="Between segments: plain (default) or corrected for the sag."),
+]
 Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
 """Options that several commands have."""
 

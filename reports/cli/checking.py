@@ -10,7 +10,17 @@ from typing import Annotated
 import typer
 
 from models.errors import CrankcheckError
-from reports.cli.application import Duration, Engines, Forces, Jobs, StepS, StepsPerTurn, command
+from reports.cli.application import (
+    Duration,
+    Engines,
+    Forces,
+    Jobs,
+    SegmentCount,
+    SpringKind,
+    StepS,
+    StepsPerTurn,
+    command,
+)
 from reports.output.console import terminal
 
 PRESCRIBED = "prescribed"
@@ -71,6 +81,8 @@ class VerifyRequest:
         bool, typer.Option("--free", help="Let scenes go; those of free motion if none is named.")
     ] = False
     duration_s: Duration = None
+    segments: SegmentCount = None
+    springs: SpringKind = None
     mjcf: Annotated[
         Path | None,
         typer.Option(

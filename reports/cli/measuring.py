@@ -9,7 +9,17 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import Duration, Engines, Forces, Jobs, app, command, guarded, seconds
+from reports.cli.application import (
+    Duration,
+    Engines,
+    Forces,
+    Jobs,
+    SpringKind,
+    app,
+    command,
+    guarded,
+    seconds,
+)
 from reports.output.console import terminal
 
 
@@ -58,6 +68,11 @@ class SweepRequest:
         str | None, typer.Option("--dt", metavar="S,S,...", help="Steps of free motion, seconds.")
     ] = None
     duration_s: Duration = None
+    segments: Annotated[
+        str | None,
+        typer.Option(metavar="N,N,...", help="Of each elastic link, with commas (default 16)."),
+    ] = None
+    springs: SpringKind = None
 
 
 @command

@@ -14,6 +14,8 @@ from reports.cli.application import (
     Duration,
     Forces,
     Jobs,
+    SegmentCount,
+    SpringKind,
     StepS,
     StepsPerTurn,
     app,
@@ -105,6 +107,8 @@ class RunRequest:
         Path | None, typer.Option("-o", "--output", help="Write .csv, .parquet or .xlsx.")
     ] = None
     forces: Forces = False
+    segments: SegmentCount = None
+    springs: SpringKind = None
 
 
 @command

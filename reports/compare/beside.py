@@ -49,6 +49,15 @@ class Truth:
         """A run beside this truth; None where it logged nothing."""
         return Beside.of(self, run)
 
+    @property
+    def given(self) -> Scene:
+        """The scene that an engine is given: of elastic links, the segments."""
+        return self.scene
+
+    def logged(self, run: Run) -> Run:
+        """A run of what an engine was given as one of the scene: the same, unless links bend."""
+        return run
+
     @cached_property
     def start(self) -> State:
         """The state at time 0. Raises CrankcheckError where there is none."""

@@ -17,6 +17,7 @@ from reports.compare.branch import departure
 from reports.compare.change_points import conditioning
 from reports.compare.curvature import curvature
 from reports.compare.drive_rounding import summed
+from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.error_rows import Instants, instants_of, whole_row
 from reports.compare.errors import Error, Errors
 from reports.compare.force_rows import force_rows
@@ -44,6 +45,16 @@ def compare(beside: Beside | None) -> Errors | None:
         from reports.compare.free.free_errors import free_errors  # for what is let go alone
 
         return free_errors(beside)
+    errors = _of_driven(beside)
+    if isinstance(beside, ElasticBeside):
+        from reports.compare.elastic.elastic_errors import with_elastic  # where links bend alone
+
+        return with_elastic(errors, beside)
+    return errors
+
+
+def _of_driven(beside: Beside) -> Errors:
+    """As `compare`, but for what is elastic."""
     scene, run, reference = beside.scene, beside.run, beside.reference
     at = instants_of(beside, beside.motion.time_s, reference)
     geometric, notes = _geometric(beside, at)
@@ -95,11 +106,16 @@ def places(beside: Beside | None) -> list[Error]:
 
         return free_places(beside)
     at = instants_of(beside, beside.motion.time_s, beside.reference)
-    return [
+    rows = [
         *whole_rows(beside, at, "drive"),
         *whole_rows(beside, at, "place"),
         *whole_rows(beside, at, "closure"),
     ]
+    if isinstance(beside, ElasticBeside):
+        from reports.compare.elastic.elastic_errors import elastic_rows
+
+        rows += elastic_rows(beside)
+    return rows
 
 
 def _geometric(beside: Beside, at: Instants) -> tuple[list[Error], tuple[str, ...]]:

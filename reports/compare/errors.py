@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from analytic.forces.late_impulses import ON_TIME, LateImpulses
+from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.free.free_facts import FreeFacts
 from reports.quantities.quantity import BodyKind, Source, tolerance_name
 
-ErrorKind = Literal["total", "geometric", "start", "passage", "raw"]
+ErrorKind = Literal["total", "geometric", "start", "passage", "raw", "chain"]
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Error:
     driver's speed (times that length) for velocities, its square for accelerations. Rates of the
     first steps, in which an engine takes up its pins, are of kind ``start``, those of later ones
     near a change point of kind ``passage`` (`reports.compare.change_points`). Of free motion they
-    are all over the sensitivity, and those of kind ``raw`` are not. ``bound`` is the largest error
+    are all over the sensitivity, and those of kind ``raw`` are not. Those of kind ``chain`` are of
+    the exact chain of segments, without an engine. ``bound`` is the largest error
     of the reference itself [unit].
     """
 
@@ -107,7 +109,7 @@ class Errors:
     largest, ``drifted_rad`` the most that it has turned through over the sensitivity of then, and
     ``late`` what impulses that come a step late may make of its energy, all 0 of one that is
     driven; ``free`` is what else there is to know of a run that was let go, None
-    of one that was driven.
+    of one that was driven; ``elastic`` what there is to know where links bend, else None.
     """
 
     rows: tuple[Error, ...]
@@ -137,6 +139,7 @@ class Errors:
     drifted_rad: float = 0.0
     late: LateImpulses = ON_TIME
     free: FreeFacts | None = None
+    elastic: ElasticFacts | None = None
 
     def worst(
         self, quantity: str, source: Source = "reported", kind: ErrorKind = "total"

@@ -19,10 +19,11 @@ from reports.face.arguments import (
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import parts_in_python, told_at_the_call
-from reports.judge.cell import Cell, Checked, check_run
+from reports.judge.cell import SEGMENTS, Cell, Checked, check_run
 from reports.judge.tolerance import check_names
 from reports.output.provenance import provenance
 from reports.plan.chosen import refuse_unfollowed
+from reports.plan.elastic import given_of, held_steps, refuse_unelastic
 from reports.plan.forces import refuse_forceless
 from reports.plan.free import refuse_unreleased
 from reports.plan.short_tables import refuse_short_tables
@@ -84,12 +85,14 @@ def check(
     tolerance: Mapping[str, float] | None = None,
     converge: bool = True,
     forces: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> CellVerdict:
     """Run a scene in an engine and hold it to the closed form, as `crankcheck verify` does.
 
     Parameters
     ----------
-    scene, engine, profile, steps_per_turn, dt_s, turns, drive, settings
+    scene, engine, profile, steps_per_turn, dt_s, turns, drive, settings, segments, springs
         As of `run`.
     tolerance : Mapping or None
         Largest errors by quantity, as pure numbers, such as ``{"angle": 1e-4}``, in place of those
@@ -109,8 +112,12 @@ def check(
     name, profile = engine_of(engine, profile, settings)
     driven = cast(Drive, one_of(drive, "--drive", DRIVES))
     limits = tolerances_of(tolerance, "tolerance")
+    bent = given_of(scene, segments, springs)
+    if scene.elastic and dt_s is None and steps_per_turn is None:
+        steps_per_turn = held_steps(scene, bent.segments, bent.springs)
     dt_s, steps = counted(scene, dt_s, steps_per_turn, turns)
     refuse_unfollowed(scene)
+    refuse_unelastic(scene, bent.segments, bent.springs)
     refuse_singular(scene, dt_s * steps)
     if is_true(forces, "forces"):
         refuse_forceless(scene, dt_s * steps)
@@ -126,6 +133,8 @@ def check(
         converge=is_true(converge, "converge"),
         settings=settings_of(settings),
         with_forces=forces,
+        segments=bent.segments,
+        springs=bent.springs,
     )
     return _with_facts(advised(cell))
 
@@ -146,6 +155,8 @@ def verdict_of_run(scene: Scene, run: Run, tolerance: Mapping[str, float]) -> Ce
         converge=False,
         settings=dict(run.asked),
         with_forces=run.with_forces,
+        segments=getattr(run, "segments", SEGMENTS),
+        springs=getattr(run, "springs", "plain"),
     )
     return _with_facts(check_run(cell, run), "target")
 

@@ -15,6 +15,7 @@ from reports.face.arguments import SceneLike, is_true, one_of, scene_of
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
+from reports.judge.cell import SEGMENTS
 from reports.judge.tolerance import check_names
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
@@ -131,6 +132,15 @@ def compare(
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
     """The truth of a scene as a run has it. Raises CrankcheckError."""
+    if scene.elastic and run.drive != "free":
+        from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
+
+        return elastic_truth(
+            scene,
+            getattr(run, "segments", SEGMENTS),
+            getattr(run, "springs", "plain"),
+            run.dt_s * run.steps,
+        )
     if run.drive != "free":
         return truth_of(Same(scene))
     from reports.compare.free.free_truth import free_truth  # for what is let go alone

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from models.errors import CrankcheckError
 from models.released import let_go
 from models.scene import Same, Scene
-from reports.compare.beside import truth_of
+from reports.compare.beside import Truth, truth_of
 from reports.compare.free.kept_motion import released_state
 from reports.face.arguments import (
     SceneLike,
@@ -23,6 +23,8 @@ from reports.face.arguments import (
 from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
+from reports.judge.cell import SEGMENTS, Springs
+from reports.plan.elastic import GivenAs, given_of, held_steps, refuse_free_elastic
 from reports.plan.steps import TURNS, counted, counted_free
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
@@ -39,10 +41,13 @@ DRIVES = ("prescribed", "servo", "free")
 class Simulation(Shown, Run):
     """A run of a scene in an engine: how it moved and ended, with which settings (`Run`).
 
-    ``mechanism`` is the scene, let go where the run was, and ``scene`` its name.
+    ``mechanism`` is the scene, let go where the run was, and ``scene`` its name. Its elastic links
+    were given to the engine as so many ``segments`` each, with ``springs`` of a kind between them.
     """
 
     mechanism: Scene
+    segments: int = SEGMENTS
+    springs: Springs = "plain"
 
     def frame(self) -> pd.DataFrame:
         """The log: one row per sample, columns as those of `Solution.frame`, with the gaps of pins
@@ -112,6 +117,8 @@ def run(
     drive: str | None = None,
     settings: Mapping[str, SettingValue] | None = None,
     forces: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> Simulation:
     """Run a scene in an engine and log it.
 
@@ -138,6 +145,9 @@ def run(
         Settings of the engine in place of the profile's.
     forces : bool
         Log the reactions and the driving torque as well, in ``motion.forces``.
+    segments, springs : int or None, str or None
+        What elastic links are given to the engine as: so many rigid segments each (16), with
+        springs between them that are ``plain``, or ``corrected`` for the sag of the beam.
 
     Returns
     -------
@@ -163,6 +173,8 @@ def run(
         drive=drive,
         settings=settings,
         forces=forces,
+        segments=segments,
+        springs=springs,
     )
 
 
@@ -179,6 +191,8 @@ def simulated(
     drive: str | None,
     settings: Mapping[str, SettingValue] | None = None,
     forces: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> Simulation:
     """As `run`, in the words of the command."""
     scene = scene_of(scene)
@@ -186,6 +200,9 @@ def simulated(
     driven = _drive(scene, drive)
     every = whole_of(every, "--every")
     _refuse_other_length(scene, driven, turns, steps_per_turn, duration_s)
+    bent = given_of(scene, segments, springs)
+    if scene.elastic and driven != "free" and dt_s is None and steps_per_turn is None:
+        steps_per_turn = held_steps(scene, bent.segments, bent.springs)
     if driven == "free" and turns is None and steps_per_turn is None:
         dt_s, steps = counted_free(let_go(scene), dt_s, duration_s, every=every, least=1)
     else:
@@ -193,12 +210,10 @@ def simulated(
         dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
     if driven == "free":
         scene = let_go(scene)
-        state = released_state(scene)
-    else:
-        state = truth_of(Same(scene)).start
+    truth = _truth(scene, bent, dt_s * steps)
     done = stepping.run(
-        scene,
-        state,
+        scene if truth is None else truth.given,
+        released_state(scene) if truth is None else truth.start,
         name,
         profile,
         dt_s=dt_s,
@@ -208,7 +223,21 @@ def simulated(
         settings=settings_of(settings),
         with_forces=is_true(forces, "forces"),
     )
-    return Simulation(**vars(done), mechanism=scene)
+    if truth is not None:
+        done = truth.logged(done)
+    return Simulation(**vars(done), mechanism=scene, segments=bent.segments, springs=bent.springs)
+
+
+def _truth(scene: Scene, bent: GivenAs, lasts_s: float) -> Truth | None:
+    """What a driven run starts from, None of one that is let go. Raises CrankcheckError."""
+    if scene.is_free:
+        refuse_free_elastic(scene)
+        return None
+    if scene.elastic:
+        from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
+
+        return elastic_truth(scene, bent.segments, bent.springs, lasts_s)
+    return truth_of(Same(scene))
 
 
 def _refuse_other_length(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from models.errors import CrankcheckError
 from models.one_or_more import names_in
-from reports.face.arguments import SceneLike, is_true, path_of, whole_of
+from reports.face.arguments import SceneLike, each_of, is_true, path_of, whole_of
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
 from reports.plan.steps import positive
@@ -75,6 +75,8 @@ def sweep(
     free: bool = False,
     dt_s: float | Iterable[float] = (),
     duration_s: float | None = None,
+    segments: int | Iterable[int] = (),
+    springs: str | Iterable[str] = (),
 ) -> Sweep:
     """Run a grid of scenes, engines, settings and steps into a folder, as `crankcheck sweep`.
 
@@ -116,6 +118,8 @@ def sweep(
         Steps of free motion [s], which has no turns.
     duration_s : float or None
         Of free motion [s]; that of the scene for None.
+    segments, springs : int or Iterable[int], str or Iterable[str]
+        What elastic links are given to engines as, as of `run`; () for those of the study.
 
     Raises
     ------
@@ -131,6 +135,7 @@ def sweep(
     )
     from reports.output.console import terminal
     from reports.plan.chosen_study import StudyChoice, chosen_study, study_engines
+    from reports.plan.elastic import chosen_segments, chosen_springs
     from reports.plan.study import load_study
     from reports.sweep.whole import Manner, swept
     from reports.workers.isolated import checked_limits
@@ -165,6 +170,8 @@ def sweep(
             is_true(free, "free"),
             numbers_of(dt_s, "--dt", "seconds, such as 1e-3"),
             None if duration_s is None else positive("--duration", duration_s, "seconds"),
+            [chosen_segments(count) for count in each_of(segments)],
+            [chosen_springs(text) for text in names_in(springs, "springs")],
         )
         asked = chosen_study(told, choice, is_shipped=study is None)
         console = terminal(stderr=True)

@@ -98,6 +98,8 @@ def command_of(choice: StudyChoice, folder: Path, study: object) -> list[str]:
         *(("--free",) if choice.free else ()),
         *(("--dt", ",".join(f"{each:g}" for each in choice.dt_s)) if choice.dt_s else ()),
         *(("--duration", f"{choice.duration_s:g}") if choice.duration_s is not None else ()),
+        *(("--segments", ",".join(map(str, choice.segments))) if choice.segments else ()),
+        *(("--springs", ",".join(choice.springs)) if choice.springs else ()),
         *(
             word
             for owner, chosen in choice.overrides.items()

@@ -11,6 +11,7 @@ from typing import Any, Literal
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
+from models.segmented import SegmentedScene
 from reports.compare.asked import not_asked_for
 from reports.compare.beside import Truth, truth_of
 from reports.compare.compare import compare
@@ -24,6 +25,13 @@ from sim.registry import engine
 from sim.run import run, setup
 from sim.settings import profile_of, resolved
 
+Springs = Literal["plain", "corrected"]
+"""Between segments: those of the beam's stiffness over a segment, or those that give the chain the
+sag of the beam."""
+SEGMENTS = 16
+"""Of an elastic link, unless another number is asked for."""
+MOST_LOGGED = 720
+"""Samples of a turn of elastic links."""
 CellRunner = Callable[..., Run]
 """What runs a cell: it takes what `sim.run.run` takes."""
 
@@ -32,7 +40,8 @@ CellRunner = Callable[..., Run]
 class Cell:
     """What to run: ``steps`` of ``dt_s`` from the scene's start; a cell that is not ``gated`` is
     shown and judged, and does not count for the exit code. ``settings`` override the profile.
-    ``with_forces`` asks for the reactions and the driving torque as well."""
+    ``with_forces`` asks for the reactions and the driving torque as well. Each elastic link is
+    given to the engine as so many ``segments``, with ``springs`` of a kind between them."""
 
     scene: Scene
     engine: str
@@ -45,6 +54,8 @@ class Cell:
     converge: bool = True
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
     with_forces: bool = False
+    segments: int = SEGMENTS
+    springs: Springs = "plain"
 
     @property
     def turns(self) -> float:
@@ -68,12 +79,33 @@ class Cell:
             from reports.compare.free.free_truth import free_truth  # for what is let go alone
 
             return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
+        if self.scene.elastic:
+            from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend
+
+            until_s = self.dt_s * (self.steps + 1)
+            return elastic_truth(self.scene, self.segments, self.springs, until_s)
         return truth_of(Same(self.scene))
 
     @property
     def shown_truth(self) -> Truth:
         """The same without bounds, which cost time and are not drawn."""
-        return self.truth if self.drive == "free" else Truth(self.scene, bound=False)
+        known = self.drive == "free" or self.scene.elastic
+        return self.truth if known else Truth(self.scene, bound=False)
+
+    @property
+    def given(self) -> Scene:
+        """The scene that an engine is given: of elastic links, the segments."""
+        if not self.scene.elastic:
+            return self.scene
+        return SegmentedScene(self.scene, self.segments, self.springs == "corrected").rigid
+
+    @property
+    def every(self) -> int:
+        """How many steps are taken from sample to sample: one; of elastic links, whose springs ask
+        for far more steps than anybody looks at, up to `MOST_LOGGED` of a turn are logged."""
+        if not self.scene.elastic:
+            return 1
+        return max(1, math.ceil(self.steps_per_turn / MOST_LOGGED - 1e-9))
 
     @property
     def label(self) -> str:
@@ -128,7 +160,8 @@ def _examined(cell: Cell, runner: CellRunner, adapter: Engine | None) -> tuple[C
     """As `examined`, but for the time."""
     try:
         truth = cell.truth  # before the run: the truth of another scene is let go
-        runs = _Runs(cell, truth.start, adapter or engine(cell.engine), runner, adapter)
+        own = adapter or engine(cell.engine)
+        runs = _Runs(cell, truth, truth.start, cell.given, own, runner, adapter)
         done = runs.run(1)
     except EngineError as error:
         return unfinished(cell, "unsupported", str(error)), None
@@ -186,7 +219,9 @@ class _Runs:
     """The runs of a cell from one state, and what they say of themselves that was not asked for."""
 
     cell: Cell
+    truth: Truth
     state: State
+    given_scene: Scene
     adapter: Engine
     runner: CellRunner
     given: Engine | None = None
@@ -194,23 +229,23 @@ class _Runs:
 
     def run(self, finer: int) -> Run:
         """The cell with its step cut into ``finer`` parts, logged at the same instants."""
-        cell = self.cell
+        cell, given = self.cell, self.given_scene
         names = self.given or cell.engine, cell.profile
         options: dict[str, Any] = {
             "dt_s": cell.dt_s / finer,
             "steps": cell.steps * finer,
-            "every": finer,
+            "every": finer * cell.every,
             "drive": cell.drive,
             "settings": cell.settings,
             **({"with_forces": True} if cell.with_forces else {}),
         }
-        done = self.runner(cell.scene, self.state, *names, **options)
-        asked = setup(cell.scene, self.state, *names, **options)
+        done = self.runner(given, self.state, *names, **options)
+        asked = setup(given, self.state, *names, **options)
         held = self.adapter.holds(asked.asked, asked.dt_s, asked.drive)
-        texts = not_asked_for(done, asked, held, cell.scene, self.state)
+        texts = not_asked_for(done, asked, held, given, self.state)
         at = f"finer run, dt / {finer}: " if finer > 1 else ""
         self.unasked.extend(at + text for text in texts)
-        return done
+        return self.truth.logged(done)
 
 
 def left_words(departure: Departure) -> str:

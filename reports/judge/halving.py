@@ -19,6 +19,7 @@ from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
 
+ELASTIC = ("segments", "deflection")
 PLACES, CLOSED, FORCES = ("phase", *named("place")), named("place", "closure"), named("force")
 FREE_CLOSED = ("phase", "geometry", *CLOSED)
 HALVINGS = 2
@@ -89,7 +90,7 @@ def followed(
     of_places = convergence(
         steps_s,
         pure(worst),
-        "rad" if worst.unit == "rad" else "of the longest link",
+        _unit_words(worst),
         rounding,
         faults=faults,
         over=over(CLOSED if errors.free is None else FREE_CLOSED, rounding),
@@ -105,6 +106,13 @@ def followed(
         steps_s, pure(force), _share_words(force), exact, over=over(FORCES, exact)
     )
     return Followed(of_places, of_forces)
+
+
+def _unit_words(worst: Error) -> str:
+    """What an error of place is in."""
+    if worst.quantity in ELASTIC:
+        return "of the largest deflection"
+    return "rad" if worst.unit == "rad" else "of the longest link"
 
 
 def _share_words(force: Error) -> str:
@@ -200,7 +208,10 @@ def _rounding(drive: Error | None, exact: float) -> float:
 
 
 def worst_place(errors: Errors) -> Error | None:
-    """The largest total error of angle, displacement or position, as pure numbers."""
+    """The largest total error of angle, displacement or position, as pure numbers; where links
+    bend, that of the deflection against the exact chain."""
+    if errors.elastic is not None:
+        return next((w for name in ELASTIC if (w := _worst_of(errors.rows, [name]))), None)
     return _worst_of(errors.rows, PLACES)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Mapping
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
 from reports.judge.precision import IFTOMM, precision
-from reports.judge.tolerance import DEFAULTS, FORCES, FREE, Limit
+from reports.judge.tolerance import DEFAULTS, ELASTIC, FORCES, FREE, Limit
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -39,6 +39,10 @@ DRIVE_COLUMNS = frozenset(
 )
 FREE_COLUMNS = frozenset(name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("free"))
 """Those of cells that were driven, and those of cells that were let go."""
+ELASTIC_COLUMNS = frozenset(
+    name for name, quantity, *_ in ERROR_COLUMNS if quantity in named("elastic")
+)
+"""Those of cells whose links bend."""
 AS_THEY_ARE = ["quantity", "body_kind", "body", "source", "kind", "unit", "maximum", "rms", "final"]
 """The first columns of the frame of errors: what an error has of that name."""
 
@@ -80,12 +84,17 @@ def cell_row(checked: Checked) -> dict[str, object]:
     }
     errors = checked.errors.rows if checked.errors else ()
     free = checked.cell.drive == "free"
-    wanted: Collection[str] = FREE if free else DEFAULTS
+    bends = bool(checked.cell.scene.elastic)
+    wanted: Collection[str] = FREE if free else ELASTIC if bends else DEFAULTS
     if not checked.cell.with_forces:
         wanted = [name for name in wanted if name not in FORCES]
     others = DRIVE_COLUMNS if free else FREE_COLUMNS
     for name, *key in ERROR_COLUMNS:
-        if name in others or (name in FORCE_COLUMNS and not checked.cell.with_forces):
+        if (
+            name in others
+            or (name in ELASTIC_COLUMNS and not bends)
+            or (name in FORCE_COLUMNS and not checked.cell.with_forces)
+        ):
             continue
         worst = largest(e for e in errors if [e.quantity, e.body_kind, e.source, e.kind] == key)
         row[name] = worst.maximum if worst else None
@@ -100,6 +109,7 @@ def cell_row(checked: Checked) -> dict[str, object]:
     row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in placed))
     convergence = checked.convergence
     row |= free_row(checked) if free else {}
+    row |= elastic_row(checked) if bends else {}
     row |= {
         "trend": convergence.trend if convergence else None,
         "order": convergence.order if convergence else None,
@@ -127,6 +137,20 @@ def free_row(checked: Checked) -> dict[str, object]:
             for name, size in IFTOMM.items()
         },
         "horizon_limit_s": facts.judged_horizon_s(limit.number) if facts and limit else None,
+    }
+
+
+def elastic_row(checked: Checked) -> dict[str, object]:
+    """What a cell has besides whose links bend: as what they were given, and the parts of what the
+    deflection is off by, as shares of the largest."""
+    facts = checked.errors.elastic if checked.errors else None
+    return {
+        "segments": float(checked.cell.segments),
+        "springs": checked.cell.springs,
+        "frequency_ratio": facts.ratio if facts else None,
+        "chain_pure": facts.chain if facts else None,
+        "doubt_pure": facts.doubt if facts else None,
+        "linear_pure": facts.linear if facts else None,
     }
 
 

@@ -63,6 +63,7 @@ from dataclasses import dataclass
 
 from models.errors import CrankcheckError, suggestion
 from models.scene import Scene
+from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.errors import Errors
 from reports.judge.three_steps import AT_ROUNDING
 from reports.quantities import QUANTITIES, named
@@ -73,9 +74,16 @@ DEFAULTS: dict[str, Tolerance] = {
     tolerance_name(name, each.source): each.tolerance
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
-    if entry.role != "free"
+    if entry.role not in ("free", "elastic")
 }
 """Of a mechanism that is driven."""
+ELASTIC: dict[str, Tolerance] = DEFAULTS | {
+    tolerance_name(name, each.source): each.tolerance
+    for name, entry in QUANTITIES.items()
+    for each in entry.criteria
+    if entry.role == "elastic"
+}
+"""Of one whose links bend."""
 FREE: dict[str, Tolerance] = {
     tolerance_name(name, each.source): of_free
     for name, entry in QUANTITIES.items()
@@ -83,7 +91,7 @@ FREE: dict[str, Tolerance] = {
     if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
 }
 """Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
-EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE)))
+EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
 """All that there may be a limit of."""
 
 FORCES = frozenset(named("force"))
@@ -106,6 +114,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     shaken = tolerance.share * curvature + tolerance.load_share * errors.loading
     budget += shaken * step**tolerance.share_order
     budget += _felt(tolerance, errors)
+    if tolerance.bends and errors.elastic is not None:
+        budget = budget * errors.elastic.slender + _swung(step, errors.elastic)
     budget = min(float(budget), tolerance.cap)
     return float(budget + tolerance.floor + AT_ROUNDING / step**tolerance.differenced)
 
@@ -118,6 +128,24 @@ def _felt(tolerance: Tolerance, errors: Errors) -> float:
     worst, most = errors.worst("displacement"), default(WITHIN_A_STEP, errors)
     off = worst.pure if worst is not None and worst.pure <= most else most
     return slope * off / max(errors.conditioning, 1e-12)
+
+
+def _swung(step: float, elastic: ElasticFacts) -> float:
+    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase."""
+    return (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
+
+
+def _left(name: str, errors: Errors) -> float:
+    """What the exact chain of segments is off the beam by, and the beam itself, of a quantity."""
+    elastic = errors.elastic
+    if elastic is None or name == "segments":
+        return 0.0
+    own = elastic.apart.get(name.removesuffix("-differenced"), 0.0)
+    if elastic.estimated:
+        own *= 2.0
+    if name in FORCES:  # springs that are off push by as much more
+        return own + 0.5 * default(ELASTIC["segments"], errors)
+    return own + (elastic.doubt if name == "deflection" else 0.0)
 
 
 def passing(tolerance: Tolerance, errors: Errors) -> float:
@@ -136,6 +164,8 @@ class Limit:
 
 def numbers_for(errors: Errors) -> Mapping[str, Tolerance]:
     """The numbers of the default limits of a run."""
+    if errors.elastic is not None:
+        return ELASTIC
     return DEFAULTS if errors.free is None else FREE
 
 
@@ -150,7 +180,7 @@ def limits(
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
-            chosen[name] = Limit(default(tolerance, errors), "default")
+            chosen[name] = Limit(default(tolerance, errors) + _left(name, errors), "default")
     return chosen
 
 

@@ -31,6 +31,8 @@ class StudyChoice:
     free: bool = False
     dt_s: Sequence[float] = ()
     duration_s: float | None = None
+    segments: Sequence[int] = ()
+    springs: Sequence[str] = ()
 
 
 def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Study:
@@ -69,6 +71,8 @@ def chosen_study(study: Study, choice: StudyChoice, *, is_shipped: bool) -> Stud
         update={
             "variants": variants,
             "forces": study.forces or choice.forces,
+            "segments": list(choice.segments) or study.segments,
+            "springs": list(choice.springs) or study.springs,
             **(_free_lines(study, choice) if study.free or choice.free else _driven(study, choice)),
         }
     )

@@ -47,6 +47,11 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     from analytic.free.release import release  # slow to import, for free motion alone
 
     check_names(scene)
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
+            "give the driver a law, or leave [elastic] out"
+        )
     if scene.coulomb_joints:
         raise CrankcheckError(
             f"{scene.name}: friction that grows with what a joint bears "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
+from reports.plan.elastic import given_as, refuse_rigid, refuse_unelastic
 from reports.plan.forces import gives_forces, refuse_forceless
 from reports.plan.free import refuse_unreleased, scenes_of
 from reports.plan.key import cell_key, digest, line_key
@@ -65,6 +67,7 @@ def grid(study: Study) -> Grid:
     refuse_endless(study)
     scenes = scenes_of(study.scenes, free=study.free)
     texts = scene_texts(study.scenes)
+    refuse_rigid(scenes, study.segments or None, study.springs or None)
     variants = [one for variant in study.variants for one in variant.each()]
     versions = {
         name: engine(name).version() for name in chosen_engines([v.engine for v in variants])
@@ -75,7 +78,8 @@ def grid(study: Study) -> Grid:
     for scene in scenes:
         name = digest(texts[scene.name])
         steps = _steps(study, scene)
-        for variant, settings in complete:
+        given = given_as(scene, study)
+        for (variant, settings), bent in itertools.product(complete, given):
             for dt_s, count in steps:
                 cell = Cell(
                     scene=scene,
@@ -88,12 +92,16 @@ def grid(study: Study) -> Grid:
                     converge=False,
                     settings=variant.chosen,
                     with_forces=study.forces and gives_forces(variant.engine),
+                    segments=bent.segments,
+                    springs=bent.springs,
                 )
                 version = versions[variant.engine]
                 turns = cell.turns if study.free else study.turns
                 line = line_key(cell, turns, name, version, settings)
                 key = cell_key(line, cell)
-                tasks.setdefault(key, Task(cell, key, line, variant.name, version, name, settings))
+                tasks.setdefault(
+                    key, Task(cell, key, line, variant.name + bent.words, version, name, settings)
+                )
     return Grid(tuple(tasks.values()), texts)
 
 
@@ -105,6 +113,8 @@ def _steps(study: Study, scene: Scene) -> list[tuple[float, int]]:
         refuse_unreleased(scene, max(dt_s * count for dt_s, count in steps))
         return steps
     steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
+    for given in given_as(scene, study):
+        refuse_unelastic(scene, given.segments, given.springs)
     longest_s = max(dt_s * count for dt_s, count in steps)
     refuse_singular(scene, longest_s)
     if study.forces:
@@ -121,8 +131,9 @@ def refuse_endless(study: Study) -> None:
         {name: len(values) for name, values in variant.lists.items() if len(values) > 1}
         for variant in study.variants
     ]
+    bent = max(len(study.segments), 1) * max(len(study.springs), 1)
     numbers = [min(math.prod(each.values()), ENDLESS) for each in lists]
-    if (cells := scenes * sum(numbers) * steps) > MOST_CELLS:
+    if (cells := scenes * sum(numbers) * steps * bent) > MOST_CELLS:
         largest = lists[numbers.index(max(numbers))]
         several = few((f"{number} of {name}" for name, number in largest.items()), 6)
         raise CrankcheckError(

@@ -54,6 +54,7 @@ def line_key(
             *(["forces"] if cell.with_forces else ()),
             *(["loads"] if cell.scene.loads else ()),
             *(["friction"] if cell.scene.friction else ()),
+            *(["elastic", cell.segments, cell.springs] if cell.scene.elastic else ()),
         ]
     )
 

@@ -7,6 +7,9 @@
     turns = 2
     forces = false                     # reactions and torque too, of engines that report them
 
+    segments = [4, 8, 16, 32]          # of each elastic link; 16 if left out
+    springs = ["plain", "corrected"]   # between them; plain if left out
+
     # or, of mechanisms that are let go, in place of steps_per_turn and turns:
     free = true
     dt_s = [2e-3, 1e-3, 5e-4]
@@ -94,6 +97,8 @@ class Study(BaseModel):
     free: bool = False
     dt_s: list[float] = Field(default_factory=list)
     duration_s: float | None = None
+    segments: list[StrictInt] = Field(default_factory=list)
+    springs: list[Literal["plain", "corrected"]] = Field(default_factory=list)
 
     @property
     def steps(self) -> list[float]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from reports.quantities.elastic import DEFLECTION, EXTENSION, SEGMENTS
 from reports.quantities.forces import MOMENT, NORMAL, REACTION, TORQUE
 from reports.quantities.free import ENERGY, GEOMETRY, MOMENTUM, PHASE
 from reports.quantities.places import ANGLE, DISPLACEMENT, DRIVE, GAP, POSITION
@@ -19,6 +20,7 @@ QUANTITIES: dict[str, Quantity] = {
         *(DRIVE, ANGLE, DISPLACEMENT, POSITION, GAP, VELOCITY, ACCELERATION),
         *(REACTION, NORMAL, MOMENT, TORQUE),
         *(PHASE, GEOMETRY, ENERGY, MOMENTUM),
+        *(DEFLECTION, SEGMENTS, EXTENSION),
     )
 }
 

@@ -14,11 +14,11 @@ from sim.engine import Run
 
 BodyKind = Literal["driver", "link", "slider", "point", "mechanism"]
 Source = Literal["reported", "differenced"]
-Role = Literal["drive", "place", "closure", "derived", "force", "free"]
+Role = Literal["drive", "place", "closure", "derived", "force", "free", "elastic"]
 """Places are what convergence, geometric errors and differences are taken of. What is derived comes
 of them, and forces go with it: the first samples, and those near change points, are rows of their
 own. Forces are compared where they were asked for alone, and what is of role "free" where a
-mechanism was let go, which has no drive."""
+mechanism was let go, which has no drive; what is "elastic" where links bend."""
 Series = Mapping[str, Array]
 """A number (T,) or two (T, 2) per sample, by body."""
 
@@ -49,7 +49,7 @@ class Tolerance:
     """The numbers of a default limit, and why they are what they are; `reports.judge.tolerance` has
     the formula, `reports.judge.start_allowance` that of ``jump``, ``parts`` and ``makes_up``.
     ``lasting``, ``drifting``, ``opening``, ``arc`` and ``late`` are of free motion, which is ever
-    further off the longer it lasts."""
+    further off the longer it lasts; what ``bends`` is a share of the largest deflection."""
 
     reason: str
     cap: float = math.inf
@@ -73,6 +73,7 @@ class Tolerance:
     opening: float = 0.0
     arc: float = 0.0
     late: float = 0.0
+    bends: bool = False
 
 
 @dataclass(frozen=True)

@@ -46,6 +46,7 @@ TEXT = {
     "processor",
     "made",
     "precision",
+    "springs",
 }
 FLAGS = {"gated"}
 NESTED: Mapping[str, tuple[str, ...]] = {

@@ -95,7 +95,7 @@ def timed(cell: Cell, us_per_step: float) -> Repeats:
     """
     steps = int(np.clip(1e6 * REPEAT_S / max(us_per_step, 0.1), LEAST_TIMED, MOST_TIMED))
     found = time_run(
-        cell.scene,
+        cell.given,
         _start(cell),
         cell.engine,
         cell.profile,
@@ -112,6 +112,8 @@ def _start(cell: Cell) -> State:
     """What a cell starts from, without the truth of all of it. Raises CrankcheckError."""
     if cell.drive == "free":
         return released_state(cell.scene)
+    if cell.scene.elastic:
+        return cell.truth.start
     return solve(cell.scene, np.zeros(1)).state()
 
 

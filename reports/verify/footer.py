@@ -8,6 +8,7 @@ from rich.markup import escape
 
 from reports.compare.errors import largest
 from reports.judge.cell import Checked
+from reports.judge.rules.elastic import TruthEnds
 
 DRIVEN_SAID = (
     "Largest errors against the closed form at the commanded time; L longest link, w driver's peak "
@@ -18,6 +19,11 @@ FREE_SAID = (
     "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
     "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
     "when 1e-3 holds."
+)
+ELASTIC_SAID = (
+    "Elastic links: largest errors of the deflection over its largest, D; engine against the exact "
+    "chain of as many segments, engine against the beam with foreshortening, chain against the "
+    "beam; what the beam may be off by, and the linear theory, which is judged by nothing."
 )
 FORCES_SAID = (
     "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
@@ -31,6 +37,7 @@ def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     driven = [one for one in checked if one.cell.drive != "free"]
     lines = [
         *([DRIVEN_SAID] if driven else ()),
+        *_elastic_words(driven),
         *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
         *(_free_words(free) if free else ()),
         *_notes(checked),
@@ -53,6 +60,22 @@ def _driven_steps(driven: Sequence[Checked]) -> list[str]:
         + (f"largest drive error {drive.maximum:.1e} rad; " if drive else "")
         + "- not reported."
     ]
+
+
+def _elastic_words(driven: Sequence[Checked]) -> list[str]:
+    """What the numbers of elastic links are, as what these were given, and where the truth ends."""
+    bent = [one for one in driven if one.cell.scene.elastic]
+    given = dict.fromkeys(
+        f"{one.cell.segments} segments, {one.cell.springs} springs" for one in bent
+    )
+    ends = dict.fromkeys(
+        f"{one.cell.scene.name}, {one.cell.engine}: {found.text}."
+        for one in bent
+        if one.cell.gated
+        for found in one.findings
+        if found.rule == TruthEnds.id
+    )
+    return [*([f"{ELASTIC_SAID} Given as {'; '.join(given)}."] if bent else ()), *ends]
 
 
 def _free_words(free: Sequence[Checked]) -> list[str]:

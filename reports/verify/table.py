@@ -15,6 +15,7 @@ from reports.judge.rules.rule import Finding
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count
 from reports.quantities import QUANTITIES, named
+from reports.verify.elastic_table import elastic_table
 from reports.verify.footer import footer
 from reports.verify.free_table import free_table
 from reports.verify.row_cells import mark, row_cells
@@ -25,7 +26,7 @@ ANGLE, GAP, REACTION, TORQUE = (
 NUMBERS = {
     entry.head: [name for name, each in QUANTITIES.items() if each.head == entry.head]
     for entry in QUANTITIES.values()
-    if entry.head and entry.role not in ("force", "free")
+    if entry.head and entry.role not in ("force", "free", "elastic")
 }
 """The columns of numbers: head, and the quantities that it shows the worst of."""
 FORCE_NUMBERS = {QUANTITIES[name].head: [name] for name in named("force")}
@@ -40,10 +41,9 @@ def show(console: Console, checked: Sequence[Checked], facts: Mapping[str, str])
     _failures(console, failed)
     for profile, gated in dict.fromkeys((one.cell.profile, one.cell.gated) for one in checked):
         chosen = [one for one in checked if (one.cell.profile, one.cell.gated) == (profile, gated)]
-        for free in (False, True):
-            own = [one for one in chosen if (one.cell.drive == "free") == free]
+        for kind, shown in TABLES.items():
+            own = [one for one in chosen if _kind(one) == kind]
             if own:
-                shown = free_table if free else _table
                 console.print(shown(profile, gated, own, console.width), "")
         loaded = [one for one in chosen if one.cell.with_forces and one.errors]
         if loaded:
@@ -101,6 +101,17 @@ def _table(
         numbers = row_cells(one, heads, FORCE_NUMBERS if forces else NUMBERS, forces=forces)
         table.add_row(mark(one), *(["\n".join(names)] if stacked else names), *numbers)
     return table
+
+
+def _kind(one: Checked) -> str:
+    """The table that a cell stands in."""
+    if one.cell.drive == "free":
+        return "free"
+    return "elastic" if one.cell.scene.elastic else "driven"
+
+
+TABLES = {"driven": _table, "free": free_table, "elastic": elastic_table}
+"""By what the cells are of."""
 
 
 def _advice(console: Console, checked: Sequence[Checked]) -> None:

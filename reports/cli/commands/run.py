@@ -35,6 +35,8 @@ def run_run(request: RunRequest, console: Console) -> int:
         every=request.every,
         drive=request.drive,
         forces=request.forces,
+        segments=request.segments,
+        springs=request.springs,
     )
     if done.motion is None:
         raise CrankcheckError(f"{done.scene}, {done.engine}: {done.status}: {done.reason}")

@@ -12,6 +12,7 @@ from reports.cli.measuring import SweepRequest
 from reports.face.sweep_text import show_sweep
 from reports.plan.chosen import left_out_note
 from reports.plan.chosen_study import StudyChoice, chosen_study, refuse_other_engine, study_engines
+from reports.plan.elastic import chosen_segments, chosen_springs
 from reports.plan.forces import silent_note
 from reports.plan.study import Study, StudyValue, load_study
 from reports.sweep.whole import Manner, swept
@@ -59,6 +60,12 @@ def asked(request: SweepRequest) -> Study:
         request.free,
         _steps("--dt", request.dt_s, "2e-3,1e-3"),
         request.duration_s,
+        _segments(request.segments),
+        [
+            chosen_springs(text.strip())
+            for text in (request.springs or "").split(",")
+            if text.strip()
+        ],
     )
     return chosen_study(study, choice, is_shipped=request.study is None)
 
@@ -80,6 +87,16 @@ def _overrides(
         several: list[StudyValue] = [value.strip() for value in values.split(",")]
         overrides.setdefault(owner, {})[setting.strip()] = several
     return overrides
+
+
+def _segments(text: str | None) -> list[int]:
+    """`4,8,16` as whole numbers."""
+    try:
+        return [] if text is None else [chosen_segments(int(part)) for part in text.split(",")]
+    except ValueError:
+        raise CrankcheckError(
+            f"--segments {shown(text)}: write whole numbers with commas between, such as 4,8,16"
+        ) from None
 
 
 def _steps(option: str, text: str | None, such_as: str) -> list[float]:

@@ -31,6 +31,13 @@ from reports.plan.chosen import (
     left_out_note,
     refuse_unfollowed,
 )
+from reports.plan.elastic import (
+    chosen_segments,
+    chosen_springs,
+    held_steps,
+    refuse_rigid,
+    refuse_unelastic,
+)
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.free import (
     free_names,
@@ -109,6 +116,11 @@ def plan(request: VerifyRequest) -> list[Cell]:
     refuse_of_other_motion("--tol", tolerance, [scene.is_free for scene in scenes])
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
+    refuse_rigid(scenes, request.segments, request.springs)
+    segments, springs = (
+        chosen_segments(request.segments),
+        chosen_springs(request.springs or "plain"),
+    )
     steps = {scene.name: _steps(request, scene) for scene in scenes}
     return [
         Cell(
@@ -122,6 +134,8 @@ def plan(request: VerifyRequest) -> list[Cell]:
             tolerance=tolerance,
             converge=request.converge,
             with_forces=request.forces and (bool(request.engines) or gives_forces(name)),
+            segments=segments,
+            springs=springs,
         )
         for scene in scenes
         for dt_s, count in [steps[scene.name]]
@@ -167,11 +181,19 @@ def _steps(request: VerifyRequest, scene: Scene) -> tuple[float, int]:
         refuse_unreleased(scene, dt_s * count)
         return dt_s, count
     turns = TURNS if request.turns is None else request.turns
-    dt_s, count = counted(scene, request.dt_s, request.steps_per_turn, turns)
+    segments, springs = (
+        chosen_segments(request.segments),
+        chosen_springs(request.springs or "plain"),
+    )
+    per_turn = request.steps_per_turn
+    if scene.elastic and request.dt_s is None and per_turn is None:
+        per_turn = held_steps(scene, segments, springs)
+    dt_s, count = counted(scene, request.dt_s, per_turn, turns)
     refuse_singular(scene, dt_s * count)
     if request.forces:
         refuse_forceless(scene, dt_s * count)
     refuse_short_tables(scene, dt_s * count)
+    refuse_unelastic(scene, segments, springs)
     return dt_s, count
 
 

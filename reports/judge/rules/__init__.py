@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from reports.judge.rules.elastic import TruthEnds
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.log import AsAsked, LogComplete, Required, StatusOk, ValuesFinite
 from reports.judge.rules.own_impulses import NothingContradicts
@@ -30,9 +31,11 @@ _ALL: tuple[Rule, ...] = (
     PinsBalance(),
     ForcesShrink(),
     NothingContradicts(),
+    TruthEnds(),
 )
 RULES: dict[str, Rule] = {rule.id: rule for rule in _ALL}
 PLACES, RATES = ("CC103", "CC104", "CC105", "CC113"), ("CC106", "CC107", "CC108", "CC114", "CC116")
+ELASTIC = ("CC131", "CC132", "CC133")
 FORCES = ("CC120", "CC121", "CC122", "CC123")
 TUNABLE = ("CC101", "CC110", *PLACES)
 """Failures that come from what an engine is set to; those of rates and forces follow from them."""

@@ -8,7 +8,7 @@ import pytest
 from models.scene import Scene
 from reports.judge.cell import Cell, check, unfinished
 from reports.judge.frames import cell_frame, error_frame
-from reports.judge.rows import ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
+from reports.judge.rows import ELASTIC_COLUMNS, ERROR_COLUMNS, FORCE_COLUMNS, FREE_COLUMNS
 from reports.judge.tolerance import DEFAULTS, FORCES
 
 
@@ -30,7 +30,9 @@ def test_every_error_column_carries_its_unit(frame: pd.DataFrame) -> None:
     units = ("_rad", "_m", "_rad_s", "_m_s", "_rad_s2", "_m_s2", "_n", "_n_m", "_j", "_kg_m2_s")
     names = [name for name, *_ in ERROR_COLUMNS]
     assert all(name.endswith(units) for name in names)
-    assert set(names) - FORCE_COLUMNS - FREE_COLUMNS == set(names) & set(frame.columns)
+    assert set(names) - FORCE_COLUMNS - FREE_COLUMNS - ELASTIC_COLUMNS == set(names) & set(
+        frame.columns
+    )
     for name in [each for each in DEFAULTS if each not in FORCES]:
         assert f"{name.replace('-', '_')}_pure" in frame.columns
 

@@ -1,0 +1,127 @@
+"""The beam that engines are held to, and what it may be off by.
+
+It is described by sines across, with the shortening of a bent link. What it may be off by is seen
+from fewer sines, and from where exact chains of more and more segments go to, which know nothing of
+sines or of foreshortening: their distance to it falls as 1/n^2, up to what the beam neglects.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.stiffness import slowest_rad_s
+from models.array import Array
+from models.elastic import Shape
+from models.motion import Motion
+from models.scene import Scene
+from models.segmented import SegmentedScene
+from reports.compare.elastic.exact_chain import ExactChain
+from reports.quantities.elastic import largest_deflection
+
+PERIODIC, OTHER = Modes(7, 3), Modes(5, 2)
+"""Sines where the beam starts on its periodic motion, and where it is integrated, which takes
+twenty times as long."""
+FINE, COARSE, LEAST = 8, 4, 4
+"""Segments of the chains that say where more and more of them go to; and of the one that is
+integrated where the motion is not periodic: the fastest frequency grows with the square of their
+number, and the time with it."""
+LOOKS = 400
+"""Instants at which theories are compared with each other; none of them has a jump."""
+
+
+def shape_of(scene: Scene) -> Shape:
+    """How the elastic links of a scene start; with their quasi-static shape if it does not say."""
+    return scene.start.shape or "quasi-static"
+
+
+@dataclass(frozen=True)
+class BeamTheory:
+    """The links of a scene as beams with foreshortening, from time 0 to ``until_s`` [s]; what is
+    periodic goes on for ever."""
+
+    scene: Scene
+    until_s: float
+
+    @property
+    def shape(self) -> Shape:
+        return shape_of(self.scene)
+
+    @property
+    def is_periodic(self) -> bool:
+        return self.shape == "periodic"
+
+    @cached_property
+    def beam(self) -> DrivenElasticMotion:
+        return self._moved(PERIODIC if self.is_periodic else OTHER)
+
+    def _moved(self, by: Modes, *, stiffened: bool = True) -> DrivenElasticMotion:
+        return DrivenElasticMotion(self.scene, self.until_s, by, self.shape, stiffened)
+
+    @cached_property
+    def lowest_rad_s(self) -> float:
+        """The lowest angular frequency of the links."""
+        return slowest_rad_s(self.scene, OTHER)
+
+    @cached_property
+    def looks_s(self) -> Array:
+        """The instants at which theories are compared."""
+        return np.linspace(0.0, self.until_s, LOOKS)
+
+    @cached_property
+    def looked(self) -> Motion:
+        """The beam there."""
+        return self.beam.at(self.looks_s)
+
+    @cached_property
+    def largest_m(self) -> float:
+        """The largest deflection."""
+        return largest_deflection(self.scene, self.looked)
+
+    @cached_property
+    def linear_m(self) -> float:
+        """What the linear theory, without foreshortening, is off by."""
+        by = PERIODIC if self.is_periodic else OTHER
+        return deflections_apart(self._moved(by, stiffened=False).at(self.looks_s), self.looked)
+
+    @cached_property
+    def doubt_m(self) -> float:
+        """What the beam may be off by: what fewer sines are off it by and, where chains are soon
+        found, how far from it these go to."""
+        used = PERIODIC if self.is_periodic else OTHER
+        fewer = self._moved(Modes(used.across - 2, used.along - 1)).at(self.looks_s)
+        off = deflections_apart(fewer, self.looked)
+        chained = self.is_periodic and not any(e.stretches for e in self.scene.elastic.values())
+        return max(off, self._beside_chains()) if chained else off
+
+    def _beside_chains(self) -> float:
+        """How far from the beam two chains go to, without the part that falls as 1/n^2 [m]."""
+        fine, coarse = (self.chain(count).at(self.looks_s) for count in (FINE, COARSE))
+        gain = FINE**2 / (FINE**2 - COARSE**2)
+        return max(
+            float(np.abs(rough.middle + gain * (fine.elastic[name].middle - rough.middle)
+                         - self.looked.elastic[name].middle).max())
+            for name, rough in coarse.elastic.items()
+        )  # fmt: skip
+
+    def chain(self, count: int, *, corrected: bool = False) -> ExactChain:
+        """The exact chain of so many segments."""
+        return ExactChain(SegmentedScene(self.scene, count, corrected), self.until_s, self.shape)
+
+    @property
+    def cycles_per_s(self) -> float:
+        """How often the links swing, 0 where their motion is periodic."""
+        return 0.0 if self.is_periodic else self.lowest_rad_s / math.tau
+
+
+def deflections_apart(one: Motion, other: Motion) -> float:
+    """The largest difference of the deflections of two motions [m]."""
+    return max(
+        float(np.abs(one.elastic[name].middle - other.elastic[name].middle).max())
+        for name in other.elastic
+    )

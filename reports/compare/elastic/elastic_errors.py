@@ -1,0 +1,79 @@
+"""The errors of elastic links: beside the beam, beside the exact chain, and of that itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from models.motion import Motion
+from reports.compare.elastic.beam_theory import LEAST
+from reports.compare.elastic.elastic_beside import ElasticBeside
+from reports.compare.elastic.elastic_facts import ElasticFacts
+from reports.compare.error_rows import instants_of, whole_row
+from reports.compare.errors import Error, ErrorKind, Errors
+from reports.compare.series import length
+from reports.quantities import QUANTITIES, named
+
+BEAM, CHAIN = ("deflection", "extension"), ("segments",)
+"""What is held to the beam, and to the exact chain."""
+
+
+def with_elastic(errors: Errors, beside: ElasticBeside) -> Errors:
+    """The errors of a run with those of its elastic links, and what is known of these."""
+    facts = elastic_facts(beside)
+    return replace(errors, rows=(*errors.rows, *elastic_rows(beside)), elastic=facts)
+
+
+def elastic_rows(beside: ElasticBeside) -> list[Error]:
+    """Deflections and extensions, of kind "total" those of the run; of kind "chain" those of the
+    exact chain, beside the beam."""
+    at = instants_of(beside, beside.motion.time_s, beside.reference)
+    rows = [whole_row(track, at) for track in beside.tracks(BEAM, beside.reference)]
+    exact = beside.exact
+    if exact is not None:
+        rows += [whole_row(track, at) for track in beside.tracks(CHAIN, exact)]
+        rows += _theory_rows(beside, exact, "chain")
+    return rows
+
+
+def _theory_rows(beside: ElasticBeside, other: Motion, kind: ErrorKind) -> Iterator[Error]:
+    """Another theory's motion in place of the run."""
+    at = instants_of(beside, beside.motion.time_s, beside.reference)
+    theirs = replace(beside, run=replace(beside.run, motion=other), motion=other, _own={})
+    for track in theirs.tracks(BEAM, beside.reference):
+        yield whole_row(track, at, kind=kind)
+
+
+def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
+    """What is known beside the errors."""
+    truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
+    share = 1.0 if truth.is_exact else (LEAST / truth.chain.count) ** 2
+    apart = _apart_by_name(beside, truth.few.at(theory.looks_s), theory.looked)
+    return ElasticFacts(
+        segments=truth.chain.count,
+        springs="corrected" if truth.chain.corrected else "plain",
+        ratio=theory.lowest_rad_s / beside.scene.driver.law.peak_speed_rad_s,
+        cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
+        slender=beside.scene.longest_m / theory.largest_m,
+        doubt=theory.doubt_m / theory.largest_m,
+        linear=theory.linear_m / theory.largest_m,
+        apart={name: share * size for name, size in apart.items()},
+        estimated=not truth.is_exact,
+    )
+
+
+def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[str, float]:
+    """The largest difference of all that is compared, as pure numbers by quantity."""
+    found: dict[str, float] = {}
+    for name in named("place", "derived", "force", "elastic"):
+        for measure in QUANTITIES[name].measures:
+            ours, theirs = (measure.truth(beside.scene, each) for each in (beam, chain))
+            if name in CHAIN or not ours:
+                continue
+            scale = measure.scale(beside.scene, beam)
+            for body in ours.keys() & theirs.keys():
+                off = float(np.max(length(theirs[body] - ours[body]))) / scale
+                found[name] = max(found.get(name, 0.0), off)
+    return found

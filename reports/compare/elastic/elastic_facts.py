@@ -1,0 +1,34 @@
+"""What is known of a run of elastic links beside its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ElasticFacts:
+    """``segments`` were given for each link, with springs of a kind; ``ratio`` is their lowest
+    frequency over the driver's speed, and ``cycles`` how often they swing at it over the run, 0
+    where the motion is periodic. ``slender`` is the longest link over the largest deflection.
+
+    As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
+    what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
+    chain is from the beam, as a pure number by quantity; where the motion is not periodic it is
+    ``estimated`` from the chain of a few segments.
+    """
+
+    segments: int
+    springs: str
+    ratio: float
+    cycles: float
+    slender: float
+    doubt: float
+    linear: float
+    apart: Mapping[str, float] = field(default_factory=dict)
+    estimated: bool = False
+
+    @property
+    def chain(self) -> float:
+        """What so many segments leave of the deflection, as a share of the largest."""
+        return self.apart.get("deflection", 0.0)

@@ -1,0 +1,142 @@
+"""The truth of a scene with elastic links: the beam, and the exact chain that engines are given.
+
+An engine of rigid bodies is given each elastic link as a chain of segments. Its error is of two
+parts, which different things mend: the exact chain beside the beam (more segments), and the engine
+beside the exact chain (another step, other settings). Both truths have no engine in them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+
+from analytic.elastic.discretisation import Segments
+from analytic.elastic.segment_start import segment_start
+from analytic.elastic.stiffness import fastest_rad_s
+from analytic.kinematics import solve
+from models.array import Array
+from models.errors import CrankcheckError, EngineError
+from models.motion import Motion, State
+from models.scene import Same, Scene
+from models.segmented import SegmentedScene
+from reports.compare.beside import Beside, Truth
+from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
+from reports.compare.elastic.elastic_beside import ElasticBeside
+from reports.compare.elastic.exact_chain import ExactChain
+from reports.compare.elastic.folded_run import folded_run
+from sim.engine import Run
+
+STEADY = 1.5
+"""Of the step times the fastest frequency of the chain: explicit methods come apart from 2 on, or
+from 2.8."""
+
+
+def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
+    """The truth of a scene that is run until then [s], its elastic links in so many segments.
+
+    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches.
+    """
+    if shape_of(scene) == "periodic":  # however long a run is, the truth is one
+        until_s = scene.driver.law.period_s
+    return _truth(Same(scene), count, springs, until_s)
+
+
+@lru_cache(maxsize=4)
+def _truth(same: Same, count: int, springs: str, until_s: float) -> ElasticTruth:
+    try:
+        chain = SegmentedScene(same.scene, count, springs == "corrected")
+        assert chain.rigid  # made now, to be refused now
+    except CrankcheckError as error:
+        raise EngineError(str(error)) from None
+    return ElasticTruth(same.scene, chain=chain, theory=_theory(same, until_s))
+
+
+@lru_cache(maxsize=2)
+def _theory(same: Same, until_s: float) -> BeamTheory:
+    """One for every number of segments."""
+    return BeamTheory(same.scene, until_s)
+
+
+@dataclass(frozen=True)
+class ElasticTruth(Truth):
+    """The stiffened beam of ``theory`` as the reference; ``chain`` is what an engine is given."""
+
+    chain: SegmentedScene = field(kw_only=True)
+    theory: BeamTheory = field(kw_only=True)
+    _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def exact(self) -> ExactChain:
+        """The chain that is given, without an engine."""
+        return self.theory.chain(self.chain.count, corrected=self.chain.corrected)
+
+    @property
+    def given(self) -> Scene:
+        return self.chain.rigid
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the exact chain is soon found: its periodic motion is, while it takes minutes to
+        integrate one of many segments."""
+        return self.theory.is_periodic or self.chain.count <= LEAST
+
+    @cached_property
+    def few(self) -> ExactChain:
+        """The chain that is given, or one of few segments in its place."""
+        if self.is_exact:
+            return self.exact
+        return self.theory.chain(LEAST, corrected=self.chain.corrected)
+
+    @cached_property
+    def start(self) -> State:
+        """That of the chain."""
+        return segment_start(self.chain, self.theory.shape, self.exact.motion)
+
+    def look(self) -> None:
+        """Find the start of the beam. Raises CrankcheckError where there is none."""
+        assert self.theory.beam.first
+
+    @cached_property
+    def fastest_rad_s(self) -> float:
+        """The highest angular frequency of the chain."""
+        return fastest_rad_s(self.scene, Segments(self.chain.count, self.chain.corrected))
+
+    def _solved(self, time_s: Array) -> Motion:
+        rigid = solve(self.scene, time_s, links=(), points=(), sliders=(), bound=False)
+        motion = self.theory.beam.at(time_s)
+        return replace(motion, conditioning=rigid.conditioning, crossings=rigid.crossings)
+
+    def with_forces_at(self, time_s: Array) -> Motion:
+        return self.at(time_s)
+
+    def exact_at(self, time_s: Array) -> Motion:
+        """The exact chain; of the last instants that were asked for it is kept."""
+        instants = time_s.tobytes()
+        if instants not in self._chains:
+            motion = self.exact.at(time_s)
+            self._chains.clear()
+            self._chains[instants] = motion
+        return self._chains[instants]
+
+    def logged(self, run: Run) -> Run:
+        """A run of the chain as one of the scene; one that came apart says which step would do."""
+        done = folded_run(self.chain, run)
+        stiff = run.dt_s * self.fastest_rad_s
+        if done.status != "diverged" or stiff <= STEADY:
+            return done
+        needed = math.ceil(self.scene.driver.law.period_s * self.fastest_rad_s / STEADY)
+        return replace(
+            done,
+            reason=f"{done.reason}; the fastest frequency of {self.chain.count} segments is "
+            f"{self.fastest_rad_s:.4g} rad/s, times the step {stiff:.2g}, and explicit steps hold "
+            f"up to about {STEADY}: take {needed} steps a turn, or fewer segments",
+        )
+
+    def beside(self, run: Run) -> Beside | None:
+        """The run, with its elastic links as such, beside the beam; None where it logged
+        nothing."""
+        motion = run.motion
+        if motion is None or not motion.time_s.size:
+            return None
+        return ElasticBeside(self, run, motion, elastic=self)

@@ -1,0 +1,42 @@
+"""CC134: whether the engine, the segments or the truth is what an elastic link is off by."""
+
+from __future__ import annotations
+
+from reports.compare.errors import Errors
+from reports.judge.rules.rule import Evidence, Finding
+
+
+class TruthEnds:
+    id = "CC134"
+    title = "where the truth ends"
+    explanation = (
+        "What the deflection is off by is of three parts: the engine beside the exact chain of "
+        "segments, that chain beside the beam, and what the beam itself may be off by. Where one "
+        "of the last two is the largest, no engine and no step tells more."
+    )
+    cure = "More segments (--segments), or --springs corrected; a shorter step does not help."
+
+    def check(self, evidence: Evidence) -> Finding | None:
+        errors = evidence.errors
+        if errors is None or errors.elastic is None or evidence.status != "ok":
+            return None
+        elastic, own = errors.elastic, engine_share(errors)
+        parts = (
+            f"of the largest deflection the engine leaves {own:.1e}, {elastic.segments} segments "
+            f"{elastic.chain:.1e}{' (estimated)' if elastic.estimated else ''}, the beam's own "
+            f"doubt is {elastic.doubt:.1e}, and the linear theory is off by {elastic.linear:.1e}"
+        )
+        if own > max(elastic.chain, elastic.doubt):
+            return Finding(self.id, "pass", f"the engine is what is off: {parts}", own)
+        ends = "the segments end" if elastic.chain > elastic.doubt else "the truth ends"
+        return Finding(self.id, "pass", f"{ends} before the engine does: {parts}", own)
+
+
+def engine_share(errors: Errors) -> float:
+    """What the engine itself is off by, of the largest deflection: beside the exact chain, or what
+    is left of its error beside the beam."""
+    exact, beam = errors.worst("segments"), errors.worst("deflection")
+    if exact is not None:
+        return exact.pure
+    assert errors.elastic is not None
+    return max((beam.pure if beam else 0.0) - errors.elastic.chain, 0.0)
