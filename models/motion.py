@@ -143,6 +143,7 @@ class Motion:
             Bound.joined(bounds) if len(bounds) == whole else None,
             tuple(dict.fromkeys(one for part in parts for one in part.crossings)),
             Forces.joined(forces) if len(forces) == whole else None,
+            _joined([part.elastic for part in parts]),
         )
 
     def state(self, index: int = 0) -> State:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.elastic.bent import bent
 from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import bent, sampled
 from analytic.forces.kinetostatics import forces
 from analytic.kinematics import solve
 from models.array import Array
@@ -103,7 +103,7 @@ def elastic_course(motion: DrivenElasticMotion, time_s: Array) -> ElasticCourse:
     words += ["shortening left out"] * (not motion.stiffened)
     return ElasticCourse(
         scene,
-        motion.at(time_s),
+        sampled(motion, time_s),
         replace(rigid, forces=acting),
         bent(motion, time_s, SHARES),
         ", ".join(words),

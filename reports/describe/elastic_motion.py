@@ -48,8 +48,8 @@ def elastic_tables(course: ElasticCourse, width: int) -> list[Table]:
     and without."""
     bodies: list[tuple[str, Columns]] = []
     for name, shape in course.motion.elastic.items():
-        both = [("middle\nm", shape.middle), ("extension\nm", shape.extension)]
-        bodies.append((name, both))
+        bent = [("middle\nm", shape.middle)] * course.scene.elastic[name].bends
+        bodies.append((name, [*bent, ("extension\nm", shape.extension)]))
     for each in course.apart():
         columns = [("elastic", each.elastic), ("rigid", each.rigid), ("apart", each.difference)]
         bodies.append((each.name, [(f"{head}\n{each.unit}", series) for head, series in columns]))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import sampled
 from analytic.result import Selection
 from models.array import Array
 from models.errors import CrankcheckError
@@ -92,7 +93,7 @@ def elastic_solution(
             f"time_s: t = {float(np.min(time_s)):g} s, and {scene.name} starts at 0, "
             f"{vibration.start}; give times from there on, or --shape periodic"
         )
-    whole = vibration.at(time_s)
+    whole = sampled(vibration, time_s)
     motion = replace(
         whole,
         links={name: whole.links[name] for name in wanted.links},

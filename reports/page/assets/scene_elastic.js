@@ -16,7 +16,7 @@
         const middle = 1e3 * mechanism.between(rows[(rows.length - 1) / 2], position);
         return `${name} ${crankcheck.readable(middle)} mm`;
       });
-      told.textContent = `Deflection of the middle here: ${each.join("; ")}.`;
+      told.textContent = each.length ? `Deflection of the middle here: ${each.join("; ")}.` : "";
     },
   });
   stage.set(own.drawing);

@@ -106,8 +106,9 @@ def _moved(course: ElasticCourse) -> Array:
 
 
 def _bent(course: ElasticCourse) -> dict[str, object]:
-    """Elastic links by name: their pins, and deflections at equal parts between them."""
+    """Links that bend by name: their pins, and deflections at equal parts between them."""
     return {
         name: {"pins": list(line_of(course.scene, name).pins), "rows": packed(each[:, ::EVERY].T)}
         for name, each in course.bent.items()
+        if course.scene.elastic[name].bends
     }
