@@ -54,6 +54,11 @@ class Law(ABC):
     @abstractmethod
     def peak_speed_rad_s(self) -> float: ...
 
+    @property
+    def kinks_s(self) -> tuple[float, ...]:
+        """The instants [s] at which it is not smooth: it changes its formula."""
+        return ()
+
     def fastest_until(self, time_s: float) -> float:
         """The largest speed from the start to a time [rad/s]: the peak, where it stays."""
         return self.peak_speed_rad_s
@@ -164,6 +169,10 @@ class FromRest(_ToSpeed):
     def fastest_rad_s(self) -> float:
         return max(abs(self.speed_rad_s), math.tau / self.rise_s)
 
+    @property
+    def kinks_s(self) -> tuple[float, ...]:
+        return (self.rise_s,)
+
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         share, rate, second = _ramp(time_s, self.rise_s)
         speed = self.speed_rad_s
@@ -246,6 +255,10 @@ class SpeedChange(Law):
     @property
     def peak_speed_rad_s(self) -> float:
         return max(abs(self.before_rad_s), abs(self.after_rad_s))
+
+    @property
+    def kinks_s(self) -> tuple[float, ...]:
+        return (self.at_s, self.at_s + self.rise_s)
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         gain = self.after_rad_s - self.before_rad_s

@@ -61,7 +61,7 @@ class _Places:
 @dataclass(frozen=True)
 class _Spread:
     """The places of a link at coordinates, in the directions of its frame: ``along`` and ``across``
-    (T, K), and their derivatives by the coefficients (T, K, m + n)."""
+    (T, K), and their derivatives by the coefficients, (T, K, m + n) and (K, m + n)."""
 
     along: Array
     across: Array
@@ -88,7 +88,7 @@ class Beam:
         x, y = np.array(local).reshape(-1, 2).T
         self._marked = self._places(x, y)
         self._ahead = np.array([angle for _, angle in markers])
-        x, weights = places(shapes.breaks)
+        x, weights = places(shapes)
         self._within = self._places(x, np.zeros_like(x))
         self._mass = own.line.density_kg_m * weights
         self.stiffness = self._stiffness(x, weights)
@@ -115,32 +115,38 @@ class Beam:
             whole[m:, m:] = self.link.axial_n * (strained.T * weights) @ strained
         return whole
 
+    def _shortened(self, at: _Places, bent: Array) -> Array:
+        """S q at all places, (T, K, m)."""
+        count, m = len(at.x), self.shapes.across
+        flat = at.shortening.reshape(count * m, m)
+        return np.asarray((bent @ flat.T).reshape(len(bent), count, m))
+
     def _spread(self, at: _Places, q: Array) -> _Spread:
         """The places at coordinates (T, n)."""
         bent, drawn = q[:, self._bent], q[:, self._drawn]
-        short = np.einsum("kij,tj->tki", at.shortening, bent)  # S q
-        along = self._start_x + at.x + drawn @ at.extension.T
-        along -= 0.5 * np.einsum("tki,ti->tk", short, bent) + at.y * (bent @ at.slope.T)
         count, m = len(q), self.shapes.across
         along_by = np.empty((count, len(at.x), self.size - 3))
-        along_by[:, :, :m] = -short - at.y[:, None] * at.slope
         along_by[:, :, m:] = at.extension
-        across_by = np.zeros_like(along_by)
-        across_by[:, :, :m] = at.deflection
+        along = self._start_x + at.x + drawn @ at.extension.T - at.y * (bent @ at.slope.T)
+        along_by[:, :, :m] = -at.y[:, None] * at.slope
+        if self._stiffened and m:
+            short = self._shortened(at, bent)
+            along -= 0.5 * (short @ bent[:, :, None])[:, :, 0]
+            along_by[:, :, :m] -= short
+        across_by = np.zeros((len(at.x), self.size - 3))
+        across_by[:, :m] = at.deflection
         across = self._start_y + at.y + bent @ at.deflection.T
         return _Spread(along, across, along_by, across_by)
 
     def _drift(self, at: _Places, spread: _Spread, rates: Array) -> tuple[Array, Array]:
         """Accelerations along and across (T, K) where the q'' are 0."""
-        omega, bending = rates[:, 2:3], rates[:, self._bent]
-        along, across = (
-            np.einsum("tki,ti->tk", by, rates[:, 3:]) for by in (spread.along_by, spread.across_by)
-        )
-        gained = -np.einsum("kij,ti,tj->tk", at.shortening, bending, bending)
-        return (
-            gained - 2.0 * omega * across - omega**2 * spread.along,
-            2.0 * omega * along - omega**2 * spread.across,
-        )
+        omega, own, bending = rates[:, 2:3], rates[:, 3:], rates[:, self._bent]
+        along = (spread.along_by @ own[:, :, None])[:, :, 0]
+        across = own @ spread.across_by.T
+        gained = -2.0 * omega * across - omega**2 * spread.along
+        if self._stiffened and self.shapes.across:
+            gained -= (self._shortened(at, bending) @ bending[:, :, None])[:, :, 0]
+        return gained, 2.0 * omega * along - omega**2 * spread.across
 
     def _turned(self, q: Array) -> tuple[Array, Array]:
         """Cosine and sine of the line's angle, (T, 1)."""

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from analytic.elastic.beam import ElasticBody
 from analytic.elastic.elements import HermiteElements
 from analytic.elastic.modes import SineModes
+from analytic.elastic.polynomials import LegendrePolynomials
 from analytic.elastic.segments import SegmentedBody
+from analytic.elastic.shapes import Shapes
 from models.elastic import ElasticLink
 from models.elastic_line import line_of
 from models.scene import Scene
@@ -23,7 +25,19 @@ class Modes:
 
     @property
     def finer(self) -> Modes:
-        return Modes(self.across + 2, self.along + 1)
+        return Modes(2 * self.across + 1, 2 * self.along)
+
+
+@dataclass(frozen=True)
+class Polynomials:
+    """So many polynomials across, and along, each elastic link: what the reference takes."""
+
+    across: int = 8
+    along: int = 3
+
+    @property
+    def finer(self) -> Polynomials:
+        return Polynomials(self.across + 2, self.along + 1)
 
 
 @dataclass(frozen=True)
@@ -45,8 +59,16 @@ class Segments:
     count: int = 16
     corrected: bool = False
 
+    @property
+    def finer(self) -> Segments:
+        """As many: a chain is what it is."""
+        return self
 
-Discretisation = Modes | Elements | Segments
+
+Discretisation = Polynomials | Modes | Elements | Segments
+REFERENCE = Polynomials()
+"""Where none is asked for: good to 1e-9 of the largest deflection, and with its resonances where
+those of the beam are."""
 
 
 def flexible_links(
@@ -63,10 +85,9 @@ def _flexible(
     if isinstance(by, Segments):
         return SegmentedBody(link, line, by.count, by.corrected)
     if isinstance(by, Elements):
-        shapes: SineModes | HermiteElements = HermiteElements(
-            line.length_m, by.count, link.bends, link.stretches
-        )
+        shapes: Shapes = HermiteElements(line.length_m, by.count, link.bends, link.stretches)
     else:
         across, along = by.across if link.bends else 0, by.along if link.stretches else 0
-        shapes = SineModes(line.length_m, across, along)
+        kind = SineModes if isinstance(by, Modes) else LegendrePolynomials
+        shapes = kind(line.length_m, across, along)
     return ElasticBody(link, line, shapes, stiffened)

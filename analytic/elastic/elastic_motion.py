@@ -13,43 +13,49 @@ from functools import cached_property
 
 import numpy as np
 
+from analytic.elastic.coordinates import coordinates
 from analytic.elastic.discretisation import Discretisation, flexible_links
+from analytic.elastic.elastic_doubt import ElasticDoubt
 from analytic.elastic.periodic import PeriodicMotion, periodic_motion
-from analytic.elastic.reduced import Instant, ReducedForm, quasi_static
+from analytic.elastic.reduced import Instant, ReducedForm, quasi_static_start
 from analytic.elastic.vibration import VibrationHistory, vibrate
+from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.elastic import Shape
+from models.elastic_line import line_of
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
 from models.samples import samples
 from models.scene import Scene
 
-PER_CYCLE = 2.0
-"""Windows of the integration in the shortest period of its shapes."""
+PER_TURN, PER_CYCLE = 24, 6
+"""Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10
+nodes follow the third to 9 digits, and those above as far as their part in the motion needs."""
 
 
 @dataclass(frozen=True)
 class DrivenElasticMotion:
-    """A scene with elastic links, driven by its law from time 0 to ``until_s``."""
+    """A scene with elastic links, driven by its law from time 0 to ``until_s``; the windows of the
+    integration are ``halved`` so many times."""
 
     scene: Scene
     until_s: float
     by: Discretisation
     start: Shape
     stiffened: bool
+    halved: int = 0
 
     @cached_property
     def form(self) -> ReducedForm:
         """The equations of motion."""
         flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
         assembly = Assembly(self.scene, flexible)
-        return ReducedForm(
-            assembly, GeneralisedForces(assembly, np.zeros(assembly.size)), self.scene.driver.law
-        )
+        start = coordinates(assembly, solve(self.scene, np.zeros(1)))[0]
+        return ReducedForm(assembly, GeneralisedForces(assembly, start), self.scene.driver.law)
 
     @cached_property
     def _start(self) -> tuple[Array, Array]:
@@ -58,7 +64,7 @@ class DrivenElasticMotion:
         if self.start == "periodic":
             z, rates, _ = self._periodic.at(np.zeros(1))
             return z[0], rates[0]
-        return (still if self.start == "straight" else quasi_static(self.form, 0.0)), still
+        return (still, still) if self.start == "straight" else quasi_static_start(self.form)
 
     @cached_property
     def _periodic(self) -> PeriodicMotion:
@@ -69,7 +75,16 @@ class DrivenElasticMotion:
         """The coefficients of the shapes over time."""
         if self.start == "periodic":
             return self._periodic
-        return vibrate(self.form, *self._start, self.until_s, self._windows())
+        return vibrate(self.form, *self._start, self.until_s, self._windows(), self._kinks)
+
+    @property
+    def finer(self) -> DrivenElasticMotion:
+        """The motion by more shapes, and in windows half as long."""
+        return replace(self, by=self.by.finer, halved=self.halved + 1)
+
+    def doubt(self, time_s: Array) -> ElasticDoubt:
+        """How far the motion at times [s] is to be trusted."""
+        return ElasticDoubt.between(self.at(time_s), self.finer.at(time_s))
 
     @property
     def first(self) -> Instant:
@@ -78,11 +93,26 @@ class DrivenElasticMotion:
         zero = np.zeros(1)
         return self.form.at(zero, z[None], rates[None], self.form.near(zero))
 
+    @property
+    def _kinks(self) -> list[float]:
+        """The instants [s] at which the driver's law, or a load over time, is not smooth."""
+        kinks = list(self.scene.driver.law.kinks_s)
+        for load in self.scene.loads.values():
+            if load.over == "time":
+                kinks += load.characteristic.kinks_between(0.0, self.until_s)
+        return kinks
+
     def _windows(self) -> int:
-        """Of the integration."""
-        squares = np.linalg.eigvals(np.linalg.solve(self.first.mass[0], self.form.stiffness)).real
-        fastest = math.sqrt(float(squares.max()))
-        return max(8, math.ceil(self.until_s * PER_CYCLE * fastest / math.tau))
+        """Of the integration, before they are halved."""
+        slowest = 0.0
+        for name, link in self.scene.elastic.items():
+            line = line_of(self.scene, name)
+            if link.bends:
+                slowest = max(slowest, link.bending_rad_s(line.length_m, line.density_kg_m))
+        turns = self.until_s / self.scene.driver.law.period_s
+        cycles = self.until_s * slowest / math.tau
+        windows = math.ceil(max(2.0, PER_TURN * turns, PER_CYCLE * cycles))
+        return int(windows * 2**self.halved)
 
     def instant(self, time_s: Array) -> tuple[Instant, Array]:
         """The equations at times [s] (T,), and the second derivatives of the coefficients there."""

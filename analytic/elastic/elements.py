@@ -48,6 +48,11 @@ class HermiteElements:
     def breaks(self) -> Array:
         return np.linspace(0.0, self.length_m, self.count + 1)
 
+    @property
+    def nodes(self) -> int:
+        """Two slopes integrated are of degree 5, their squares of degree 10."""
+        return 6
+
     def deflections(self, x: Array, order: int) -> Array:
         if not self.bends:
             return np.zeros((len(x), 0))

@@ -25,7 +25,13 @@ class SineModes:
 
     @property
     def breaks(self) -> Array:
-        return np.linspace(0.0, self.length_m, max(self.across, self.along, 1) + 1)
+        return np.array([0.0, self.length_m])
+
+    @property
+    def nodes(self) -> int:
+        """Gauss' rule takes half a wave number over [-1, 1], and some: products of four have
+        2 pi times that of the highest mode."""
+        return 12 + math.ceil(1.1 * math.pi * max(self.across, self.along))
 
     def deflections(self, x: Array, order: int) -> Array:
         return self._sines(x, range(1, self.across + 1), 0.0, order)

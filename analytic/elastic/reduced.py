@@ -33,6 +33,10 @@ from models.laws import Law
 MOST_STEPS = 20
 CLOSED = 1e-13
 """A step of Newton's method, over the longest link or in radians, after which none is taken."""
+EARLY = 1e-3
+"""Of a turn: how far apart in time deflections are from which their rates are taken."""
+SMALL = 1e-6
+"""A deflection that derivatives are taken with, over the longest link."""
 
 
 @dataclass(frozen=True)
@@ -168,13 +172,35 @@ class ReducedForm:
 
 def quasi_static(form: ReducedForm, time_s: float) -> Array:
     """The coefficients (m,) with which the elastic links neither gain nor lose at an instant: what
-    they would have if they had no inertia of their own vibration."""
-    at, z = np.array([time_s]), np.zeros((1, form.size))
-    near = form.near(at)
+    they would have if they had no inertia of their own vibration.
+
+    Raises
+    ------
+    CrankcheckError
+        Links that give way: they are pushed harder than they bear.
+    """
+    m, unit = form.size, form.assembly.scene.longest_m
+    times, tried = np.full(m + 1, time_s), SMALL * unit * np.eye(m + 1, m, -1)
+    near, z, last = form.near(times), np.zeros(m), np.inf
     for _ in range(MOST_STEPS):
-        now = form.at(at, z, np.zeros_like(z), near)
-        step = np.linalg.solve(form.stiffness, now.force[0])
-        z = z + step
-        if np.abs(step).max() <= CLOSED * form.assembly.scene.longest_m:
-            break
-    return np.asarray(z[0])
+        force = form.at(times, z + tried, np.zeros_like(tried), near).force
+        step = np.linalg.solve((force[0] - force[1:]).T / (SMALL * unit), force[0])
+        z, size = z + step, float(np.abs(step).max())
+        largest = float(np.abs(z).max()) or 1.0
+        if size <= CLOSED * largest or (size < 1e-9 * largest and size >= 0.5 * last):
+            return np.asarray(z)
+        last = size
+    raise CrankcheckError(
+        f"{form.assembly.scene.name}: at {time_s:g} s its elastic links find no rest under what "
+        "bends them: they are pushed harder than they bear; make them stiffer, or drive slower"
+    )
+
+
+def quasi_static_start(form: ReducedForm) -> tuple[Array, Array]:
+    """The coefficients at time 0 with which the elastic links neither gain nor lose, and the rates
+    at which these change, (m,): by one-sided differences of order 4, as there may be no time
+    before."""
+    apart_s = EARLY * form.period_s
+    still = [quasi_static(form, k * apart_s) for k in range(5)]
+    weights = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / (12.0 * apart_s)
+    return still[0], np.asarray(weights @ np.array(still))

@@ -15,13 +15,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.multibody.body_set import Marker, Markers
 from models.array import Array
 from models.elastic import ElasticLink
 from models.elastic_line import Line
+from models.joints import turned
 from models.scene import Point
 from models.segmented import segment_spring
+
+Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -44,10 +48,14 @@ class SegmentedBody:
 
 
 class SegmentChain:
-    """One chain (`Body`)."""
+    """One chain (`Body`).
+
+    A place of it is a sum over the segments, each of which turns a part of the way: as complex
+    numbers o + sum_j P_j exp(i theta_j), with theta_j the angles of the segments.
+    """
 
     def __init__(self, own: SegmentedBody, markers: Sequence[Marker], gravity: Point) -> None:
-        self.own, self._gravity, self._lean = own, gravity, own.line.lean_rad
+        self.own, self._gravity, self._lean = own, complex(*gravity), own.line.lean_rad
         n = own.count
         self.size = n + 2
         self.length_m = own.line.length_m
@@ -55,92 +63,83 @@ class SegmentChain:
         self._piece = own.line.length_m / n
         self._turns = np.zeros((n, self.size))  # d angle of segment / d coordinates
         self._turns[:, 2:] = np.tril(np.ones((n, n)))
-        self._start = np.array(own.line.start)
-        before = np.tril(np.ones((n, n)), -1)
-        self._centres = self._piece * (before + 0.5 * np.eye(n))
+        # From the origin of the frame to A, as seen from the first segment.
+        self._start = complex(*turned(own.line.start, -self._lean))
+        centres = self._piece * (np.tril(np.ones((n, n)), -1) + 0.5 * np.eye(n)) + 0j
+        centres[:, 0] += self._start
         self._mass = own.line.density_kg_m * self._piece
+        self._first = self._mass * centres.sum(axis=0)
+        self._second = self._mass * centres.T.conj() @ centres
         self._inertia = self._mass * self._piece**2 / 12.0
-        self._ahead = np.array([angle for _, angle in markers])
-        self._on_link = np.array([place is not None for place, _ in markers], dtype=bool)
-        # Of each marker: how far along and across every segment it lies from A.
-        self._along, self._across = np.zeros((len(markers), n)), np.zeros((len(markers), n))
-        self._of = np.zeros(len(markers), dtype=int)
-        for k, (place, _) in enumerate(markers):
-            x, y = own.line.along(place or own.line.start)
-            i = min(max(int(x / self._piece + 1e-9), 0), n - 1)
-            self._of[k] = i
-            self._along[k, :i], self._along[k, i] = self._piece, x - i * self._piece
-            self._across[k, i] = y
+        self._mark(markers)
         self.stiffness = np.eye(n - 1) * own.spring_n_m_rad
         self.damping = own.link.damping_s * self.stiffness
 
-    def _directions(self, q: Array) -> tuple[Array, Array]:
-        """Along and across every segment, (T, n, 2)."""
-        angle = q @ self._turns.T + self._lean
-        along = np.stack([np.cos(angle), np.sin(angle)], axis=2)
-        return along, np.stack([-along[:, :, 1], along[:, :, 0]], axis=2)
+    def _mark(self, markers: Sequence[Marker]) -> None:
+        """P of each marker (K, n), the segment that it is on, and its angle ahead of that; the
+        frame itself has none."""
+        n = self.own.count
+        self._ahead = np.array([angle for _, angle in markers])
+        self._parts = np.zeros((len(markers), n), dtype=np.complex128)
+        self._of = np.zeros(len(markers), dtype=int)
+        for k, (place, _) in enumerate(markers):
+            if place is None:
+                continue
+            x, y = self.own.line.along(place)
+            i = min(max(int(x / self._piece + 1e-9), 0), n - 1)
+            self._of[k] = i
+            self._parts[k, :i], self._parts[k, i] = self._piece, complex(x - i * self._piece, y)
+            self._parts[k, 0] += self._start
 
-    def _placed(self, q: Array, along_by: Array, across_by: Array) -> tuple[Array, Array, Array]:
-        """Places (T, K, 2), their derivatives by the angles of segments (T, K, n, 2), and what
-        these make of squares of rates: minus the places from A by segment."""
-        along, across = self._directions(q)
-        by_segment = along_by[:, :, None] * along[:, None] + across_by[:, :, None] * across[:, None]
-        turned_by = along_by[:, :, None] * across[:, None] - across_by[:, :, None] * along[:, None]
-        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
-        a_x, a_y = self._start
-        base = q[:, :2] + np.stack([c * a_x - s * a_y, s * a_x + c * a_y], axis=1)
-        return base[:, None] + by_segment.sum(axis=2), turned_by, by_segment
-
-    def _arm(self, q: Array) -> Array:
-        """From A to the origin of the frame, (T, 2)."""
-        c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
-        a_x, a_y = self._start
-        return np.stack([c * a_x - s * a_y, s * a_x + c * a_y], axis=1)
-
-    def _moved(
-        self, q: Array, rates: Array, along_by: Array, across_by: Array
-    ) -> tuple[Array, Array, Array]:
-        """Places (T, K, 2), derivatives by the coordinates (T, K, 2, size), drift (T, K, 2)."""
-        place, turned_by, by_segment = self._placed(q, along_by, across_by)
-        gradient = np.einsum("tknx,ns->tkxs", turned_by, self._turns)
-        arm = self._arm(q)
-        gradient[:, :, 0, 0] = gradient[:, :, 1, 1] = 1.0
-        gradient[:, :, 0, 2] -= arm[:, None, 1]
-        gradient[:, :, 1, 2] += arm[:, None, 0]
-        square = (rates @ self._turns.T) ** 2
-        drift = -np.einsum("tknx,tn->tkx", by_segment, square)
-        drift -= (rates[:, 2] ** 2)[:, None, None] * arm[:, None]
-        return place, gradient, drift
+    def _directions(self, q: Array) -> Complexes:
+        """exp(i theta) of all segments, (T, n)."""
+        return np.asarray(np.exp(1j * (q @ self._turns.T + self._lean)))
 
     def mark(self, q: Array, rates: Array) -> Markers:
-        places, gradients, drifts = self._moved(q, rates, self._along, self._across)
+        way = self._parts * self._directions(q)[:, None]
         count, markers = len(q), len(self._of)
         place, drift = np.zeros((count, markers, 3)), np.zeros((count, markers, 3))
         gradient = np.zeros((count, markers, 3, self.size))
-        on = self._on_link
-        place[:, :, :2] = np.where(on[:, None], places, q[:, None, :2])
-        gradient[:, on, :2] = gradients[:, on]
-        gradient[:, ~on, 0, 0] = gradient[:, ~on, 1, 1] = 1.0
-        drift[:, on, :2] = drifts[:, on]
-        turn = np.where(on[:, None], self._turns[self._of], self._turns[0])
+        away, pulled = way.sum(axis=2), -(way * ((rates @ self._turns.T) ** 2)[:, None]).sum(axis=2)
+        place[:, :, 0], place[:, :, 1] = q[:, 0:1] + away.real, q[:, 1:2] + away.imag
+        drift[:, :, 0], drift[:, :, 1] = pulled.real, pulled.imag
+        # A coordinate turns its own segment and all after it.
+        after = np.cumsum(way[:, :, ::-1], axis=2)[:, :, ::-1]
+        gradient[:, :, 0, 0] = gradient[:, :, 1, 1] = 1.0
+        gradient[:, :, 0, 2:], gradient[:, :, 1, 2:] = -after.imag, after.real
+        turn = self._turns[self._of]
         place[:, :, 2] = q @ turn.T + self._ahead
         gradient[:, :, 2] = turn
         return Markers(place, gradient, drift)
 
     def weigh(self, q: Array, rates: Array) -> tuple[Array, Array]:
-        _, gradient, drift = self._moved(q, rates, self._centres, np.zeros_like(self._centres))
-        rows = gradient.reshape(len(q), -1, self.size)
-        matrix = self._mass * np.swapaxes(rows, 1, 2) @ rows
-        matrix += self._inertia * self._turns.T @ self._turns
-        felt = (np.array(self._gravity) - drift).reshape(len(q), -1, 1)
-        right = self._mass * (np.swapaxes(rows, 1, 2) @ felt)[:, :, 0]
+        direction, square = self._directions(q), (rates @ self._turns.T) ** 2
+        first = self._first * direction
+        second = direction.conj()[:, :, None] * self._second * direction[:, None]
+        count, n, mass = len(q), self.own.count, self._mass * self.own.count
+        # By the place of the frame and the angles of the segments.
+        matrix, right = np.zeros((count, n + 2, n + 2)), np.empty((count, n + 2))
+        matrix[:, 0, 0] = matrix[:, 1, 1] = mass
+        matrix[:, 0, 2:], matrix[:, 1, 2:] = -first.imag, first.real
+        matrix[:, 2:, 0], matrix[:, 2:, 1] = -first.imag, first.real
+        matrix[:, 2:, 2:] = second.real + self._inertia * np.eye(n)
+        pulled = mass * self._gravity + (first * square).sum(axis=1)
+        right[:, 0], right[:, 1] = pulled.real, pulled.imag
+        right[:, 2:] = (first.conj() * self._gravity).imag
+        right[:, 2:] += (second.imag @ square[:, :, None])[:, :, 0]
+        # By the coordinates.
+        turns = np.eye(n + 2)
+        turns[2:] = self._turns
+        matrix, right = turns.T @ (matrix @ turns), right @ turns
         right[:, 3:] -= q[:, 3:] @ self.stiffness + rates[:, 3:] @ self.damping
         return matrix, right
 
     def height_energy(self, q: Array) -> Array:
-        place, _, _ = self._placed(q, self._centres, np.zeros_like(self._centres))
+        mass, first = self._mass * self.own.count, self._directions(q) @ self._first
         strain = 0.5 * np.einsum("ti,ij,tj->t", q[:, 3:], self.stiffness, q[:, 3:])
-        return np.asarray(strain - self._mass * (place @ np.array(self._gravity)).sum(axis=1))
+        weighed = (mass * q[:, 0] + first.real) * self._gravity.real
+        weighed += (mass * q[:, 1] + first.imag) * self._gravity.imag
+        return np.asarray(strain - weighed)
 
     def lost(self, rates: Array) -> Array:
         own = rates[:, 3:]
@@ -148,24 +147,21 @@ class SegmentChain:
 
     def deflections(self, q: Array, x: Array) -> Array:
         """As those of `Beam`, with straight segments."""
-        nodes, line = self._from_line(q)
-        far = np.hypot(line[:, 0], line[:, 1])[:, None]
-        across = np.stack([-line[:, 1], line[:, 0]], axis=1) / far
-        away = np.einsum("tkx,tx->tk", nodes, across)
+        nodes = self._from_start(q)
+        line = nodes[:, -1:]
+        away = (nodes * line.conj()).imag / np.abs(line)
         at = np.clip((x / self._piece).astype(int), 0, self.own.count - 1)
         share = x / self._piece - at
         return np.asarray((1.0 - share) * away[:, at] + share * away[:, at + 1])
 
     def extension(self, q: Array) -> Array:
-        _, line = self._from_line(q)
-        return np.asarray(np.hypot(line[:, 0], line[:, 1]) - self.own.line.length_m)
+        return np.asarray(np.abs(self._from_start(q)[:, -1]) - self.own.line.length_m)
 
-    def _from_line(self, q: Array) -> tuple[Array, Array]:
-        """From A to the ends of all segments (T, n + 1, 2), and to B (T, 2)."""
-        along, _ = self._directions(q)
-        nodes = np.zeros((len(q), self.own.count + 1, 2))
-        nodes[:, 1:] = np.cumsum(self._piece * along, axis=1)
-        return nodes, nodes[:, -1]
+    def _from_start(self, q: Array) -> Complexes:
+        """From A to the ends of all segments, (T, n + 1)."""
+        nodes = np.zeros((len(q), self.own.count + 1), dtype=np.complex128)
+        nodes[:, 1:] = np.cumsum(self._piece * self._directions(q), axis=1)
+        return nodes
 
     def segment_angles(self, q: Array) -> Array:
         """Of coordinates (size,) the angles of all segments in the frame of the ground, or of rates

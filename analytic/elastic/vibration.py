@@ -1,18 +1,22 @@
 """Elastic links over time, driven by a law: Gauss' collocation on the reduced form.
 
 The method is implicit, of order 2 s for s nodes, stable at every step, and keeps the energy of what
-is not damped. At the nodes of a window of time the equations are met by Newton's method, with the
-derivatives of the elastic forces, which are what is stiff.
+is not damped: shapes whose cycles are shorter than its windows ring on at the wrong frequency, and
+do no harm where they are hardly excited. Some windows are solved for at once by Newton's method,
+with derivatives of the equations taken at a few instants of them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from analytic.elastic.reduced import ReducedForm
+from analytic.elastic.tangent import Tangent, tangent
 from analytic.free.gauss import gauss
 from models.array import Array
 from models.errors import CrankcheckError
@@ -22,32 +26,38 @@ RULE = gauss(NODES)
 TWICE, END_TWICE = RULE.once @ RULE.once, RULE.end_once @ RULE.once
 """Rates are integrated as accelerations are, from their values at the nodes; integrated as the
 polynomials that they are, the method would not be stable."""
-MOST_ROUNDS = 40
+BLOCK = 16
+"""Windows that are solved for at once."""
+MOST_ROUNDS, MOST_TANGENTS = 40, 6
 CLOSE = 1e-13
 """What a round may change accelerations by, over the largest."""
+SLOW = 0.3
+"""What a round may leave of the one before it until the derivatives are taken anew."""
 
 
 @dataclass(frozen=True)
 class VibrationHistory:
-    """W windows of one length [s] from time 0 on: coefficients and rates at their beginnings,
+    """W windows between ``edges_s`` [s] (W + 1,): coefficients and rates at their beginnings,
     (W, m), and those of Legendre's polynomials that their second derivatives are, (W, NODES, m)."""
 
-    step_s: float
+    edges_s: Array
     z: Array
     rates: Array
     series: Array
 
     def at(self, time_s: Array) -> tuple[Array, Array, Array]:
         """The coefficients, their rates and second derivatives at times [s], (T, m) each."""
-        window = np.clip((time_s / self.step_s).astype(int), 0, len(self.z) - 1)
-        share, series = time_s / self.step_s - window, self.series[window]
+        found = np.searchsorted(self.edges_s, time_s, side="right") - 1
+        window = np.clip(found, 0, len(self.z) - 1)
+        begin, h = self.edges_s[window], np.diff(self.edges_s)[window]
+        share, series = (time_s - begin) / h, self.series[window]
         second, first, zeroth = (
             np.einsum(
                 "tk,tkm->tm", legendre.legvander(2.0 * share - 1.0, NODES - 1 + k) @ lift, series
             )
             for k, lift in enumerate((np.eye(NODES), RULE.lift_once, RULE.lift_twice))
         )
-        h, rates = self.step_s, self.rates[window]
+        h, rates = h[:, None], self.rates[window]
         return (
             self.z[window] + h * share[:, None] * rates + h * h * zeroth,
             rates + h * first,
@@ -56,56 +66,152 @@ class VibrationHistory:
 
 
 def vibrate(
-    form: ReducedForm, z: Array, rates: Array, until_s: float, windows: int
+    form: ReducedForm,
+    z: Array,
+    rates: Array,
+    until_s: float,
+    windows: int,
+    kinks_s: Sequence[float] = (),
 ) -> VibrationHistory:
-    """The motion from coefficients and rates (m,) at time 0, in so many windows of time.
+    """The motion from coefficients and rates (m,) at time 0, in so many windows of time, or a few
+    more: some end at ``kinks_s``, where the equations are not smooth.
 
     Raises
     ------
     CrankcheckError
         A window in which the equations are not met; links that bend too far.
     """
-    h = until_s / windows
-    kept_z, kept_rates, kept_series = [], [], []
-    seconds = np.zeros((NODES, form.size))
-    for k in range(windows):
-        seconds = _met(form, k * h, h, z, rates, seconds)
-        kept_z.append(z)
-        kept_rates.append(rates)
-        kept_series.append(RULE.series @ seconds)
-        z = z + h * rates + h * h * END_TWICE @ seconds
-        rates = rates + h * RULE.end_once @ seconds
-    return VibrationHistory(h, np.array(kept_z), np.array(kept_rates), np.array(kept_series))
-
-
-def _met(
-    form: ReducedForm, begin_s: float, h: float, z: Array, rates: Array, guess: Array
-) -> Array:
-    """The second derivatives at the nodes of a window, (NODES, m)."""
-    m, times = form.size, begin_s + h * RULE.places
-    near, drift = form.near(times), z + h * RULE.places[:, None] * rates
-    seconds, inverse, last = guess, None, np.inf
-    for _ in range(MOST_ROUNDS):
-        now = form.at(times, drift + h * h * TWICE @ seconds, rates + h * RULE.once @ seconds, near)
-        if inverse is None:
-            inverse = np.linalg.inv(_newton(form, now.mass, h))
-        step = inverse @ (now.seconds - seconds).ravel()
-        seconds = seconds + step.reshape(NODES, m)
-        size = float(np.abs(step).max()) / (float(np.abs(seconds).max()) or 1.0)
-        if size <= CLOSE or (size < 1e-9 and size >= 0.5 * last):
-            return seconds
-        last = size
-    raise CrankcheckError(
-        f"{form.assembly.scene.name}: at {begin_s:g} s the equations of its elastic links are not "
-        f"met in a window of {h:g} s; take shorter ones"
+    edges = _edges(until_s, windows, kinks_s)
+    kept: list[_Block] = []
+    done, most = 0, BLOCK
+    while done < len(edges) - 1:
+        block = _Block.solved(form, edges[done : done + most + 1], z, rates)
+        if block is None:
+            if most == 1:
+                raise CrankcheckError(
+                    f"{form.assembly.scene.name}: at {edges[done]:g} s the equations of its "
+                    f"elastic links are not met in a window of {edges[done + 1] - edges[done]:g} "
+                    "s; take shorter ones"
+                )
+            most = max(1, most // 4)
+            continue
+        kept.append(block)
+        done += len(block.seconds)
+        most = min(BLOCK, 2 * most)
+        z, rates = block.z[-1], block.rates[-1]
+    return VibrationHistory(
+        edges,
+        np.concatenate([block.z[:-1] for block in kept]),
+        np.concatenate([block.rates[:-1] for block in kept]),
+        np.concatenate([RULE.series @ block.seconds for block in kept]),
     )
 
 
-def _newton(form: ReducedForm, mass: Array, h: float) -> Array:
-    """1 + h^2 M^-1 K A^2 + h M^-1 C A of all nodes, (NODES m, NODES m)."""
-    soft = np.linalg.solve(mass, np.broadcast_to(form.stiffness, mass.shape))
-    lossy = np.linalg.solve(mass, np.broadcast_to(form.damping, mass.shape))
-    whole = h * h * np.einsum("ij,iab->iajb", TWICE, soft)
-    whole += h * np.einsum("ij,iab->iajb", RULE.once, lossy)
-    size = NODES * form.size
-    return np.asarray(np.eye(size) + whole.reshape(size, size))
+def _edges(until_s: float, windows: int, kinks_s: Sequence[float]) -> Array:
+    """The ends of all windows, (W + 1,)."""
+    ends = [0.0, *sorted({kink for kink in kinks_s if 0.0 < kink < until_s}), until_s]
+    longest = until_s / windows
+    pieces = [
+        np.linspace(begin, end, max(1, int(np.ceil((end - begin) / longest - 1e-9))) + 1)[:-1]
+        for begin, end in pairwise(ends)
+    ]
+    return np.array([*np.concatenate(pieces), until_s])
+
+
+@dataclass(frozen=True)
+class _Block:
+    """W windows: coefficients and rates at their beginnings and at the end of the last, (W + 1, m),
+    and second derivatives at their nodes, (W, NODES, m)."""
+
+    z: Array
+    rates: Array
+    seconds: Array
+
+    @staticmethod
+    def along(h: Array, z: Array, rates: Array, seconds: Array) -> _Block:
+        """From coefficients and rates (m,) at the beginning, and second derivatives."""
+        gained = h[:, None] * np.tensordot(seconds, RULE.end_once, (1, 0))
+        every = rates + np.concatenate([np.zeros_like(gained[:1]), np.cumsum(gained, axis=0)])
+        moved = h[:, None] * every[:-1]
+        moved += (h**2)[:, None] * np.tensordot(seconds, END_TWICE, (1, 0))
+        places = z + np.concatenate([np.zeros_like(moved[:1]), np.cumsum(moved, axis=0)])
+        return _Block(places, every, seconds)
+
+    def nodes(self, h: Array) -> tuple[Array, Array]:
+        """Coefficients and rates at the nodes, (W, NODES, m)."""
+        step = h[:, None, None]
+        rates = self.rates[:-1, None] + step * (RULE.once @ self.seconds)
+        z = self.z[:-1, None] + step * RULE.places[:, None] * self.rates[:-1, None]
+        return z + step**2 * (TWICE @ self.seconds), rates
+
+    @staticmethod
+    def solved(form: ReducedForm, edges: Array, z: Array, rates: Array) -> _Block | None:
+        """The windows between edges (W + 1,), or None where Newton's method does not come to an
+        end."""
+        h, m = np.diff(edges), form.size
+        times = (edges[:-1, None] + h[:, None] * RULE.places).ravel()
+        near, shape = form.near(times), (len(h), NODES, m)
+        # The first guess holds still; the rates at the beginning are part of the first step.
+        still = np.zeros(shape)
+        at, block, owed = (still + z, still), _Block.along(h, z, 0.0 * rates, still), rates
+        sweep, last, tangents = None, np.inf, 0
+        for _ in range(MOST_ROUNDS):
+            try:
+                now = form.at(times, at[0].reshape(-1, m), at[1].reshape(-1, m), near)
+                if sweep is None:
+                    tangents += 1
+                    sweep = _Sweep.over(h, tangent(form, edges, block.z, block.rates))
+            except CrankcheckError:
+                return None  # thrown too far
+            left = now.force.reshape(shape) - (now.mass @ block.seconds.reshape(-1, m, 1)).reshape(
+                shape
+            )
+            step = sweep.step(left, owed)
+            block, owed = _Block.along(h, z, rates, block.seconds + step), 0.0 * rates
+            at = block.nodes(h)
+            size = float(np.abs(step).max()) / (float(np.abs(block.seconds).max()) or 1.0)
+            if size <= CLOSE or (size < 1e-9 and size >= 0.5 * last):
+                return block
+            if not np.isfinite(size) or (tangents == MOST_TANGENTS and size > last):
+                return None
+            if size > SLOW * last and size > 1e-9:
+                sweep = None
+            last = size
+        return None
+
+
+@dataclass(frozen=True)
+class _Sweep:
+    """The linear equations of W windows: inverses (W, NODES m, NODES m) of M + h C A + h^2 K A^2,
+    and C and K at the nodes."""
+
+    h: Array
+    damping: Array
+    stiffness: Array
+    inverse: Array
+
+    @staticmethod
+    def over(h: Array, own: Tangent) -> _Sweep:
+        mass, damping, stiffness = (
+            own.at_shares(RULE.places, matrix) for matrix in (own.mass, own.damping, own.stiffness)
+        )
+        step = h[:, None, None, None, None]
+        whole = step * np.einsum("ij,wiab->wiajb", RULE.once, damping)
+        whole += step**2 * np.einsum("ij,wiab->wiajb", TWICE, stiffness)
+        whole[:, range(NODES), :, range(NODES)] += np.swapaxes(mass, 0, 1)
+        size = NODES * mass.shape[-1]
+        return _Sweep(h, damping, stiffness, np.linalg.inv(whole.reshape(-1, size, size)))
+
+    def step(self, left: Array, rates: Array) -> Array:
+        """What second derivatives (W, NODES, m) change by where the equations leave that much,
+        from no change of the coefficients and one of the rates (m,) on."""
+        shape, changed = left.shape[1:], np.empty_like(left)
+        z = np.zeros_like(rates)
+        for w, h in enumerate(self.h):
+            moved = z + h * RULE.places[:, None] * rates
+            right = left[w] - self.damping[w] @ rates
+            right -= (self.stiffness[w] @ moved[:, :, None])[:, :, 0]
+            own = changed[w] = (self.inverse[w] @ right.ravel()).reshape(shape)
+            z = z + h * rates + h * h * END_TWICE @ own
+            rates = rates + h * RULE.end_once @ own
+        return changed

@@ -1,0 +1,139 @@
+"""Driven mechanisms with elastic links: the rigid limit, and how far the reference is trusted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.elastic.discretisation import (
+    REFERENCE,
+    Discretisation,
+    Elements,
+    Modes,
+    Polynomials,
+    Segments,
+)
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.elastic import Shape
+from models.files import load_scene
+from models.motion import Motion
+from models.scene import Scene
+from tests.analytic.elastic.driven import SHIPPED, fourbar, with_elastic
+
+BETWEEN = 2.0
+"""By what an estimated error may fall short of the true one."""
+
+
+def driven(
+    scene: Scene, by: Discretisation = REFERENCE, start: Shape = "periodic", halved: int = 0
+) -> DrivenElasticMotion:
+    return DrivenElasticMotion(scene, scene.driver.law.period_s, by, start, True, halved)
+
+
+def times(scene: Scene) -> np.ndarray:
+    return np.linspace(0.0, scene.driver.law.period_s, 37)
+
+
+def off(one: Motion, other: Motion) -> dict[str, float]:
+    """The largest differences of two motions."""
+    assert one.forces is not None
+    assert other.forces is not None
+    found = {"torque": np.abs(one.forces.torque - other.forces.torque).max()}
+    for name, own in one.elastic.items():
+        found[f"middle {name}"] = np.abs(own.middle - other.elastic[name].middle).max()
+        found[f"extension {name}"] = np.abs(own.extension - other.elastic[name].extension).max()
+    for name, link in one.links.items():
+        found[f"theta {name}"] = np.abs(link.theta - other.links[name].theta).max()
+    return found
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
+    scene = load_scene(name)
+    motion, time_s = driven(scene), times(scene)
+    doubt, own = motion.doubt(time_s), motion.at(time_s)
+    for link, middle in doubt.middle_m.items():
+        assert middle < 1e-8 * np.abs(own.elastic[link].middle).max()
+    assert own.forces is not None
+    assert doubt.torque_n_m < 1e-8 * np.abs(own.forces.torque).max()
+
+
+@pytest.mark.parametrize(
+    ("by", "start"),
+    [
+        (Polynomials(3, 1), "periodic"),
+        (Polynomials(4, 2), "quasi-static"),
+        (Modes(3, 2), "periodic"),
+        (Elements(1), "periodic"),
+        (Elements(2), "periodic"),
+    ],
+)
+def test_the_estimated_error_is_not_under_the_true_one(by: Discretisation, start: Shape) -> None:
+    scene = fourbar(axial_n=3e5)
+    time_s = times(scene) if start == "periodic" else np.linspace(0.0, 0.2, 17)
+    motion = replace(driven(scene, by, start), until_s=time_s[-1])
+    best = replace(motion, by=Polynomials(10, 6), halved=3)
+    true = off(motion.at(time_s), best.at(time_s))
+    doubt = motion.doubt(time_s)
+    assert doubt.torque_n_m * BETWEEN >= true["torque"]
+    assert doubt.middle_m["coupler"] * BETWEEN >= true["middle coupler"]
+    assert doubt.extension_m["coupler"] * BETWEEN >= true["extension coupler"]
+    for link, theta in doubt.theta_rad.items():
+        assert theta * BETWEEN >= true[f"theta {link}"] - 1e-15
+
+
+def test_of_a_chain_the_windows_alone_are_in_doubt() -> None:
+    motion = driven(fourbar(), Segments(6), "quasi-static")
+    doubt = motion.doubt(np.linspace(0.0, 0.2, 9))
+    assert 0.0 < doubt.middle_m["coupler"] < 1e-8
+
+
+@pytest.mark.parametrize("bends", [True, False])
+def test_a_stiff_link_comes_to_the_rigid_one_as_one_over_its_modulus(bends: bool) -> None:
+    """A link that bends turns the others in the second order only, by its shortening."""
+    soft = fourbar(axial_n=float("inf") if bends else 6.3e6)
+    own, time_s = soft.elastic["coupler"], times(soft)
+    flexural = own.flexural_n_m2 if bends else float("inf")
+    rigid, rigid_forces = solve(soft, time_s), forces(soft, time_s)
+    errors = []
+    for stiffer in (5.0, 10.0, 20.0):
+        axial = stiffer * own.axial_n
+        scene = with_elastic(soft, flexural_n_m2=stiffer * flexural, axial_n=axial)
+        motion = driven(scene, Polynomials(4, 2)).at(time_s)
+        assert motion.forces is not None
+        shape = motion.elastic["coupler"]
+        turned = motion.links["rocker"].theta - rigid.links["rocker"].theta
+        torque = np.abs(motion.forces.torque - rigid_forces.torque).max()
+        errors.append([np.abs(shape.middle if bends else turned).max(), torque])
+    ratios = np.divide(errors[:-1], errors[1:])
+    assert ratios == pytest.approx(2.0, rel=5e-3)
+
+
+def test_elements_come_to_the_polynomials_with_order_4() -> None:
+    scene = fourbar()
+    time_s, counts = times(scene), np.array([2, 4, 8])
+    true = driven(scene).at(time_s)
+    errors = [
+        off(driven(scene, Elements(int(count))).at(time_s), true)["middle coupler"]
+        for count in counts
+    ]
+    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert order > 3.7
+
+
+def test_chains_come_to_the_beam_with_order_2() -> None:
+    scene = fourbar()
+    time_s, counts = times(scene), np.array([4, 8, 16])
+    true = driven(scene).at(time_s)
+    largest = np.abs(true.elastic["coupler"].middle).max()
+    errors = [
+        off(driven(scene, Segments(int(count))).at(time_s), true)["middle coupler"] / largest
+        for count in counts
+    ]
+    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert order == pytest.approx(2.0, abs=0.1)
+    assert errors[-1] == pytest.approx(0.8 / 16**2, rel=0.05)
