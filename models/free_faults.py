@@ -21,6 +21,11 @@ def faults_of_free_motion(scene: Scene) -> Iterator[str]:
         if replace(scene.start, shape=None):
             yield 'start: it goes with law = "free"; a driven mechanism starts as its law has it'
         return
+    if scene.start.shape == "periodic":
+        yield (
+            'start.shape: found "periodic" with law = "free", which comes back after no period '
+            'that is known before; give "quasi-static" or "straight"'
+        )
     yield from _of_driver(scene, law)
     for joint in scene.coulomb_joints:
         yield (

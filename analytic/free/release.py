@@ -65,6 +65,11 @@ def _released(same: Same, until_s: float) -> FreeMotion:
     """The motion of a scene, kept with what was worked out of it."""
     scene = same.scene
     law = scene.driver.law
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {', '.join(scene.elastic)} bends or stretches, and would be taken as "
+            "rigid here; let it go by analytic.elastic.released, or take [elastic] out"
+        )
     if not isinstance(law, Released):
         raise CrankcheckError(f'{scene.name}: its driver follows a law; give it law = "free"')
     try:

@@ -7,7 +7,7 @@ import numpy as np
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.configuration import Configuration
 from models.array import Array
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
 
 
 def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Array) -> Motion:
@@ -28,7 +28,18 @@ def as_motion(assembly: Assembly, time_s: Array, now: Configuration, seconds: Ar
         for point, (_, marker) in assembly.carriers.items()
     }
     sliders = {name: _slider(assembly, name, now, gained) for name in scene.sliders}
-    return Motion(time_s, links, points, sliders)
+    return Motion(time_s, links, points, sliders, elastic=_shapes(assembly, now.q))
+
+
+def _shapes(assembly: Assembly, q: Array) -> dict[str, ElasticMotion]:
+    """How elastic links are bent and stretched at coordinates (T, n)."""
+    return {
+        name: ElasticMotion(
+            body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
+            body.extension(q[:, own]),
+        )
+        for name, (body, own) in assembly.elastic.items()
+    }
 
 
 def _slider(assembly: Assembly, name: str, now: Configuration, gained: Array) -> SliderMotion:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analytic.multibody.body_set import BodySet, Flexible, FlexibleBody
 from analytic.multibody.configuration import Configuration
@@ -180,6 +182,12 @@ class Assembly:
         size = np.abs(scaled).max(axis=1, keepdims=True, initial=0.0)
         return np.asarray(scaled / np.where(size > 0.0, size, 1.0))
 
+    @cached_property
+    def coefficients(self) -> NDArray[np.intp]:
+        """The numbers of the coordinates that say how elastic links are deformed, (k,)."""
+        own = [np.arange(at.start + 3, at.stop) for _, at in self.elastic.values()]
+        return np.concatenate([np.empty(0, dtype=np.intp), *own])
+
     def mass(self, q: Array) -> Array:
         """The mass matrix alone."""
         return self.weigh(q, np.zeros_like(q))[0]
@@ -187,3 +195,7 @@ class Assembly:
     def height_energy(self, q: Array) -> Array:
         """The potential energy of all bodies [J], (T,)."""
         return np.asarray(sum(part.height_energy(q[:, own]) for part, own, _ in self.parts))
+
+    def lost(self, rates: Array) -> Array:
+        """The power that damping of elastic links takes [W], (T,)."""
+        return np.asarray(sum(part.lost(rates[:, own]) for part, own, _ in self.parts))

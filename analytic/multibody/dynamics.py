@@ -87,12 +87,18 @@ class Dynamics:
         now = self.assembly.at_rates(state[None, :n], state[None, n : 2 * n])
         pushed = self.forces.on(at, now, strokes)
         seconds, _ = self._solved(at, now, pushed)
+        return np.concatenate([now.rates[0], seconds[0], self.power(now, pushed)])
+
+    def power(self, now: Configuration, pushed: Array) -> Array:
+        """That of generalised forces (T, n) that does not keep the energy [W], (T,)."""
         power = (pushed * now.rates).sum(axis=1)
         for deflection in self.forces.deflections(now):  # what springs take up they keep
             power += (
                 deflection.spring.rate * (deflection.q - deflection.spring.free) * deflection.rate
             )
-        return np.concatenate([now.rates[0], seconds[0], power])
+        if self.assembly.elastic:
+            power -= self.assembly.lost(now.rates)
+        return np.asarray(power)
 
     def energies(self, now: Configuration, work: Array) -> EnergyBalance:
         """The energies at a configuration, beside the work until then [J]."""

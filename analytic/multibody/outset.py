@@ -52,14 +52,17 @@ class Outset:
 
     assembly: Assembly
 
-    def find(self, near: State | None) -> tuple[Array, Array]:
+    def find(self, near: State | None, bent: Array | None = None) -> tuple[Array, Array]:
         """The coordinates and rates (n,) of the start.
 
         Parameters
         ----------
         near : State or None
             A state to look for the position from; None for what the scene names. Of a scene that
-            is driven the rates are those of the state.
+            is driven and rigid the rates are those of the state.
+        bent : Array or None
+            Coordinates of which those that say how elastic links are deformed count (n,); None for
+            straight ones. Their rates are 0.
 
         Raises
         ------
@@ -69,7 +72,10 @@ class Outset:
         """
         scene = self.assembly.scene
         rough = self._guess() if near is None else self._from_state(near)[0]
-        if near is not None and not scene.is_free:
+        if bent is not None:
+            own = self.assembly.coefficients
+            rough[own] = bent[own]
+        if near is not None and not scene.is_free and not self.assembly.elastic:
             return self._closed(rough, []), self._from_state(near)[1]
         q = self._positioned(rough, whole=near is None)
         return q, self._moving(q)
@@ -106,9 +112,16 @@ class Outset:
                 f"{self.assembly.scene.name}: where {few(unknown, 8)} start is not named; give "
                 "their angles in start.angles_deg, to a degree"
             )
-        return np.concatenate(
-            [[*placing.origins[body], placing.angles[body]] for body in self.assembly.bodies]
-        )
+        q = np.zeros(self.assembly.size)
+        for body, at in self.assembly.at.items():
+            q[at : at + 3] = *placing.origins[body], placing.angles[body]
+        return q
+
+    def _of_frames(self, rows: Array) -> Array:
+        """Rows of derivatives (m, n) by the coordinates of frames alone."""
+        rows = rows.copy()
+        rows[:, self.assembly.coefficients] = 0.0
+        return rows
 
     def _named(self, now: Configuration, *, rates: bool) -> Iterator[_Named]:
         """The values that the start names, the driver's first, at coordinates."""
@@ -135,16 +148,17 @@ class Outset:
     def _positioned(self, rough: Array, *, whole: bool) -> Array:
         """The closed position next to a rough one, with the named values that count."""
         now = self.assembly.at_rest(rough[None])
-        rows, counting = self.assembly.joints.jacobian(now)[0], []
+        rows, counting = self._of_frames(self.assembly.joints.jacobian(now)[0]), []
+        frames = 3 * len(self.assembly.bodies)
         rank = self._rank(rows)
         for named in self._named(now, rates=False):
-            more = np.vstack([rows, named.row])
+            more = np.vstack([rows, self._of_frames(named.row[None])])
             if self._rank(more) > rank:
                 rows, rank = more, rank + 1
                 counting.append(named.words)
-        if whole and rank < self.assembly.size:
+        if whole and rank < frames:
             raise CrankcheckError(
-                f"{self.assembly.scene.name}: {self.assembly.size - rank} more of the angles of "
+                f"{self.assembly.scene.name}: {frames - rank} more of the angles of "
                 f"links have to be named in start.angles_deg; {few(counting, 8)} say where the "
                 "others are"
             )
@@ -174,7 +188,7 @@ class Outset:
                 if named.words in counting:
                     rows.append(named.row[None])
                     left.append(np.array([named.found - named.value]))
-            step = self._least(np.vstack(rows), -np.concatenate(left))
+            step = self._least(self._of_frames(np.vstack(rows)), -np.concatenate(left))
             size = float(np.abs(step / unit).max())
             if size > 0.5:  # no further than half a radian at a time
                 step *= 0.5 / size
@@ -200,11 +214,13 @@ class Outset:
         assembly, scene = self.assembly, self.assembly.scene
         now = assembly.at_rest(q[None])
         named = list(self._named(now, rates=True))
-        rows = np.vstack([assembly.joints.jacobian(now)[0], *(one.row for one in named)])
+        rows = self._of_frames(
+            np.vstack([assembly.joints.jacobian(now)[0], *(one.row for one in named)])
+        )
         values = np.array([one.value for one in named])
         if not values.any():
             return np.zeros(assembly.size)
-        free = assembly.size - self._rank(rows)
+        free = 3 * len(assembly.bodies) - self._rank(rows)
         if free:
             raise CrankcheckError(
                 f"{scene.name}: the start moves, and {free} of its freedoms have no speed; give "

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from analytic.multibody.as_motion import as_motion
-from analytic.multibody.assembly import Assembly
+from analytic.multibody.assembly import RIGID, Assembly
+from analytic.multibody.bent_start import bent_start
+from analytic.multibody.body_set import Flexible
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.multibody_motion import Method, MultibodyMotion, Projection
 from analytic.multibody.outset import Outset
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.motion import State
 from models.released import check_duration
 from models.scene import Scene
@@ -22,7 +26,12 @@ LIGHT = 1e-12
 
 
 def release_multibody(
-    scene: Scene, until_s: float, method: Method = PROJECTED, *, near: State | None = None
+    scene: Scene,
+    until_s: float,
+    method: Method = PROJECTED,
+    *,
+    near: State | None = None,
+    flexible: Mapping[str, Flexible] = RIGID,
 ) -> MultibodyMotion:
     """The motion of a scene from its start, when it is let go.
 
@@ -38,6 +47,8 @@ def release_multibody(
     near : State or None
         Where to look for the position of the start; None for a scene that names the angles of its
         links in ``[start]``.
+    flexible : Mapping
+        What makes the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
 
     Raises
     ------
@@ -46,7 +57,7 @@ def release_multibody(
         other; a freedom without mass; friction; a time that is none; an integration that fails.
     """
     check_duration(scene.name, until_s)
-    dynamics, q, rates = _ready(scene, near)
+    dynamics, q, rates = ready(scene, near, flexible)
     return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 
 
@@ -55,27 +66,50 @@ def start_state(scene: Scene, near: State | None = None) -> State:
 
     Parameters and errors as those of `release_multibody`.
     """
-    dynamics, q, rates = _ready(scene, near)
+    dynamics, q, rates = ready(scene, near)
     now = dynamics.assembly.at_rates(q[None], rates[None])
     at = np.zeros(1)
     seconds, _ = dynamics.solve(at, now)
     return as_motion(dynamics.assembly, at, now, seconds).state()
 
 
-def _ready(scene: Scene, near: State | None) -> tuple[Dynamics, Array, Array]:
-    """The equations of a scene, and its coordinates and rates at the start."""
+def ready(
+    scene: Scene, near: State | None, flexible: Mapping[str, Flexible] = RIGID
+) -> tuple[Dynamics, Array, Array]:
+    """The equations of a scene, and its coordinates and rates (n,) at the start.
+
+    Parameters and errors as those of `release_multibody`.
+    """
     if scene.friction:
         raise CrankcheckError(
             f"{scene.name}: friction in {', '.join(scene.friction)}, which the equations of motion "
             "with multipliers do not have here; leave it out, or give dampers"
         )
-    assembly = Assembly(scene)
+    _check_elastic(scene, flexible)
+    assembly = Assembly(scene, flexible)
     outset = Outset(assembly)
     q, rates = outset.find(near)
     free = outset.freedoms(q)
     dynamics = Dynamics(assembly, GeneralisedForces(assembly, q), assembly.size - len(free))
     _check_start(dynamics, q, free)
+    if flexible and scene.start.shape != "straight":
+        q, rates = bent_start(dynamics, near)
     return dynamics, q, rates
+
+
+def _check_elastic(scene: Scene, flexible: Mapping[str, Flexible]) -> None:
+    """Raises CrankcheckError for elastic links of which nobody said how they are described, and for
+    a start that nothing but a driver's law has."""
+    if missing := [name for name in scene.elastic if name not in flexible]:
+        raise CrankcheckError(
+            f"{scene.name}: {few(missing, 6)} bends or stretches, and would be taken as rigid "
+            "here; let it go by analytic.elastic.released, or take [elastic] out"
+        )
+    if flexible and scene.start.shape == "periodic":
+        raise CrankcheckError(
+            f"{scene.name}: what is let go comes back after no period that is known before; give "
+            'shape = "quasi-static" or "straight" in [start]'
+        )
 
 
 def _check_start(dynamics: Dynamics, q: Array, free: Array) -> None:

@@ -1,0 +1,205 @@
+"""Elastic links of what is let go, over time: Gauss' collocation in windows of a length of its own.
+
+As `analytic.elastic.vibration`, in the tangent of the position with which each window begins. A
+window is short enough where the series of its motion has come to an end; what rings faster than
+windows are long has to be too small to be seen, and stays so, as the method is stable at every
+length. Loads over time are smooth within each window.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import block_diag  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.elastic.tangent_form import FreeInstant, Tangent, TangentForm
+from analytic.free.gauss import gauss
+from analytic.multibody.switches import edges, switches
+from models.array import Array
+from models.errors import CrankcheckError
+
+NODES = 10
+RULE = gauss(NODES)
+TWICE, END_TWICE = RULE.once @ RULE.once, RULE.end_once @ RULE.once
+TAIL = 3
+"""Of the last coefficients of a series, whose largest counts."""
+MOST_ROUNDS, CLOSE = 30, 1e-15
+"""What a round of Newton's method may change y by."""
+MOST_WINDOWS, FIRST = 200_000, 1e-3
+"""How many there may be; and how long the first one is tried to be, over all."""
+SHORTEST = 1e-9
+"""A window over all of the time, below which the motion can not go on."""
+
+
+class Piece(Protocol):
+    """The motion from ``start_s`` to ``end_s`` in one tangent."""
+
+    @property
+    def start_s(self) -> float: ...
+
+    @property
+    def end_s(self) -> float: ...
+
+    @property
+    def tangent(self) -> Tangent: ...
+
+    def course(self, time_s: Array) -> tuple[Array, Array, Array]:
+        """y and its rates (T, f), and the work that has been done until then, (T,)."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A piece by collocation: ``rates`` y' (f,) at its start, where y is 0; ``series`` (NODES, f)
+    that of y'' in Legendre's polynomials, ``power`` (NODES,) that of the work's derivative."""
+
+    start_s: float
+    end_s: float
+    tangent: Tangent
+    rates: Array
+    series: Array
+    power: Array
+    work: float
+
+    def course(self, time_s: Array) -> tuple[Array, Array, Array]:
+        h = self.end_s - self.start_s
+        share = (time_s - self.start_s) / h
+        x = 2.0 * share - 1.0
+        once = legendre.legvander(x, NODES) @ RULE.lift_once
+        twice = legendre.legvander(x, NODES + 1) @ RULE.lift_twice
+        return (
+            h * share[:, None] * self.rates + h * h * twice @ self.series,
+            self.rates + h * once @ self.series,
+            self.work + h * once @ self.power,
+        )
+
+
+def by_gauss(
+    form: TangentForm, q: Array, rates: Array, until_s: float, tolerance: float
+) -> tuple[Window, ...]:
+    """The motion from a closed position and rates (n,) on.
+
+    Parameters
+    ----------
+    tolerance : float
+        What the last coefficients of y may be in each window.
+
+    Raises
+    ------
+    CrankcheckError
+        Loads with kinks over the state of the mechanism; a motion that can not go on.
+    """
+    if own := switches(form.dynamics.forces):
+        raise CrankcheckError(
+            f"{form.dynamics.assembly.scene.name}: loads.{own[0].load.name} is not smooth over the "
+            "motion, which collocation needs; integrate it by the equations with multipliers "
+            "(analytic.multibody.release_multibody)"
+        )
+    going = _Going(form, q, rates, tolerance, FIRST * until_s)
+    times = edges(form.dynamics.forces.scene, until_s)
+    return tuple(
+        window
+        for begin, end in itertools.pairwise(times)
+        for window in going.through(begin, end, SHORTEST * until_s)
+    )
+
+
+@dataclass
+class _Going:
+    """Where an integration is: the state and work at its last window's end, the next length."""
+
+    form: TangentForm
+    q: Array
+    rates: Array
+    tolerance: float
+    next_s: float
+    work: float = 0.0
+    made: int = 0
+
+    def through(self, begin_s: float, end_s: float, shortest_s: float) -> Iterator[Window]:
+        """The windows between two edges."""
+        now_s = begin_s
+        while now_s < end_s:
+            tangent = self.form.tangent(self.q)
+            left = end_s - now_s
+            # Windows of one length up to the edge: none that is a sliver.
+            h = left / np.ceil(left / self.next_s * (1.0 - 1e-9))
+            stop_s = end_s if h == left else now_s + h
+            window, tail = self._window(tangent, now_s, stop_s)
+            ratio = (self.tolerance / max(tail, 1e-3 * self.tolerance)) ** (1.0 / NODES)
+            self.next_s = h * min(max(0.9 * ratio, 0.3), 2.0)
+            if window is None:
+                self._check(now_s, shortest_s)
+                continue
+            yield window
+            self._end(window)
+            now_s = stop_s
+
+    def _check(self, now_s: float, shortest_s: float) -> None:
+        if self.next_s < shortest_s or self.made > MOST_WINDOWS:
+            raise CrankcheckError(
+                f"{self.form.dynamics.assembly.scene.name}: at {now_s:g} s the motion of its "
+                "elastic links can not be followed on; let it go for a shorter time, or give them "
+                "fewer shapes"
+            )
+
+    def _end(self, window: Window) -> None:
+        """Go on to the end of a window."""
+        end = np.array([window.end_s])
+        y, rates, work = window.course(end)
+        now = self.form.at(end, window.tangent, y, rates).now
+        self.q, self.rates, self.work = now.q[0], now.rates[0], float(work[0])
+        self.made += 1
+
+    def _window(
+        self, tangent: Tangent, start_s: float, end_s: float
+    ) -> tuple[Window | None, float]:
+        """A window, and the end of its series; none where it is too long."""
+        h = end_s - start_s
+        rates = self.form.coordinates(tangent, self.rates)
+        times = start_s + h * RULE.places
+        try:
+            found = self._met(tangent, times, h, rates)
+        except (CrankcheckError, np.linalg.LinAlgError):
+            return None, 1e3 * self.tolerance
+        if found is None:
+            return None, 1e3 * self.tolerance
+        seconds, instant = found
+        series = RULE.series @ seconds
+        tail = h * h * float(np.abs((RULE.lift_twice @ series)[-TAIL:]).max())
+        if tail > 4.0 * self.tolerance:
+            return None, tail
+        power = self.form.dynamics.power(instant.now, instant.applied)
+        own = Window(start_s, end_s, tangent, rates, series, RULE.series @ power, self.work)
+        return own, tail
+
+    def _met(
+        self, tangent: Tangent, times: Array, h: float, rates: Array
+    ) -> tuple[Array, FreeInstant] | None:
+        """y'' at the nodes (NODES, f), with the equations there."""
+        form, f = self.form, len(rates)
+        drift = h * RULE.places[:, None] * rates
+        start = form.at(times[:1], tangent, drift[:1], rates[None])
+        # Inertia changes within a window; what is stiff by far less.
+        slopes = start.inertia[0] @ form.derivatives(float(times[0]), tangent, drift[0], rates)
+        stiff = np.kron(h * h * TWICE, slopes[:, :f]) + np.kron(h * RULE.once, slopes[:, f:])
+        seconds, inverse, last = np.repeat(start.seconds, NODES, axis=0), None, np.inf
+        for _ in range(MOST_ROUNDS):
+            y, y_rates = drift + h * h * TWICE @ seconds, rates + h * RULE.once @ seconds
+            instant = form.at(times, tangent, y, y_rates)
+            if inverse is None:
+                inverse = np.linalg.inv(block_diag(*instant.inertia) - stiff)
+            left = instant.inertia @ (instant.seconds - seconds)[:, :, None]
+            step = (inverse @ left.ravel()).reshape(NODES, f)
+            seconds = seconds + step
+            size = h * h * float(np.abs(step).max())
+            if size <= CLOSE or (size < 1e-3 * self.tolerance and size >= 0.5 * last):
+                return seconds, instant
+            if not size < 10.0 * last:
+                return None
+            last = size
+        return None

@@ -1,0 +1,214 @@
+"""Let a mechanism with elastic links go: its motion, with all their vibration.
+
+With as many coordinates as it has freedoms, integrated by collocation (`free_windows`), or by a
+stiff method of a library (`free_by_library`). The equations with a multiplier for every joint and a
+method that is explicit (`analytic.multibody.release_multibody`) are a third way to the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
+from analytic.elastic.free_by_library import by_library
+from analytic.elastic.free_windows import Piece, by_gauss
+from analytic.elastic.tangent_form import FreeInstant, TangentForm
+from analytic.kinematics import solve
+from analytic.multibody.as_motion import as_motion
+from analytic.multibody.dynamics import Dynamics
+from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.joint_forces import joint_forces
+from analytic.multibody.release_multibody import ready
+from analytic.multibody.switches import edges
+from models.array import Array
+from models.errors import CrankcheckError, StructureError
+from models.motion import Motion, State
+from models.released import check_duration
+from models.samples import samples
+from models.scene import Scene
+
+Method = Literal["gauss", "radau"]
+TOLERANCE = 1e-11
+WITH_AXIAL = 1e-9
+"""The same where links stretch: they ring along themselves a thousand times faster than across, by
+1e-10 m or less, and a method that is stable need not follow that."""
+COARSER = 100.0
+"""By how much larger is the tolerance of the motion that this one is held to."""
+
+
+@dataclass(frozen=True)
+class ElasticDoubt:
+    """What a motion may be off by, the largest so far at T times: ``deflection_m`` of the middle of
+    any elastic link, ``angle_rad`` of any link."""
+
+    deflection_m: Array
+    angle_rad: Array
+
+    @staticmethod
+    def between(motion: Motion, *others: Motion) -> ElasticDoubt:
+        """How far a motion is from others."""
+        bent, turned = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
+        for other in others:
+            for name, own in motion.elastic.items():
+                bent = np.maximum(bent, np.abs(own.middle - other.elastic[name].middle))
+            for name, link in motion.links.items():
+                turned = np.maximum(turned, np.abs(link.theta - other.links[name].theta))
+        return ElasticDoubt(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
+
+
+@dataclass(frozen=True, eq=False)
+class ReleasedElasticMotion:
+    """What a scene with elastic links does from time 0, when it is let go, to ``until_s``."""
+
+    scene: Scene
+    until_s: float
+    by: Discretisation
+    stiffened: bool
+    method: Method
+    tolerance: float
+
+    @cached_property
+    def _ready(self) -> tuple[Dynamics, Array, Array]:
+        flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
+        return ready(self.scene, assembled(self.scene), flexible)
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """The equations that it obeys. Raises CrankcheckError as `release_elastic`."""
+        return self._ready[0]
+
+    @property
+    def start(self) -> tuple[Array, Array]:
+        """Coordinates and rates (n,) at time 0."""
+        return self._ready[1], self._ready[2]
+
+    @cached_property
+    def form(self) -> TangentForm:
+        """The equations in coordinates that are independent of each other."""
+        return TangentForm(self.dynamics)
+
+    @property
+    def freedoms(self) -> int:
+        """Those of the joints and of the shapes together."""
+        return self.dynamics.assembly.size - self.dynamics.rank
+
+    @property
+    def edges_s(self) -> tuple[float, ...]:
+        """The instants at which loads over time are not smooth [s]."""
+        return tuple(edges(self.scene, self.until_s)[1:-1])
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The motion, one piece after the other."""
+        integrate = by_gauss if self.method == "gauss" else by_library
+        return integrate(self.form, *self.start, self.until_s, self.tolerance)
+
+    def at(self, time_s: Array) -> Motion:
+        """The motion at times [s], (T,) in ascending order, with its reactions and its shapes.
+        Raises CrankcheckError for times beyond it."""
+        assembly, parts = self.dynamics.assembly, []
+        for some, piece, instant, _ in self._instants(time_s):
+            motion = as_motion(assembly, some, instant.now, instant.all_seconds)
+            multipliers = self.form.multipliers(piece.tangent, instant)
+            forces = joint_forces(
+                self.scene, assembly.joints.pin_pairs(), some, -multipliers, np.zeros_like(some)
+            )
+            parts.append(replace(motion, forces=forces))
+        return Motion.joined(parts)
+
+    def energy(self, time_s: Array) -> EnergyBalance:
+        """The energies at times [s], (T,) in ascending order: `EnergyBalance.balance` stays."""
+        parts = [
+            self.dynamics.energies(instant.now, work)
+            for _, _, instant, work in self._instants(time_s)
+        ]
+        each = zip(*(vars(part).values() for part in parts), strict=True)
+        return EnergyBalance(*(np.concatenate(own) for own in each))
+
+    @cached_property
+    def finer(self) -> ReleasedElasticMotion:
+        """The motion of the next finer description; `Segments` are what they are."""
+        return self if isinstance(self.by, Segments) else replace(self, by=self.by.finer)
+
+    @cached_property
+    def coarser(self) -> ReleasedElasticMotion:
+        """The motion integrated to a larger tolerance."""
+        return replace(self, tolerance=COARSER * self.tolerance)
+
+    def doubt(self, time_s: Array) -> ElasticDoubt:
+        """What the motion may be off by at times [s], (T,) in ascending order: how far it is from
+        that of the next finer shapes, and from one integrated to a larger tolerance."""
+        own = self.at(time_s)
+        return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s))
+
+    def _instants(self, time_s: Array) -> Iterator[tuple[Array, Piece, FreeInstant, Array]]:
+        """Times, the piece that they are in, the equations and the work until then."""
+        instants = samples(time_s, "time_s")
+        if instants.min() < 0.0 or instants.max() > self.until_s * (1.0 + 1e-12):
+            raise CrankcheckError(
+                f"{self.scene.name}: times from {instants.min():g} to {instants.max():g} s; it was "
+                f"let go at 0, and integrated up to {self.until_s:g} s"
+            )
+        ends = np.array([piece.end_s for piece in self.pieces[:-1]])
+        number = np.searchsorted(ends, instants, side="right")
+        for k in np.unique(number):
+            piece, some = self.pieces[k], instants[number == k]
+            y, rates, work = piece.course(some)
+            yield some, piece, self.form.at(some, piece.tangent, y, rates), work
+
+
+def release_elastic(
+    scene: Scene,
+    until_s: float,
+    by: Discretisation | None = None,
+    *,
+    stiffened: bool = True,
+    method: Method = "gauss",
+    tolerance: float | None = None,
+) -> ReleasedElasticMotion:
+    """The motion of a scene with elastic links from its start, when it is let go.
+
+    Parameters
+    ----------
+    scene : Scene
+        A mechanism of any mobility. If its driver follows a law, it is let go at time 0 of that.
+        ``start.shape`` is that of its elastic links, quasi-static where the scene is silent.
+    until_s : float
+        For how long [s].
+    by : Discretisation or None
+        How its elastic links are described; None for `Modes`.
+    stiffened : bool
+        Keep the shortening of bent links; without, as the thesis has them.
+    method : "gauss" or "radau"
+        Of collocation, or the library's.
+    tolerance : float or None
+        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-9 with
+        links that stretch.
+
+    Raises
+    ------
+    CrankcheckError
+        As `release_multibody`; loads with kinks over the state, which collocation does not take.
+    """
+    check_duration(scene.name, until_s)
+    if tolerance is None:
+        axial = any(link.stretches for link in scene.elastic.values())
+        tolerance = WITH_AXIAL if axial else TOLERANCE
+    motion = ReleasedElasticMotion(
+        scene, float(until_s), by or Modes(), stiffened, method, tolerance
+    )
+    assert motion.form  # raises what there is to raise now
+    return motion
+
+
+def assembled(scene: Scene) -> State | None:
+    """Where the rigid mechanism of a scene starts, if there is a closed form of that."""
+    try:
+        return solve(scene, np.zeros(1), bound=False).state()
+    except StructureError:
+        return None

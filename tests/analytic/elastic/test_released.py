@@ -1,0 +1,210 @@
+"""Mechanisms with elastic links that are let go, by ways that have no integration in common."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, flexible_links
+from analytic.elastic.released import assembled, release_elastic
+from analytic.free.release import release
+from analytic.multibody.multibody_motion import MultibodyMotion
+from analytic.multibody.release_multibody import release_multibody
+from models.array import Array
+from models.elastic import ElasticLink
+from models.errors import CrankcheckError, SceneError
+from models.files import find_scene, load_scene, parse_scene
+from models.motion import Motion
+from models.scene import Scene
+from tests.analytic.multibody.scenes import FIVE_BAR, SLIDER_CRANK, scene
+
+PULSE = load_scene("fourbar-elastic-pulse")
+AXIAL_N = 200e9 * 0.01 * 0.0012
+STRIP = """
+[elastic.rod]
+flexural_n_m2 = 0.3
+damping_s = 1e-4
+"""
+
+
+def with_link(mechanism: Scene, change: Callable[[ElasticLink], ElasticLink]) -> Scene:
+    """A scene with its elastic links changed."""
+    return replace(mechanism, elastic={k: change(one) for k, one in mechanism.elastic.items()})
+
+
+AXIAL = with_link(PULSE, lambda one: replace(one, flexural_n_m2=math.inf, axial_n=AXIAL_N))
+BOTH = with_link(PULSE, lambda one: replace(one, axial_n=AXIAL_N))
+DAMPED = scene(SLIDER_CRANK + "start_deg = 30.0\nspeed_rad_s = 12.0\n" + STRIP)
+FIVE = scene(FIVE_BAR + "[elastic.first]\nflexural_n_m2 = 2.0\n")
+
+
+def by_multipliers(mechanism: Scene, until_s: float, by: Discretisation) -> MultibodyMotion:
+    """By the equations with multipliers and an explicit method."""
+    return release_multibody(
+        mechanism, until_s, near=assembled(mechanism), flexible=flexible_links(mechanism, by)
+    )
+
+
+def apart(motion: Motion, other: Motion, link: str) -> float:
+    """How far two motions are from each other, each quantity over its largest."""
+    pairs = [
+        (motion.elastic[link].middle, other.elastic[link].middle),
+        (motion.elastic[link].extension, other.elastic[link].extension),
+        (motion.links[link].alpha, other.links[link].alpha),
+    ]
+    assert motion.forces is not None
+    assert other.forces is not None
+    for pin, held in motion.forces.pins.items():
+        pairs += [(push, other.forces.pins[pin][body]) for body, push in held.items()]
+    return max(largest(a - b) / (largest(a) or 1.0) for a, b in pairs)
+
+
+def largest(series: Array) -> float:
+    return float(np.abs(series).max())
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "by", "until_s"),
+    [
+        (PULSE, Modes(1), 0.25),
+        (PULSE, Elements(1), 0.1),
+        (DAMPED, Modes(1), 0.1),
+        (FIVE, Modes(1), 0.1),
+    ],
+)
+def test_three_methods_agree(mechanism: Scene, by: Discretisation, until_s: float) -> None:
+    """Collocation and Radau's method without multipliers, an explicit method with them."""
+    time_s = np.linspace(0.0, until_s, 41)
+    (link,) = mechanism.elastic
+    multibody = by_multipliers(mechanism, until_s, by)
+    assert (
+        apart(release_elastic(mechanism, until_s, by).at(time_s), multibody.at(time_s), link) < 1e-8
+    )
+    early = time_s[:6]
+    radau = release_elastic(mechanism, early[-1], by, method="radau", tolerance=1e-9)
+    assert apart(radau.at(early), multibody.at(early), link) < 1e-5
+
+
+@pytest.mark.parametrize(("mechanism", "by"), [(AXIAL, Modes(0, 1)), (BOTH, Modes(1, 1))])
+def test_what_rings_along_itself_is_followed_where_that_is_asked_for(
+    mechanism: Scene, by: Discretisation
+) -> None:
+    """At 1e4 rad/s, by a hundredth of a micrometre; else it is left to a method that is stable."""
+    time_s = np.linspace(0.0, 0.01, 21)
+    true = by_multipliers(mechanism, 0.01, by).at(time_s).elastic["coupler"].extension
+    off = [
+        largest(
+            release_elastic(mechanism, 0.01, by, tolerance=tolerance)
+            .at(time_s)
+            .elastic["coupler"]
+            .extension
+            - true
+        )
+        for tolerance in (None, 1e-15)
+    ]
+    assert off[0] < 1e-9
+    assert off[1] < 1e-4 * largest(true)
+
+
+def test_energy_stays_after_the_pulse_and_is_its_work_before() -> None:
+    free = release_elastic(PULSE, 1.3, Modes(1))
+    energy = free.energy(np.linspace(0.0, 1.3, 66))
+    scale = float(energy.kinetic.max())
+    after = (energy.kinetic + energy.potential)[51:]
+    assert np.ptp(after) < 1e-9 * scale
+    assert np.ptp(energy.balance) < 1e-9 * scale
+    assert energy.work[-1] > 0.1 * scale
+
+
+def test_what_damping_takes_is_missing() -> None:
+    for free in (release_elastic(DAMPED, 0.3, Modes(1)), by_multipliers(DAMPED, 0.3, Modes(1))):
+        energy = free.energy(np.linspace(0.0, 0.3, 31))
+        assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
+        assert energy.work[-1] < -1e-6 * energy.kinetic.max()
+
+
+def test_modes_and_elements_agree_to_what_they_are_in_doubt_of() -> None:
+    time_s = np.linspace(0.0, 0.25, 11)
+    modes = release_elastic(PULSE, 0.25, Modes(2))
+    elements = release_elastic(PULSE, 0.25, Elements(2))
+    doubt, other = modes.doubt(time_s), elements.doubt(time_s)
+    off = np.abs(
+        modes.at(time_s).elastic["coupler"].middle - elements.at(time_s).elastic["coupler"].middle
+    )
+    allowed = 2.0 * (doubt.deflection_m + other.deflection_m) + 1e-12
+    assert (off <= allowed).all()
+    assert allowed.max() < 0.05 * largest(modes.at(time_s).elastic["coupler"].middle)
+
+
+def test_a_stiff_link_moves_as_a_rigid_one() -> None:
+    """With an error of the first order in 1/E."""
+    time_s = np.linspace(0.0, 0.4, 21)
+    rigid = release(replace(PULSE, elastic={}, start=replace(PULSE.start, shape=None)), 0.4)
+    true = rigid.at(time_s, bound=False).links["crank"].theta
+    off = []
+    for times in (1e2, 1e4):
+        stiff = with_link(
+            PULSE, lambda one, k=times: replace(one, flexural_n_m2=k * one.flexural_n_m2)
+        )
+        motion = release_elastic(stiff, 0.4, Modes(1)).at(time_s)
+        off.append(largest(motion.links["crank"].theta - true))
+    assert off[1] < 0.02 * off[0] < 1e-4
+
+
+def test_a_quasi_static_start_does_not_ring() -> None:
+    """No coefficient has a second derivative; straight links have."""
+    heavy = replace(PULSE, gravity_m_s2=(0.0, -9.81))
+    straight = replace(heavy, start=replace(heavy.start, shape="straight"))
+    off = []
+    for one in (heavy, straight):
+        free = release_elastic(one, 0.01, Modes(3))
+        (q, rates), form = free.start, free.form
+        tangent = form.tangent(q)
+        y = np.zeros((1, tangent.free.shape[1]))
+        first = form.at(np.zeros(1), tangent, y, form.coordinates(tangent, rates)[None])
+        off.append(largest(first.all_seconds[0, free.dynamics.assembly.coefficients]))
+    assert off[0] < 1e-9 * off[1]
+    assert off[1] > 1.0
+
+
+def test_a_driven_mechanism_goes_on_with_its_speed() -> None:
+    driven = load_scene("fourbar-elastic")
+    driven = replace(driven, start=replace(driven.start, shape="straight"))
+    free = release_elastic(driven, 0.05, Modes(1))
+    motion = free.at(np.array([0.0, 0.05]))
+    assert motion.links["crank"].omega[0] == pytest.approx(7.3686, rel=1e-12)
+    true = by_multipliers(driven, 0.05, Modes(1)).at(np.array([0.0, 0.05]))
+    assert apart(motion, true, "coupler") < 1e-8
+
+
+def test_nobody_takes_an_elastic_scene_for_a_rigid_one() -> None:
+    with pytest.raises(CrankcheckError, match="coupler bends or stretches"):
+        release(PULSE, 1.0)
+    with pytest.raises(CrankcheckError, match="coupler bends or stretches"):
+        release_multibody(PULSE, 1.0, near=assembled(PULSE))
+
+
+def test_what_can_not_start_or_be_integrated_so_says_why() -> None:
+    with pytest.raises(CrankcheckError, match="after no period"):
+        release_elastic(load_scene("fourbar-elastic"), 0.1)
+    with pytest.raises(CrankcheckError, match="free for -1 s"):
+        release_elastic(PULSE, -1.0)
+    with pytest.raises(CrankcheckError, match=r"integrated up to 0\.1 s"):
+        release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2]))
+    text = find_scene("fourbar-elastic-pulse").read_text(encoding="utf-8")
+    with pytest.raises(SceneError, match='found "periodic" with law = "free"'):
+        parse_scene(text.replace('shape = "quasi-static"', 'shape = "periodic"'), "file.toml")
+
+
+def test_loads_with_kinks_over_the_state_are_for_the_other_form() -> None:
+    kinked = scene(
+        SLIDER_CRANK + "start_deg = 30.0\n" + STRIP + '[loads.stop]\nblock = "C"\nslider = "C"\n'
+        'law = "constant"\nstroke = "forward"\nforce_n = 1.0\ndirection_deg = 180.0\n'
+    )
+    with pytest.raises(CrankcheckError, match=r"loads\.stop is not smooth over the motion"):
+        release_elastic(kinked, 0.1, Modes(1)).at(np.zeros(1))
+    assert by_multipliers(kinked, 0.01, Modes(1)).at(np.array([0.01]))
