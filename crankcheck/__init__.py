@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from reports.compare.errors import Error, Errors
     from reports.face.cell_verdict import CellVerdict, check
     from reports.face.comparison import Comparison, compare
+    from reports.face.elastic_solution import ElasticSolution
     from reports.face.free_solution import FreeSolution
     from reports.face.log_verdict import LogVerdict, judge
     from reports.face.model_verdict import ModelVerdict, check_model
@@ -83,6 +84,7 @@ __all__ = [
     "CellVerdict",
     "Comparison",
     "CrankcheckError",
+    "ElasticSolution",
     "EngineError",
     "Error",
     "Errors",
@@ -142,6 +144,8 @@ if not TYPE_CHECKING:  # a type checker refuses every other name
                 from reports.face import cell_verdict as home
             case "Comparison" | "compare":
                 from reports.face import comparison as home
+            case "ElasticSolution":
+                from reports.face import elastic_solution as home
             case "FreeSolution":
                 from reports.face import free_solution as home
             case "LogVerdict" | "judge":

@@ -22,6 +22,7 @@ OWN_LOG = (DOCS / "own-log.md").read_text(encoding="utf-8")
 OWN_ENGINE = (DOCS / "own-engine.md").read_text(encoding="utf-8")
 OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
 FORCES = (DOCS / "forces.md").read_text(encoding="utf-8")
+ELASTIC = (DOCS / "elastic.md").read_text(encoding="utf-8")
 FREE = (DOCS / "free.md").read_text(encoding="utf-8")
 Run = Callable[[Sequence[str], Path], "subprocess.CompletedProcess[str]"]
 END = "--- end of example {} ---"
@@ -72,6 +73,15 @@ def test_what_is_said_of_free_motion_is_true(tmp_path: Path) -> None:
     (text,) = (each for each in blocks(FREE, "toml") if each.startswith("name"))
     (tmp_path / "dropped.toml").write_text(text)
     assert not told_otherwise(FREE, tmp_path)
+
+
+def test_what_is_said_of_elastic_links_is_true(tmp_path: Path) -> None:
+    """Of a scene that stands on the page: a command's start each, some 10 s in all."""
+    (text,) = (each for each in blocks(ELASTIC, "toml") if each.startswith("name"))
+    (tmp_path / "whip.toml").write_text(text)
+    assert not told_otherwise(ELASTIC, tmp_path)
+    drawn = {path.stem for path in (tmp_path / "figs").iterdir()}
+    assert drawn == {name for name in drawn if f"`{name}`" in ELASTIC}
 
 
 def test_what_is_said_of_own_engines_is_true(tmp_path: Path) -> None:

@@ -67,15 +67,39 @@ class SolveRequest:
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="With --forces: draw them over a turn; or a free motion; as SVG and PDF.",
+            help="With --forces: draw them over a turn; or a free motion, or elastic links; as SVG "
+            "and PDF.",
         ),
     ] = None
+    modes: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Elastic links: sines across each (default 5)."),
+    ] = None
+    axial_modes: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Elastic links: sines along each (default 2)."),
+    ] = None
+    elements: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Elastic links: beam elements of each, in place of sines."),
+    ] = None
+    shape: Annotated[
+        str | None,
+        typer.Option(
+            help="Elastic links start periodic, quasi-static or straight (default the scene's own)."
+        ),
+    ] = None
+    linear: Annotated[
+        bool,
+        typer.Option("--linear", help="Elastic links: leave out that a bent link is shorter."),
+    ] = False
 
 
 @command
 def solve(request: SolveRequest) -> int:
     """Show the reference alone: angles, points and sliders with all their rates, and the forces
-    that these ask for; of a scene that is let go, its free motion and energy."""
+    that these ask for; of a scene that is let go, its free motion and energy; of one with elastic
+    links, how these bend, and what that changes."""
     from reports.cli.commands import solve as verb
 
     verb.run_solve(request, terminal())

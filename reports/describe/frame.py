@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
 
 def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
-    """One row per sample: each link, point and slider with its rates, vectors also by length; and
-    the forces, where there are any (`reports.describe.force_frame`)."""
+    """One row per sample: each link, point and slider with its rates, vectors also by length; how
+    elastic links are bent in their middle and stretched; and the forces, where there are any
+    (`reports.describe.force_frame`)."""
     import pandas as pd
 
     columns: dict[str, object] = {"time_s": motion.time_s}
@@ -39,6 +40,9 @@ def motion_frame(motion: Motion, *, lengths: bool = True) -> pd.DataFrame:
         columns[f"{name}_slider_displacement_m"] = slider.displacement
         columns[f"{name}_slider_speed_m_s"] = slider.speed
         columns[f"{name}_slider_acceleration_m_s2"] = slider.acceleration
+    for name, shape in motion.elastic.items():
+        columns[f"{name}_deflection_m"] = shape.middle
+        columns[f"{name}_extension_m"] = shape.extension
     if motion.forces is not None:
         columns |= force_columns(motion.forces, lengths=lengths)
     return pd.DataFrame(columns)

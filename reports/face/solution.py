@@ -21,6 +21,7 @@ from models.samples import samples
 from models.scene import Scene
 from reports.describe.with_forces import cleaned_forces, with_forces
 from reports.face.arguments import SceneLike, is_true, scene_of
+from reports.face.elastic_choice import ElasticChoice
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
 
@@ -100,9 +101,14 @@ def solve(
     sliders: Names = None,
     bound: bool = True,
     forces: bool = False,
+    modes: int | None = None,
+    axial_modes: int | None = None,
+    elements: int | None = None,
+    shape: str | None = None,
+    linear: bool = False,
 ) -> Solution:
     """The motion of a scene at some times, in closed form; of one that is let go, its free motion,
-    integrated (`FreeSolution`).
+    integrated (`FreeSolution`); of one with elastic links, how these bend (`ElasticSolution`).
 
     Parameters
     ----------
@@ -116,6 +122,13 @@ def solve(
         Carry error bounds (about three times the work).
     forces : bool
         Have the reactions and the driving torque as well; NaN in dead points of the driver.
+    modes, axial_modes, elements : int or None
+        Of elastic links: sines across and along each, or beam elements.
+    shape : str or None
+        What elastic links start with: ``periodic``, ``quasi-static`` or ``straight``; None is what
+        the scene says.
+    linear : bool
+        Leave out that a bent link is shorter.
 
     Raises
     ------
@@ -125,10 +138,15 @@ def solve(
         without mass and load, or no instant outside of dead points.
     """
     scene = scene_of(scene)
+    asked = ElasticChoice(modes, axial_modes, elements, shape, linear)
+    if not scene.elastic:
+        asked.refuse_of_rigid(scene)
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
     if scene.is_free:
         return _free_solution(scene, time_s, links, points, sliders, bound=bound, forces=forces)
+    if scene.elastic:
+        return _elastic_solution(scene, time_s, links, points, sliders, asked, forces=forces)
     # Whatever the times are, they are looked at there.
     motion = kinematics.solve(
         scene,
@@ -162,6 +180,24 @@ def _free_solution(
     wanted = Selection.of(scene, links, points, sliders)
     instants = samples(time_s, "time_s")
     return free_solution(scene, instants, wanted, bound=is_true(bound, "bound"))
+
+
+def _elastic_solution(
+    scene: Scene,
+    time_s: ArrayLike,
+    links: Names,
+    points: Names,
+    sliders: Names,
+    asked: ElasticChoice,
+    *,
+    forces: bool,
+) -> Solution:
+    """The motion of a scene with elastic links. Raises CrankcheckError."""
+    from reports.face.elastic_solution import elastic_solution  # slow to import
+
+    wanted = Selection.of(scene, links, points, sliders)
+    instants = samples(time_s, "time_s")
+    return elastic_solution(scene, instants, wanted, asked, forces=is_true(forces, "forces"))
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:

@@ -11,6 +11,7 @@ from rich.console import Console
 from analytic.kinematics import solve, solve_driven
 from analytic.mechanism.cycle import Along
 from analytic.structure.mobility import analyse
+from models.array import Array
 from models.errors import CrankcheckError, harmless, suggestion
 from models.files import find_scene, load_scene
 from models.motion import Motion
@@ -20,6 +21,7 @@ from reports.cli.showing import SolveRequest
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
+from reports.face.elastic_choice import ElasticChoice
 from reports.face.solution_text import (
     show_friction,
     show_heading,
@@ -46,6 +48,14 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     if request.output is not None:
         check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
+    asked = elastic_choice(request)
+    if scene.elastic and not scene.is_free:
+        from reports.cli.commands.solve_elastic import run_solve_elastic  # slow to import
+
+        run_solve_elastic(scene, request, asked, console)
+        return
+    if not scene.elastic:
+        asked.refuse_of_rigid(scene)
     if scene.is_free:
         from reports.cli.commands.solve_free import run_solve_free  # slow to import
 
@@ -70,9 +80,16 @@ def run_solve(request: SolveRequest, console: Console) -> None:
     show_notes(console, scene, motion)
 
 
+def elastic_choice(request: SolveRequest) -> ElasticChoice:
+    """What was asked for of elastic links."""
+    return ElasticChoice(
+        request.modes, request.axial_modes, request.elements, request.shape, request.linear
+    )
+
+
 def _check_driven(scene: Scene, request: SolveRequest) -> None:
     """Refuse what can not be asked of a scene that is driven. Raises CrankcheckError."""
-    _refuse_times(scene, request)
+    refuse_times(scene, request)
     if request.at_deg is not None and (request.turns or request.steps_per_turn):
         raise CrankcheckError(
             "--at-deg with --turns or --steps-per-turn: one is a single position, the others a "
@@ -113,7 +130,7 @@ def _show(console: Console, scene: Scene, motion: Motion, request: SolveRequest)
     )
 
 
-def _refuse_times(scene: Scene, request: SolveRequest) -> None:
+def refuse_times(scene: Scene, request: SolveRequest) -> None:
     """Refuse what is asked of free motion alone, of a scene that is driven. Raises
     CrankcheckError."""
     for option, value in (("--duration", request.duration), ("--steps", request.steps)):
@@ -183,6 +200,11 @@ def _at(scene: Scene, at_deg: float, *, clockwise: bool = False) -> Motion:
 
 def _over(scene: Scene, request: SolveRequest) -> Motion:
     """The motion over whole turns, the last sample included."""
+    return solve(scene, instants_of(scene, request))
+
+
+def instants_of(scene: Scene, request: SolveRequest) -> Array:
+    """Those of whole turns, the last sample included [s]. Raises CrankcheckError."""
     turns = 1.0 if request.turns is None else request.turns
     steps = request.steps_per_turn
     if steps is None:
@@ -203,7 +225,7 @@ def _over(scene: Scene, request: SolveRequest) -> Motion:
         )
     samples = math.ceil(last) + 1
     step_s = scene.driver.law.period_s / steps
-    return solve(scene, step_s * np.arange(samples, dtype=np.float64))
+    return step_s * np.arange(samples, dtype=np.float64)
 
 
 def _write(path: Path, scene: Scene, motion: Motion) -> str:

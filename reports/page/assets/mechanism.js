@@ -40,7 +40,8 @@ crankcheck.mechanism = (() => {
    * `show(position, overlays, factor)`, which draws overlays `{rows, paint, trail, only, width}` and
    * tells whether any of them was cut off: at `reach` times the size of the drawing. With a `trail`
    * the way that its points have come is drawn; `only` names the `links` that are drawn, the
-   * points of `blocks`, and those that get `marks` of their own.
+   * points of `blocks`, and those that get `marks` of their own. `bent` are elastic links by name:
+   * the two `pins`, and `rows` of deflections from the line between them, at equal parts of it.
    */
   return (element, drawing, reach = FARTHEST) => {
     const scene = read(drawing);
@@ -101,14 +102,27 @@ crankcheck.mechanism = (() => {
       return exact + Math.max(-TURNED, Math.min(TURNED, off || 0));
     }
 
+    /** The places along an elastic link between its pins; one of them null where a pin has none. */
+    function bow({ pins: [a, b], rows }, position, run) {
+      const [start, end] = [a, b].map((name) => place(name, position, run));
+      if (!start || !end) return [null];
+      const [x, y] = [end[0] - start[0], end[1] - start[1]];
+      const length = Math.hypot(x, y) || 1;
+      return rows.map((row, k) => {
+        const [share, off] = [k / (rows.length - 1), (run.factor * between(row, position)) / length];
+        return [start[0] + share * x - off * y, start[1] + share * y + off * x];
+      });
+    }
+
     /** The links and blocks of the reference or of a run; of a run that has `only` some, these. */
     function bodies(position, run) {
       const { links, blocks: those, marks } = run?.only ?? {};
       const found = scene.links.map((link) => {
         if (links && !links.includes(link.name)) return null;
-        const corners = link.points.map((name) => place(name, position, run));
+        const bent = run?.bent?.[link.name];
+        const corners = bent ? bow(bent, position, run) : link.points.map((name) => place(name, position, run));
         if (corners.some((corner) => corner === null)) return null;
-        const plate = corners.length > 2;
+        const plate = corners.length > 2 && !bent;
         const kind = `link${link.name === scene.driver ? " driver" : ""}${plate ? " plate" : ""}`;
         return path(corners, { class: kind }, plate);
       });

@@ -1,0 +1,110 @@
+"""A scene with elastic links over time, beside the same scene with rigid ones: what is told and
+drawn of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import bent, sampled
+from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
+from models.array import Array
+from models.motion import Motion
+from models.scene import Scene
+from reports.describe.elastic_words import described
+
+SHARES = np.linspace(0.0, 1.0, 41)
+"""Of an elastic link's length, at which its shape is looked at; the middle is one of them."""
+
+ROUNDING = 1e-14
+"""Of the largest of a series: its joints are closed to no less."""
+LEAST, MOST, IN_A_PERIOD = 180, 7200, 360
+"""Parts of what is closely sampled: at least and at most, and in a period of the driver."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A link's angle [rad] or a slider's displacement [m], with elastic links and with rigid ones,
+    (T,) each."""
+
+    name: str
+    unit: str
+    elastic: Array
+    rigid: Array
+
+    @property
+    def difference(self) -> Array:
+        """Elastic less rigid; what is nothing but rounding is 0."""
+        apart = self.elastic - self.rigid
+        rounding = ROUNDING * float(np.max(np.abs(self.rigid), initial=0.0))
+        return np.where(np.abs(apart) <= rounding, 0.0, apart)
+
+
+@dataclass(frozen=True)
+class ElasticCourse:
+    """Both motions at the same instants, with their forces; ``bent`` is how far each elastic link
+    is from the line between its pins [m], (T, K), at `SHARES` of its length. ``words`` say how the
+    links are described, and how they start."""
+
+    scene: Scene
+    motion: Motion
+    rigid: Motion
+    bent: Mapping[str, Array]
+    words: str
+
+    @property
+    def time_s(self) -> Array:
+        """(T,)."""
+        return self.motion.time_s
+
+    @property
+    def turns(self) -> float:
+        """Periods of the driver from the start to the end."""
+        return float(self.time_s[-1]) / self.scene.driver.law.period_s
+
+    def apart(self) -> Iterator[Apart]:
+        """What elastic links change: the angles of links, without that of a driver that follows a
+        law, which is told, and the displacements of sliders."""
+        for name, link in self.motion.links.items():
+            if name != self.scene.driver.link or self.scene.is_free:
+                yield Apart(name, "rad", link.theta, self.rigid.links[name].theta)
+        for name, slider in self.motion.sliders.items():
+            rigid = self.rigid.sliders[name].displacement
+            yield Apart(f"slider {name}", "m", slider.displacement, rigid)
+
+    @property
+    def torques(self) -> tuple[Array, Array] | None:
+        """Those of the drive with elastic links and with rigid ones [N m], (T,)."""
+        acting, rigid = self.motion.forces, self.rigid.forces
+        return None if acting is None or rigid is None else (acting.torque, rigid.torque)
+
+
+def rigid_of(scene: Scene) -> Scene:
+    """The scene with its elastic links as rigid ones."""
+    return replace(scene, elastic={}, start=replace(scene.start, shape=None))
+
+
+def closely_sampled(scene: Scene, until_s: float) -> Array:
+    """Instants from 0 to a time [s], both included, close enough to draw, and to find extremes."""
+    count = IN_A_PERIOD * until_s / scene.driver.law.period_s
+    return np.linspace(0.0, until_s, int(np.clip(round(count), LEAST, MOST)) + 1)
+
+
+def elastic_course(motion: DrivenElasticMotion, time_s: Array) -> ElasticCourse:
+    """A driven motion at times [s], (T,). Raises CrankcheckError where there is none."""
+    scene = motion.scene
+    rigid = solve(rigid_of(scene), time_s, bound=False)
+    acting = forces(rigid_of(scene), time_s, bound=False, skip_dead_points=True)
+    words = [described(scene, motion.by), f"start {motion.start}"]
+    words += ["shortening left out"] * (not motion.stiffened)
+    return ElasticCourse(
+        scene,
+        sampled(motion, time_s),
+        replace(rigid, forces=acting),
+        bent(motion, time_s, SHARES),
+        ", ".join(words),
+    )

@@ -1,0 +1,112 @@
+"""How elastic links are to be described and started, as a user says it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast, get_args
+
+from models.elastic import Shape
+from models.errors import CrankcheckError
+from models.laws import ConstantSpeed, Oscillating
+from models.scene import Scene
+from reports.face.arguments import is_true, one_of, whole_of
+
+if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
+    from analytic.elastic.discretisation import Discretisation
+    from analytic.elastic.elastic_motion import DrivenElasticMotion
+
+MOST_MODES, MOST_ELEMENTS = 40, 40
+"""More change nothing but the time that they take: the stiffest of them follow nothing."""
+STARTS_AS = "quasi-static"
+"""What a scene starts with that does not say."""
+
+
+@dataclass(frozen=True)
+class ElasticChoice:
+    """What was asked for, each None where it was not: so many sines across and along each link, or
+    so many elements; the shape at time 0; ``linear`` leaves the shortening of bent links out."""
+
+    modes: int | None = None
+    axial_modes: int | None = None
+    elements: int | None = None
+    shape: str | None = None
+    linear: bool = False
+
+    @property
+    def options(self) -> list[str]:
+        """Those that were given."""
+        given = {
+            "--modes": self.modes,
+            "--axial-modes": self.axial_modes,
+            "--elements": self.elements,
+            "--shape": self.shape,
+            "--linear": self.linear or None,
+        }
+        return [name for name, value in given.items() if value is not None]
+
+    def refuse_of_rigid(self, scene: Scene) -> None:
+        """Raises CrankcheckError where anything was asked for of a scene without elastic links."""
+        for option in self.options:
+            raise CrankcheckError(
+                f"{option}: {scene.name} has no elastic links; give it a table [elastic.LINK], or "
+                f"leave {option} out"
+            )
+
+    def discretisation(self, scene: Scene) -> Discretisation:
+        """Raises CrankcheckError for numbers that are none, and for those that go together."""
+        from analytic.elastic.discretisation import Elements, Modes
+
+        usual = Modes()
+        if self.elements is not None:
+            for option, value in (("--modes", self.modes), ("--axial-modes", self.axial_modes)):
+                if value is not None:
+                    raise CrankcheckError(
+                        f"--elements with {option}: a link is described by elements or by modes; "
+                        "give one of them"
+                    )
+            return Elements(_number(self.elements, "--elements", MOST_ELEMENTS))
+        for option, value, kind in (
+            ("--modes", self.modes, "bends"),
+            ("--axial-modes", self.axial_modes, "stretches"),
+        ):
+            if value is not None and not any(getattr(x, kind) for x in scene.elastic.values()):
+                raise CrankcheckError(
+                    f"{option} {value}: no elastic link of {scene.name} {kind}; give one "
+                    f"{kind} = true, or leave {option} out"
+                )
+        return Modes(
+            usual.across if self.modes is None else _number(self.modes, "--modes", MOST_MODES),
+            usual.along
+            if self.axial_modes is None
+            else _number(self.axial_modes, "--axial-modes", MOST_MODES),
+        )
+
+    def start(self, scene: Scene) -> Shape:
+        """The shape at time 0. Raises CrankcheckError for a periodic motion of what is not."""
+        asked = self.shape or scene.start.shape or STARTS_AS
+        chosen = cast(Shape, one_of(asked, "--shape", get_args(Shape)))
+        if chosen == "periodic" and not isinstance(scene.driver.law, ConstantSpeed | Oscillating):
+            raise CrankcheckError(
+                f"--shape periodic: the driver of {scene.name} does not come back after a period; "
+                "give it a constant speed, or --shape quasi-static"
+            )
+        return chosen
+
+    def driven(self, scene: Scene, until_s: float) -> DrivenElasticMotion:
+        """The motion of a scene that follows its law, from 0 to a time [s].
+
+        Raises CrankcheckError for what can not be asked, and what it does not allow.
+        """
+        from analytic.elastic.elastic_motion import DrivenElasticMotion
+
+        stiffened = not is_true(self.linear, "--linear")
+        by, start = self.discretisation(scene), self.start(scene)
+        return DrivenElasticMotion(scene, until_s, by, start, stiffened)
+
+
+def _number(value: object, option: str, most: int) -> int:
+    """A whole number from 1 to ``most``. Raises CrankcheckError."""
+    number = whole_of(value, option)
+    if number > most:
+        raise CrankcheckError(f"{option} {number}: at most {most}")
+    return number

@@ -1,0 +1,50 @@
+"""A motion with elastic links on the terminal: what is elastic, how it moves, and how far it is to
+be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.structure.mobility import analyse
+from reports.describe.elastic_course import ElasticCourse
+from reports.describe.elastic_motion import (
+    elastic_tables,
+    extremes,
+    extremes_table,
+    largest_deflections,
+)
+from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
+from reports.describe.force_tables import motion_force_tables
+from reports.describe.frame import cleaned
+from reports.face.solution_text import heading
+
+
+def show_elastic(
+    console: Console,
+    motion: DrivenElasticMotion,
+    shown: ElasticCourse,
+    fine: ElasticCourse,
+    certainty: Sequence[str],
+    *,
+    forces: bool,
+) -> None:
+    """Print the mechanism, the samples that are ``shown``, and the largest of a motion closely
+    sampled, ``fine``."""
+    scene = motion.scene
+    facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
+    told = heading(scene, analyse(scene)) + "\n".join(facts) + "\n"
+    console.print(told, highlight=False, markup=False)
+    for table in elastic_tables(shown, console.width):
+        console.print(table, "")
+    if forces and shown.motion.forces is not None:
+        acting = shown.motion.forces
+        for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
+            console.print(table, "")
+    console.print(extremes_table(scene, extremes(fine)), "")
+    for line in (start_words(scene, motion.start), *certainty):
+        console.print(line, highlight=False, markup=False)
+    for line in elastic_warnings(scene, largest_deflections(fine)):
+        console.print(line, style="yellow", highlight=False, markup=False)

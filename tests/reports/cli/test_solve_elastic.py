@@ -1,0 +1,147 @@
+"""`crankcheck solve` of a scene with elastic links: tables, files, figures, a page, mistakes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner, Result
+
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.kinematics import solve
+from models.files import load_scene
+from models.scene_text import scene_text
+from reports.cli import app
+
+Crank = Callable[..., Result]
+NAME = "fourbar-elastic"
+
+
+@pytest.fixture
+def crank() -> Crank:
+    """Run the command with arguments."""
+    runner = CliRunner()
+
+    def run(*args: str) -> Result:
+        return runner.invoke(app, list(args), catch_exceptions=False)
+
+    return run
+
+
+def said(result: Result) -> str:
+    return " ".join(result.output.split())
+
+
+@pytest.fixture(scope="module")
+def motion() -> DrivenElasticMotion:
+    """The motion of the shipped scene over a turn."""
+    scene = load_scene(NAME)
+    return DrivenElasticMotion(
+        scene, scene.driver.law.period_s, Modes(), "periodic", stiffened=True
+    )
+
+
+def test_it_tells_how_links_bend_and_how_far_that_is_to_be_trusted(
+    crank: Crank, motion: DrivenElasticMotion
+) -> None:
+    result = crank("solve", NAME, "--steps-per-turn", "4")
+    assert result.exit_code == 0
+    assert max(len(line.rstrip()) for line in result.output.splitlines()) <= 100
+    told = said(result)
+    assert "bends with EI = 4.725 N m^2, from 77.3704 rad/s on (10.5 times the speed" in told
+    assert "elastic links by 5 sines across each, with the shortening of bent links" in told
+    assert "Starts on the periodic motion: it comes back after a period" in told
+    assert re.search(r"deflections are off by about \d.\de-5 of the largest", told)
+    assert "Near resonance" not in told
+    quarter = motion.at(np.array([0.25 * motion.until_s]))
+    middle = float(quarter.elastic["coupler"].middle[0])
+    row, *_ = re.findall(r"^ *0\.2131743 +180 +(\S+)", result.output, flags=re.MULTILINE)
+    assert float(row) == pytest.approx(middle, rel=1e-5)
+    (largest,) = re.findall(r"deflection of its middle +(\S+) +m +(\S+) deg", result.output)
+    fine = motion.at(np.linspace(0.0, motion.until_s, 721)).elastic["coupler"].middle
+    assert float(largest[0]) == pytest.approx(float(np.max(np.abs(fine))), rel=1e-4)
+
+
+def test_the_linear_theory_says_what_it_leaves_out(crank: Crank) -> None:
+    """ELASTIC: 1.28 % of the largest deflection at a frequency ratio of 10.5."""
+    told = said(crank("solve", NAME, "--linear", "--modes", "3", "--steps-per-turn", "2"))
+    assert "by 3 sines across each, without the shortening of bent links (linear" in told
+    (percent,) = re.findall(r"changes deflections by (\S+) % of the largest", told)
+    assert float(percent) == pytest.approx(1.28, abs=0.05)
+
+
+def test_a_file_has_both_motions_to_the_last_bit(
+    crank: Crank, motion: DrivenElasticMotion, tmp_path: Path
+) -> None:
+    path = tmp_path / "out.csv"
+    done = crank("solve", NAME, "-o", str(path), "--steps-per-turn", "9", "--forces")
+    assert done.exit_code == 0
+    frame = pd.read_csv(path)
+    time_s = frame["time_s"].to_numpy()
+    whole, rigid = motion.at(time_s), solve(motion.scene, time_s, bound=False)
+    assert whole.forces is not None
+    np.testing.assert_allclose(
+        frame["coupler_deflection_m"], whole.elastic["coupler"].middle, rtol=0, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        frame["coupler_extension_m"], whole.elastic["coupler"].extension, rtol=0, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        frame["rocker_theta_rad"], whole.links["rocker"].theta, rtol=0, atol=1e-13
+    )
+    np.testing.assert_array_equal(frame["rocker_theta_rigid_rad"], rigid.links["rocker"].theta)
+    np.testing.assert_allclose(frame["torque_n_m"], whole.forces.torque, rtol=0, atol=1e-11)
+    assert "torque_rigid_n_m" in frame
+
+
+def test_figures_and_a_page_are_written(crank: Crank, tmp_path: Path) -> None:
+    page, folder = tmp_path / "page.html", tmp_path / "figures"
+    result = crank("solve", NAME, "--figures", str(folder), "-o", str(page))
+    assert result.exit_code == 0
+    names = {each.name for each in folder.iterdir()}
+    every = ("deflection", "extension", "torque", "angles", "positions")
+    assert names == {f"{n}.{k}" for n in every for k in ("svg", "pdf")}
+    positions = (folder / "positions.svg").read_text(encoding="utf-8")
+    assert "magnified 50 times" in positions
+    text = page.read_text(encoding="utf-8")
+    assert text.count("data:image/svg+xml;base64,") == 5
+    assert "Starts on the periodic motion" in text
+
+
+REFUSED = {
+    f"solve {NAME} --at-deg 90": "--at-deg: fourbar-elastic has elastic links (coupler)",
+    f"solve {NAME} --along C:30": "--along: fourbar-elastic has elastic links",
+    f"solve {NAME} --duration 2": "--duration 2: fourbar-elastic is driven",
+    f"solve {NAME} --modes 0": "--modes: found 0; give a whole number, at least 1",
+    f"solve {NAME} --modes 99": "--modes 99: at most 40",
+    f"solve {NAME} --elements 99": "--elements 99: at most 40",
+    f"solve {NAME} --elements 2 --modes 3": "--elements with --modes",
+    f"solve {NAME} --axial-modes 2": "--axial-modes 2: no elastic link of",
+    f"solve {NAME} --shape bent": "--shape 'bent': unknown; use quasi-static, straight or periodic",
+    f"solve {NAME} --steps-per-turn 9 -o OUT.html": "a page has its own samples",
+    f"solve {NAME} --turns 0": "--turns 0: give a number above 0",
+    "solve fourbar-lecture-1 --modes 3": "--modes: fourbar-lecture-1 has no elastic links",
+    "solve fourbar-lecture-1 --linear": "--linear: fourbar-lecture-1 has no elastic links",
+    "solve fourbar-swing --shape straight": "--shape: fourbar-swing has no elastic links",
+    "solve law.toml --shape periodic": "does not come back after a period",
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_what_makes_no_sense_of_elastic_links_is_refused(
+    line: str, crank: Crank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    law = 'law = "from-rest"\nspeed_rad_s = 7.3686\nrise_s = 0.5'
+    text = scene_text(load_scene(NAME))
+    text = re.sub(r"speed_rad_s = 7.3686", law, text).replace('shape = "periodic"', "")
+    Path("law.toml").write_text(text, encoding="utf-8")
+    result = crank(*line.split())
+    assert result.exit_code == 2
+    assert REFUSED[line] in " ".join(result.stderr.split())
+    assert [each.name for each in tmp_path.iterdir()] == ["law.toml"]
