@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from analytic.elastic.discretisation import Discretisation, Elements, Modes
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials
 from models.elastic import ElasticLink, Shape
 from models.elastic_line import line_of
 from models.laws import ConstantSpeed
@@ -41,9 +41,10 @@ def described(scene: Scene, by: Discretisation) -> str:
     bends, stretches = (
         any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
     )
-    if isinstance(by, Modes):
-        parts = [f"{count(by.across, 'sine')} across"] * bends
-        parts += [f"{count(by.along, 'sine')} along"] * stretches
+    if isinstance(by, Modes | Polynomials):
+        shape = "sine" if isinstance(by, Modes) else "polynomial"
+        parts = [f"{count(by.across, shape)} across"] * bends
+        parts += [f"{count(by.along, shape)} along"] * stretches
         return listed(parts)
     if isinstance(by, Elements):
         return count(by.count, "beam element")
