@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
 from analytic.elastic.free_by_library import by_library
-from analytic.elastic.free_windows import Piece, by_gauss
+from analytic.elastic.free_windows import Piece, by_collocation
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
@@ -33,11 +33,11 @@ from models.released import check_duration
 from models.samples import samples
 from models.scene import Scene
 
-Method = Literal["gauss", "radau"]
+Method = Literal["collocation", "library"]
 TOLERANCE = 1e-11
-WITH_AXIAL = 1e-9
+WITH_AXIAL = 1e-10
 """The same where links stretch: they ring along themselves a thousand times faster than across, by
-1e-10 m or less, and a method that is stable need not follow that."""
+1e-10 m or less, which is left to die out; at 1e-11 it would be followed, in ten times the time."""
 COARSER = 100.0
 """By how much larger is the tolerance of the motion that this one is held to."""
 
@@ -107,7 +107,7 @@ class ReleasedElasticMotion:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The motion, one piece after the other."""
-        integrate = by_gauss if self.method == "gauss" else by_library
+        integrate = by_collocation if self.method == "collocation" else by_library
         return integrate(self.form, *self.start, self.until_s, self.tolerance)
 
     def at(self, time_s: Array) -> Motion:
@@ -171,7 +171,7 @@ def release_elastic(
     by: Discretisation | None = None,
     *,
     stiffened: bool = True,
-    method: Method = "gauss",
+    method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
     """The motion of a scene with elastic links from its start, when it is let go.
@@ -187,11 +187,11 @@ def release_elastic(
         How its elastic links are described; None for `Modes`.
     stiffened : bool
         Keep the shortening of bent links; without, as the thesis has them.
-    method : "gauss" or "radau"
-        Of collocation, or the library's.
+    method : "collocation" or "library"
+        By windows of our own, or by the library's method for stiff equations.
     tolerance : float or None
-        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-9 with
-        links that stretch.
+        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-10
+        with links that stretch.
 
     Raises
     ------

@@ -85,7 +85,7 @@ def test_three_methods_agree(mechanism: Scene, by: Discretisation, until_s: floa
         apart(release_elastic(mechanism, until_s, by).at(time_s), multibody.at(time_s), link) < 1e-8
     )
     early = time_s[:6]
-    radau = release_elastic(mechanism, early[-1], by, method="radau", tolerance=1e-9)
+    radau = release_elastic(mechanism, early[-1], by, method="library", tolerance=1e-9)
     assert apart(radau.at(early), multibody.at(early), link) < 1e-5
 
 
