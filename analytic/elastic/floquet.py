@@ -80,11 +80,12 @@ def stability_of(form: ReducedForm, motion: PeriodicMotion) -> Stability:
     return stability(linear, form.period_s)
 
 
-def stability(linear: LinearForm, period_s: float) -> Stability:
-    """That of linearised equations at an odd number of instants of a period."""
+def stability(linear: LinearForm, period_s: float, highest: float = math.inf) -> Stability:
+    """That of linearised equations at an odd number of instants of a period; modes of orders above
+    ``highest`` need not be told."""
     modes = natural_modes(linear.mass, linear.stiffness)
     orders = modes.mean_rad_s * period_s / math.tau
-    windows = math.ceil(float(orders.max()) * math.tau / RADIANS)
+    windows = math.ceil(min(float(orders.max()), highest) * math.tau / RADIANS)
     windows = min(max(windows, FEWEST), MOST)
     monodromy = by_collocation(linear, period_s, windows)
     resolved = orders * math.tau <= 1.5 * RADIANS * windows

@@ -110,7 +110,7 @@ class OverSpeeds:
                 break
             speed = a - before * (b - a) / (after - before)
             linear = self.every.linear(speed)
-            off = stability(linear, math.tau / speed).deviations[k].order - order
+            off = stability(linear, math.tau / speed, HIGHEST).deviations[k].order - order
             if not math.isfinite(off) or off == 0.0:
                 break
             if off * before > 0.0:
@@ -138,7 +138,7 @@ def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
     for speed in map(float, speeds):
         period_s, linear = math.tau / speed, every.linear(speed)
         z, change = balanced(linear, period_s, form.stiffness)
-        own = stability(linear, period_s)
+        own = stability(linear, period_s, HIGHEST)
         hangs = sensitivity(form, z, change)
         found.append(AtSpeed(speed, lowest / speed, swings(form, z), own, hangs))
     return OverSpeeds(every, form, tuple(found))
