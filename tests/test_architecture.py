@@ -32,7 +32,7 @@ FLOORS: Mapping[str, str] = {
         own_model
         diff tune advise history verify selftest
         sweep stability own_log contract
-        results regulation
+        results regulation vibration
         store
         plan
         causes

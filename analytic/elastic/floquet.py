@@ -80,13 +80,26 @@ def stability_of(form: ReducedForm, motion: PeriodicMotion) -> Stability:
     return stability(linear, form.period_s)
 
 
-def stability(linear: LinearForm, period_s: float) -> Stability:
-    """That of linearised equations at an odd number of instants of a period."""
+def stability(linear: LinearForm, period_s: float, highest: float = math.inf) -> Stability:
+    """That of linearised equations at an odd number of instants of a period; modes of orders above
+    ``highest`` need not be told."""
     modes = natural_modes(linear.mass, linear.stiffness)
+    windows = window_count(modes, period_s, highest)
+    return looked_at(by_collocation(linear, period_s, windows), windows, linear, modes, period_s)
+
+
+def window_count(modes: NaturalModes, period_s: float, highest: float) -> int:
+    """How many windows of a period do for modes up to an order."""
+    fastest = min(float(modes.mean_rad_s.max()) * period_s / math.tau, highest)
+    return min(max(math.ceil(fastest * math.tau / RADIANS), FEWEST), MOST)
+
+
+def looked_at(
+    monodromy: Monodromy, windows: int, linear: LinearForm, modes: NaturalModes, period_s: float
+) -> Stability:
+    """The stability that a monodromy matrix of linearised equations tells of, which so many windows
+    of a period made, and modes of which are known."""
     orders = modes.mean_rad_s * period_s / math.tau
-    windows = math.ceil(float(orders.max()) * math.tau / RADIANS)
-    windows = min(max(windows, FEWEST), MOST)
-    monodromy = by_collocation(linear, period_s, windows)
     resolved = orders * math.tau <= 1.5 * RADIANS * windows
     found = _deviations(monodromy, modes, linear.mass[0], orders, resolved)
     return Stability(tuple(found), monodromy)

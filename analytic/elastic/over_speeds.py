@@ -16,9 +16,16 @@ import numpy as np
 
 from analytic.elastic.any_speed import AnySpeed
 from analytic.elastic.discretisation import Modes
-from analytic.elastic.floquet import Deviation, Stability, stability
-from analytic.elastic.natural import lowest_rad_s
-from analytic.elastic.periodic import balanced
+from analytic.elastic.floquet import (
+    Deviation,
+    Stability,
+    looked_at,
+    stability,
+    window_count,
+)
+from analytic.elastic.linearised import LinearForm
+from analytic.elastic.monodromy import Monodromy, Windows
+from analytic.elastic.natural import lowest_rad_s, natural_modes
 from analytic.elastic.reduced import ReducedForm
 from analytic.elastic.resonance import MOST, Sensitivity, sensitivity
 from analytic.elastic.swing import Swing, swings
@@ -110,7 +117,7 @@ class OverSpeeds:
                 break
             speed = a - before * (b - a) / (after - before)
             linear = self.every.linear(speed)
-            off = stability(linear, math.tau / speed).deviations[k].order - order
+            off = stability(linear, math.tau / speed, HIGHEST).deviations[k].order - order
             if not math.isfinite(off) or off == 0.0:
                 break
             if off * before > 0.0:
@@ -120,8 +127,28 @@ class OverSpeeds:
         return speed
 
     def _sensitivity(self, speed: float) -> Sensitivity:
-        z, change = balanced(self.every.linear(speed), math.tau / speed, self.form.stiffness)
-        return sensitivity(self.form, z, change)
+        return _solved(self.form, self.every.linear(speed), math.tau / speed)[2]
+
+
+def _solved(
+    form: ReducedForm, linear: LinearForm, period_s: float
+) -> tuple[Array, Stability, Sensitivity]:
+    """The coefficients at the instants of linearised equations (N, m), and what is told of them.
+
+    By windows, each with matrices of its own: the one large matrix of harmonic balance
+    (`periodic.linear_motion`) takes ten times as long where processors are busy.
+    """
+    count = len(linear.force)
+    modes = natural_modes(linear.mass, linear.stiffness)
+    each = math.ceil(window_count(modes, period_s, HIGHEST) / count)
+    windows = Windows.of(linear, period_s, each * count)
+    monodromy = windows.over(linear.force)
+    z = windows.periodic(linear.force, monodromy)[::each]
+    asked = z @ form.stiffness
+    pushed = Monodromy(monodromy.matrix, windows.over(asked).particular)
+    change = windows.periodic(asked, pushed)[::each]
+    stable = looked_at(monodromy, each * count, linear, modes, period_s)
+    return z, stable, sensitivity(form, z, change)
 
 
 def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
@@ -136,10 +163,7 @@ def over_speeds(scene: Scene, by: Modes, speeds: Array) -> OverSpeeds:
     form, lowest = every.form(float(speeds[0])), lowest_rad_s(scene)
     found = []
     for speed in map(float, speeds):
-        period_s, linear = math.tau / speed, every.linear(speed)
-        z, change = balanced(linear, period_s, form.stiffness)
-        own = stability(linear, period_s)
-        hangs = sensitivity(form, z, change)
+        z, own, hangs = _solved(form, every.linear(speed), math.tau / speed)
         found.append(AtSpeed(speed, lowest / speed, swings(form, z), own, hangs))
     return OverSpeeds(every, form, tuple(found))
 

@@ -9,7 +9,7 @@ from reports.cli import changes, measuring
 from reports.cli import judging, showing  # --help lists commands in the order of these lines
 
 # isort: split
-from reports.cli import regulating
+from reports.cli import regulating, vibrating
 
 # isort: split
 from reports.cli import recipes
@@ -26,4 +26,5 @@ __all__ = [
     "recipes",
     "regulating",
     "showing",
+    "vibrating",
 ]

@@ -1,0 +1,1 @@
+"""Figures of the vibration of elastic links: over a turn, over speeds, over inertia."""

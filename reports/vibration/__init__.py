@@ -1,0 +1,1 @@
+"""The steady vibration of elastic links in numbers: rows, tables, files."""
