@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from analytic.elastic.discretisation import Discretisation, Elements, Modes
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, Polynomials
 from models.elastic import ElasticLink, Shape
 from models.elastic_line import line_of
 from models.laws import ConstantSpeed
@@ -42,12 +42,19 @@ def described(scene: Scene, by: Discretisation) -> str:
         any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
     )
     if isinstance(by, Modes):
-        parts = [f"{count(by.across, 'sine')} across"] * bends
-        parts += [f"{count(by.along, 'sine')} along"] * stretches
-        return listed(parts)
+        return listed(_across_and_along(by, "sine", bends=bends, stretches=stretches))
+    if isinstance(by, Polynomials):
+        return listed(_across_and_along(by, "polynomial", bends=bends, stretches=stretches))
     if isinstance(by, Elements):
         return count(by.count, "beam element")
     return count(by.count, "rigid segment")
+
+
+def _across_and_along(
+    by: Modes | Polynomials, noun: str, *, bends: bool, stretches: bool
+) -> list[str]:
+    across, along = count(by.across, noun), count(by.along, noun)
+    return [f"{across} across"] * bends + [f"{along} along"] * stretches
 
 
 def _link(scene: Scene, own: ElasticLink) -> str:
