@@ -10,6 +10,7 @@ from models.elastic import ElasticLink
 from models.elastic_line import line_of
 from models.elastic_schema import ElasticTable
 from models.errors import cut, few
+from models.laws import ConstantSpeed, Oscillating
 from models.scene import Scene
 from models.schema import SceneTable
 
@@ -70,8 +71,41 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
                 f"elastic.{name}: it is {line.length_m / own.height_m:.3g} heights of its section "
                 f"long; from {SLENDER:g} on a beam bends as it does here, without shear"
             )
+    yield from _faults_of_loads(scene)
+    if scene.elastic and scene.friction:
+        yield (
+            f"friction.{next(iter(scene.friction))}: friction and elastic links do not go together "
+            "here; leave one of them out"
+        )
+    if scene.start.shape == "periodic" and not comes_back(scene.driver.law):
+        yield (
+            'start.shape: found "periodic"; that goes with a driver of constant speed, or one that '
+            'oscillates; use "quasi-static" or "straight"'
+        )
     if scene.start.shape and not scene.elastic:
         yield "start.shape: it goes with [elastic.LINK]; no link of the scene is elastic"
+
+
+def _faults_of_loads(scene: Scene) -> Iterator[str]:
+    """One line per load that needs to know how an elastic link turns as a whole."""
+    for name, load in scene.loads.items():
+        if load.body not in scene.elastic:
+            continue
+        if load.point is None:
+            yield (
+                f"loads.{name}: it turns {load.body}, which is elastic: a torque bends it by where "
+                "it acts; put it on a rigid link, or a force at a point"
+            )
+        elif load.over == "omega":
+            yield (
+                f"loads.{name}: it goes over the angular velocity of {load.body}, which is "
+                "elastic and has many; put it on a rigid link"
+            )
+
+
+def comes_back(law: object) -> bool:
+    """Whether the speed of a driver is the same after a period."""
+    return isinstance(law, ConstantSpeed | Oscillating)
 
 
 def faults_of_elastic(

@@ -21,9 +21,11 @@ import numpy as np
 from models.elastic import ElasticLink
 from models.elastic_line import Line, line_of
 from models.errors import CrankcheckError
+from models.loads import Load
 from models.motion import ElasticMotion, LinkMotion, Motion
 from models.scene import Link, Point, Scene
-from models.springs import PinSpring
+from models.springs import PinSpring, Spring
+from models.start import Start
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,14 @@ class SegmentedScene:
                     f"{self.scene.name}: elastic.{name} stretches, and a chain of segments does "
                     "not; give stretches = false, or an engine that has beams"
                 )
+        made = {name for link in self.scene.elastic for name in self.segments(link)}
+        nodes = {node for link in self.scene.elastic for node in self.nodes(link)[1:-1]}
+        twice = (made & {*self.scene.links}) | (nodes & {*self._named})
+        if twice:
+            raise CrankcheckError(
+                f"{self.scene.name}: the segments of its elastic links need the name "
+                f"{min(twice)}, which the scene has; give that another one"
+            )
 
     def segments(self, link: str) -> tuple[str, ...]:
         """The names of the segments of an elastic link, from its first pin on."""
@@ -73,7 +83,7 @@ class SegmentedScene:
     def rigid(self) -> Scene:
         """The scene that an engine is given."""
         links: dict[str, Link] = {}
-        springs = dict(self.scene.springs)
+        springs = {name: self._held(spring) for name, spring in self.scene.springs.items()}
         for name, link in self.scene.links.items():
             if name not in self.scene.elastic:
                 links[name] = link
@@ -81,7 +91,45 @@ class SegmentedScene:
             own = self.scene.elastic[name]
             links |= self._chain(link, line_of(self.scene, name))
             springs |= self._springs(own, line_of(self.scene, name))
-        return replace(self.scene, links=links, springs=springs, elastic={})
+        loads = {name: self._put(load) for name, load in self.scene.loads.items()}
+        return replace(
+            self.scene, links=links, springs=springs, loads=loads, elastic={}, start=Start()
+        )
+
+    def _segment(self, line: Line, place: Point) -> tuple[int, Point]:
+        """The segment that carries a place of the link, and where it is in the segment's frame."""
+        piece = line.length_m / self.count
+        x, y = line.along(place)
+        i = min(max(int(x / piece + 1e-9), 0), self.count - 1)
+        return i, (x - i * piece, y)
+
+    def _carrier(self, link: str, point: str) -> str:
+        """The segment that carries a named point of an elastic link."""
+        place = self.scene.links[link].points[point]
+        return self.segments(link)[self._segment(line_of(self.scene, link), place)[0]]
+
+    def _put(self, load: Load) -> Load:
+        """A load on the segment that has its point."""
+        if load.body not in self.scene.elastic or load.point is None:
+            return load
+        lean = line_of(self.scene, load.body).lean_rad if load.frame == "body" else 0.0
+        return replace(
+            load,
+            body=self._carrier(load.body, load.point),
+            direction_rad=load.direction_rad - lean,
+        )
+
+    def _held(self, spring: Spring) -> Spring:
+        """A spring in a pin between the segments that meet there."""
+        if not isinstance(spring, PinSpring):
+            return spring
+        bodies, ahead = [], []
+        for body in spring.bodies:
+            elastic = body in self.scene.elastic
+            bodies.append(self._carrier(body, spring.point) if elastic else body)
+            ahead.append(line_of(self.scene, body).lean_rad if elastic else 0.0)
+        free = spring.free + ahead[1] - ahead[0]
+        return replace(spring, bodies=(bodies[0], bodies[1]), free=free)
 
     def _chain(self, link: Link, line: Line) -> dict[str, Link]:
         """The segments, each in a frame of its own from its first point on."""
@@ -91,9 +139,8 @@ class SegmentedScene:
         ]
         for name, place in link.points.items():
             if name not in line.pins:
-                x, y = line.along(place)
-                i = min(max(int(x / piece + 1e-9), 0), self.count - 1)
-                points[i][name] = (x - i * piece, y)
+                i, there = self._segment(line, place)
+                points[i][name] = there
         mass = line.density_kg_m * piece
         return {
             name: Link(name, points[i], mass, (0.5 * piece, 0.0), mass * piece**2 / 12.0)

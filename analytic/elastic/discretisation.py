@@ -12,6 +12,8 @@ from analytic.elastic.segments import SegmentedBody
 from analytic.elastic.shapes import Shapes
 from models.elastic import ElasticLink
 from models.elastic_line import line_of
+from models.elastic_tables import SLENDER
+from models.errors import CrankcheckError
 from models.scene import Scene
 
 
@@ -24,8 +26,9 @@ class Modes:
     along: int = 2
 
     @property
-    def finer(self) -> Modes:
-        return Modes(2 * self.across + 1, 2 * self.along)
+    def finer(self) -> Polynomials:
+        """Polynomials: modes come to what they leave out too slowly to tell how much it is."""
+        return Polynomials(max(REFERENCE.across, self.across + 2), self.along + 2)
 
 
 @dataclass(frozen=True)
@@ -74,8 +77,39 @@ those of the beam are."""
 def flexible_links(
     scene: Scene, by: Discretisation, *, stiffened: bool = True
 ) -> dict[str, ElasticBody | SegmentedBody]:
-    """The elastic links of a scene as what makes their bodies, by name."""
+    """The elastic links of a scene as what makes their bodies, by name.
+
+    Raises
+    ------
+    CrankcheckError
+        Modes that are too short for a beam; none at all.
+    """
+    _check(scene, by)
     return {name: _flexible(scene, link, by, stiffened) for name, link in scene.elastic.items()}
+
+
+def _check(scene: Scene, by: Discretisation) -> None:
+    """Raises CrankcheckError for a description that no elastic link can have."""
+    for name, link in scene.elastic.items():
+        if isinstance(by, Modes | Polynomials):
+            counts = [by.across] * link.bends + [by.along] * link.stretches
+        else:
+            counts = [by.count - isinstance(by, Segments)]
+        if min(counts) < 0 or max(counts) < 1:
+            raise CrankcheckError(f"{scene.name}: {by} does not describe elastic.{name}; take more")
+        if isinstance(by, Modes) and link.bends and link.height_m:
+            _check_waves(scene, name, by.across, SLENDER * link.height_m)
+
+
+def _check_waves(scene: Scene, name: str, count: int, shortest_m: float) -> None:
+    length = line_of(scene, name).length_m
+    most = int(length / shortest_m * (1.0 + 1e-9))
+    if count > most:
+        raise CrankcheckError(
+            f"{scene.name}: found {count} modes across; the half-waves of the last are "
+            f"{length / count:.3g} m long on elastic.{name}, under {SLENDER:g} heights of its "
+            f"section, where a beam bends by shear as well; use {most} or fewer"
+        )
 
 
 def _flexible(

@@ -70,7 +70,7 @@ class GeneralisedForces:
                 continue
             angle = np.full_like(size, load.direction_rad)
             if load.frame == "body":
-                angle = angle + now.place[:, self.assembly.frames[load.body], 2]
+                angle = angle + now.place[:, marker, 2]
             force = size[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
             right += (force[:, None] @ now.gradient[:, marker, :2])[:, 0]
         for deflection in self.deflections(now):
@@ -127,7 +127,7 @@ class GeneralisedForces:
             if isinstance(spring, LineSpring):
                 yield self._line(spring, now)
             elif isinstance(spring, PinSpring):
-                first, second = (self.assembly.frames[body] for body in spring.bodies)
+                first, second = self._sides(spring)
                 gradient = now.gradient[:, second, 2] - now.gradient[:, first, 2]
                 q = self._turned(spring, now) - math.tau * self._turns[spring.name]
                 yield SpringDeflection(spring, q, (gradient * now.rates).sum(axis=1), gradient)
@@ -136,8 +136,14 @@ class GeneralisedForces:
                 yield SpringDeflection(spring, slide.displacement, slide.speed, slide.gradient)
 
     def _turned(self, spring: PinSpring, now: Configuration) -> Array:
-        first, second = (now.place[:, self.assembly.frames[body], 2] for body in spring.bodies)
-        return np.asarray(second - first)
+        first, second = self._sides(spring)
+        return np.asarray(now.place[:, second, 2] - now.place[:, first, 2])
+
+    def _sides(self, spring: PinSpring) -> tuple[int, int]:
+        """The markers that it turns against each other: at the pin, where a link may be bent."""
+        held = self.assembly.held[spring.point]
+        first, second = (held[body] for body in spring.bodies)
+        return first, second
 
     def _line(self, spring: LineSpring, now: Configuration) -> SpringDeflection:
         a, b = (self.assembly.carriers[point][1] for point in spring.points)

@@ -54,7 +54,12 @@ class TurningMachine:
     @staticmethod
     def of(scene: Scene) -> TurningMachine:
         """That of a scene; to the side that its driver starts to, and left-handed from rest.
-        Raises CrankcheckError as `cycle_angle`."""
+        Raises CrankcheckError as `cycle_angle`, and for elastic links."""
+        if scene.elastic:
+            raise CrankcheckError(
+                f"{scene.name}: {next(iter(scene.elastic))} is elastic; the steady cycle of a "
+                "machine, and its flywheel, are those of rigid links: leave [elastic.LINK] out"
+            )
         whole = cycle_angle(scene)
         theta, omega, _ = scene.driver.law.at(np.zeros(1))
         return TurningMachine(scene, math.copysign(1.0, omega[0]), float(theta[0]), whole)

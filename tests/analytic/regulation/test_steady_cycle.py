@@ -302,3 +302,8 @@ def test_a_machine_stops_from_the_coefficient_on_that_is_2() -> None:
                 cycle(scene)
         else:
             assert cycle(scene).delta == pytest.approx(2.0 * share, rel=1e-9)
+
+
+def test_elastic_links_are_not_taken_for_rigid_ones() -> None:
+    with pytest.raises(CrankcheckError, match="coupler is elastic"):
+        TurningMachine.of(load_scene("fourbar-elastic"))

@@ -1,0 +1,171 @@
+"""Elastic links in scenes with all that scenes have: frames that start elsewhere, named points,
+loads, springs, gravity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.elastic.discretisation import REFERENCE, Discretisation, Polynomials, Segments
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.segment_start import segment_start
+from analytic.forces.kinetostatics import forces
+from models.elastic import Shape
+from models.errors import CrankcheckError
+from models.files import parse_scene
+from models.motion import Motion
+from models.scene import Scene
+from models.segmented import SegmentedScene
+from models.springs import PinSpring
+from tests.analytic.elastic.driven import fourbar, with_elastic
+
+HEAD = """
+name = "rich"
+source = "synthetic"
+gravity_m_s2 = [0.5, -9.81]
+[ground]
+points = { A = [0.0, 0.0], D = [1.0, 0.0], S = [0.3, 1.4] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.15, mass_kg = 0.03645 }
+rocker = { bar = ["D", "C"], length_m = 0.75, mass_kg = 0.18225 }
+[elastic.coupler]
+modulus_pa = 70e9
+width_m = 0.03
+height_m = 0.003
+density_kg_m3 = 2700.0
+[driver]
+link = "crank"
+speed_rad_s = 7.3686
+start_deg = 90.0
+[branch]
+C = 1
+[links.coupler]
+"""
+LOADED = """
+[loads.push]
+link = "coupler"
+point = "N"
+direction_deg = 30.0
+frame = "body"
+force_n = 0.4
+[loads.turn]
+link = "rocker"
+torque_n_m = 0.3
+[springs.line]
+points = ["S", "M"]
+rate_n_m = 3.0
+free_m = 0.5
+damping_n_s_m = 0.2
+[springs.pin]
+pin = "C"
+rate_n_m_rad = 0.4
+damping_n_m_s = 0.01
+free_deg = 30.0
+"""
+POINTS = {"B": (0.0, 0.0), "C": (0.75, 0.0), "M": (0.375, 0.0), "N": (0.26, 0.1)}
+
+
+def rich(turned_rad: float = 0.0, moved: tuple[float, float] = (0.0, 0.0)) -> Scene:
+    """The coupler in a frame that is turned and moved against its line."""
+    c, s = math.cos(turned_rad), math.sin(turned_rad)
+    points = ", ".join(
+        f"{name} = [{c * x - s * y + moved[0]!r}, {s * x + c * y + moved[1]!r}]"
+        for name, (x, y) in POINTS.items()
+    )
+    less = math.degrees(turned_rad)
+    loaded = LOADED.replace("30.0\nframe", f"{30.0 + less!r}\nframe")
+    # The pin's spring turns the coupler's frame against the rocker's.
+    loaded = loaded.replace("free_deg = 30.0", f"free_deg = {30.0 - less!r}")
+    return parse_scene(f"{HEAD}points = {{ {points} }}\n{loaded}", "rich")
+
+
+def driven(
+    scene: Scene, by: Discretisation = REFERENCE, start: Shape = "periodic", count: int = 25
+) -> Motion:
+    period = scene.driver.law.period_s
+    motion = DrivenElasticMotion(scene, period, by, start, stiffened=True)
+    return motion.at(np.linspace(0.0, period, count))
+
+
+def test_where_the_frame_of_an_elastic_link_lies_changes_nothing() -> None:
+    plain, other = driven(rich()), driven(rich(0.9, (0.4, -0.3)))
+    assert plain.forces is not None
+    assert other.forces is not None
+    for point, own in plain.points.items():
+        assert other.points[point].position == pytest.approx(own.position, abs=1e-12)
+        assert other.points[point].acceleration == pytest.approx(own.acceleration, abs=1e-8)
+    middle = plain.elastic["coupler"].middle
+    assert other.elastic["coupler"].middle == pytest.approx(middle, abs=1e-12)
+    assert other.forces.torque == pytest.approx(plain.forces.torque, abs=1e-9)
+
+
+def test_a_named_point_in_the_middle_is_where_the_deflection_has_it() -> None:
+    motion = driven(rich())
+    b, c, m = (motion.points[name].position for name in "BCM")
+    way = c - b
+    across = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.linalg.norm(way, axis=1)[:, None]
+    away = ((m - b) * across).sum(axis=1)
+    assert np.abs(away).max() > 1e-3
+    assert motion.elastic["coupler"].middle == pytest.approx(away, abs=1e-12)
+
+
+def test_loads_and_springs_act_on_a_chain_as_they_do_on_the_beam() -> None:
+    """With moments on it a chain comes to the beam with order 1."""
+    scene = rich(0.9, (0.4, -0.3))
+    true = driven(scene)
+    largest = np.abs(true.elastic["coupler"].middle).max()
+    errors = []
+    for count in (8, 24):
+        chain = driven(scene, Segments(count))
+        errors.append(
+            np.abs(chain.elastic["coupler"].middle - true.elastic["coupler"].middle).max() / largest
+        )
+    assert errors[0] < 0.03
+    assert errors[1] < errors[0] / 3.0
+
+
+def test_a_stiff_link_has_the_reactions_of_the_rigid_one() -> None:
+    scene = rich(0.9, (0.4, -0.3))
+    own = scene.elastic["coupler"]
+    stiff = driven(with_elastic(scene, flexural_n_m2=1e5 * own.flexural_n_m2))
+    rigid = forces(scene, stiff.time_s)
+    assert stiff.forces is not None
+    assert stiff.forces.torque == pytest.approx(rigid.torque, abs=1e-6)
+    for pin, each in stiff.forces.pins.items():
+        for body, force in each.items():
+            assert force == pytest.approx(rigid.pins[pin][body], abs=1e-5)
+
+
+def test_an_engine_is_given_loads_and_springs_on_segments() -> None:
+    own = SegmentedScene(rich(0.9, (0.4, -0.3)), 5)
+    scene = own.rigid
+    assert scene.loads["push"].body == "coupler-2"
+    assert scene.loads["push"].direction_rad == pytest.approx(math.radians(30.0))
+    assert scene.loads["turn"].body == "rocker"
+    pin = scene.springs["pin"]
+    assert isinstance(pin, PinSpring)
+    assert pin.bodies == ("rocker", "coupler-5")
+    assert pin.free == pytest.approx(math.radians(30.0))
+    assert not scene.elastic
+    assert not scene.start
+
+
+def test_a_chain_starts_with_the_rates_of_the_quasi_static_motion() -> None:
+    own = SegmentedScene(fourbar(), 6)
+    state = segment_start(own, "quasi-static")
+    rates = {state.omega[name] for name in own.segments("coupler")}
+    assert len(rates) == 6
+    calm = driven(fourbar(), Polynomials(5), "quasi-static", 181).elastic["coupler"].middle
+    periodic = driven(fourbar(), Polynomials(5), "periodic", 181).elastic["coupler"].middle
+    assert np.abs(calm - periodic).max() < 0.05 * np.abs(periodic).max()
+
+
+def test_a_name_that_segments_need_is_refused() -> None:
+    scene = fourbar()
+    links = dict(scene.links)
+    links["coupler-2"] = replace(links.pop("rocker"), name="coupler-2")
+    with pytest.raises(CrankcheckError, match="the name coupler-2, which the scene has"):
+        SegmentedScene(replace(scene, links=links), 4)

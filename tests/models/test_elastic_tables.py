@@ -1,0 +1,144 @@
+"""Tables `[elastic.LINK]`: what they say of a link, and every fault in them with its cure."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from analytic.elastic.discretisation import Modes, Polynomials, flexible_links
+from models.elastic_line import line_of
+from models.errors import CrankcheckError, SceneError
+from models.files import load_scene, parse_scene, shipped
+from models.scene_text import scene_text
+
+GOOD = """
+name = "good"
+source = "a test"
+[ground]
+points = { A = [0.0, 0.0], D = [1.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.15 }
+coupler = { bar = ["B", "C"], length_m = 0.75 }
+rocker = { bar = ["D", "C"], length_m = 0.75 }
+[driver]
+link = "crank"
+speed_rad_s = 7.37
+start_deg = 90.0
+"""
+SECTION = "[elastic.coupler]\nmodulus_pa = 70e9\nwidth_m = 0.03\nheight_m = 0.003\n"
+SLIDER = """
+[sliders.C]
+link = "coupler"
+on = "ground"
+through_m = [0.0, 0.0]
+direction_deg = 0.0
+"""
+
+
+def faults(text: str) -> str:
+    with pytest.raises(SceneError) as found:
+        parse_scene(text, "test")
+    return str(found.value)
+
+
+def test_a_section_says_stiffness_and_mass() -> None:
+    scene = parse_scene(GOOD + SECTION + "density_kg_m3 = 2700.0\nstretches = true\n", "test")
+    own, link = scene.elastic["coupler"], scene.links["coupler"]
+    assert own.flexural_n_m2 == pytest.approx(4.725)
+    assert own.axial_n == pytest.approx(6.3e6)
+    assert link.mass_kg == pytest.approx(0.18225)
+    line = line_of(scene, "coupler")
+    assert own.bending_rad_s(line.length_m, line.density_kg_m) == pytest.approx(77.37, abs=0.01)
+    other = parse_scene(GOOD + "[elastic.coupler]\nflexural_n_m2 = 4.725\n", "test")
+    assert other.elastic["coupler"].axial_n == math.inf
+
+
+@pytest.mark.parametrize("name", shipped("elastic"))
+def test_a_shipped_scene_is_the_same_after_a_round_trip(name: str) -> None:
+    scene = load_scene(name)
+    back = parse_scene(scene_text(scene), name)
+    assert back.start == scene.start
+    for link, own in scene.elastic.items():
+        again = back.elastic[link]
+        assert (again.link, again.height_m, again.damping_s) == (link, own.height_m, own.damping_s)
+        assert again.flexural_n_m2 == pytest.approx(own.flexural_n_m2, rel=1e-12)
+        assert back.links[link].mass_kg == pytest.approx(scene.links[link].mass_kg, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[elastic.coupler]\n", "its stiffness is missing: give flexural_n_m2"),
+        ("[elastic.coupler]\nmodulus_pa = 70e9\n", "its stiffness is missing"),
+        ("[elastic.coupler]\nwidth_m = 0.03\nheight_m = 0.003\n", "its stiffness is missing"),
+        ("[elastic.coupler]\nflexural_n_m2 = 1.0\nstretches = true\n", "give axial_n"),
+        ("[elastic.coupler]\nflexural_n_m2 = 1.0\nbends = false\n", "neither bends nor stretches"),
+        ("[elastic.coupler]\nmodulus_pa = 7e10\nwidth_m = 0.03\n", "width_m goes with height_m"),
+        (SECTION + "area_m2 = 1e-4\n", "two sections"),
+        (SECTION + "flexural_n_m2 = 1.0\n", "says flexural_n_m2 and axial_n too"),
+        ("[elastic.coupler]\nflexural_n_m2 = 1.0\ndensity_kg_m3 = 1.0\n", "goes with a section"),
+        ("[elastic.coupler]\nflexural_n_m2 = -1.0\n", "flexural_n_m2"),
+        ("[elastic.coupler]\nflexural_n_m2 = inf\n", "flexural_n_m2"),
+        (SECTION + "damping_s = -1.0\n", "damping_s"),
+        (SECTION + "colour = 1\n", "unknown key"),
+        ("[elastic.rod]\nflexural_n_m2 = 1.0\n", "no link of that name; use one of"),
+        ("[elastic.crank]\nflexural_n_m2 = 1.0\n", "the driver is a rigid link here"),
+        (SECTION.replace("0.003", "0.08"), "9.38 heights of its section long"),
+        (SECTION + '[friction.C]\ntorque_n_m = 0.1\n', "do not go together"),
+        (SECTION + '[loads.push]\nlink = "coupler"\ntorque_n_m = 0.1\n', "bends it by where"),
+        ('[start]\nshape = "straight"\n', "no link of the scene is elastic"),
+        (SECTION + '[start]\nshape = "bent"\n', "shape"),
+    ],
+)  # fmt: skip
+def test_a_fault_is_named_with_its_cure(text: str, says: str) -> None:
+    assert says in faults(GOOD + text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('{ bar = ["B", "C"], length_m = 0.75 }', '{ bar = ["B", "C"], length_m = 0.75, '
+         'mass_kg = 1.0 }', "its section and density_kg_m3 give 0.18225"),
+        ('{ bar = ["B", "C"], length_m = 0.75 }', '{ bar = ["B", "C"], length_m = 0.75, '
+         'points = { E = [0.9, 0.0] } }', "uniform slender beam from B to C"),
+        ('{ bar = ["B", "C"], length_m = 0.75 }', '{ bar = ["B", "C"], length_m = 0.75, '
+         'inertia_kg_m2 = 1.0 }', "uniform slender beam from B to C"),
+        ('speed_rad_s = 7.37', 'law = "from-rest"\nspeed_rad_s = 7.37\nrise_s = 0.3',
+         "driver of constant speed"),
+    ],
+)  # fmt: skip
+def test_what_contradicts_the_rest_is_named(old: str, new: str, says: str) -> None:
+    text = GOOD + SECTION + 'density_kg_m3 = 2700.0\n[start]\nshape = "periodic"\n'
+    assert old in text
+    assert says in faults(text.replace(old, new))
+
+
+def test_a_massless_link_does_not_vibrate() -> None:
+    bare = GOOD.replace('["B", "C"], length_m = 0.75', '["B", "C"], length_m = 0.75, mass_kg = 0.0')
+    assert "give it mass_kg, or density_kg_m3" in faults(bare + SECTION)
+
+
+def test_a_link_lies_between_two_pins() -> None:
+    three = GOOD.replace(
+        '{ bar = ["B", "C"], length_m = 0.75 }',
+        '{ bar = ["B", "C"], length_m = 0.75, points = { E = [0.3, 0.1] } }\n'
+        'arm = { bar = ["E", "F"], length_m = 0.2 }',
+    )
+    assert "lies between two pins; it has 3: B, C, E" in faults(three + SECTION)
+
+
+def test_a_slider_may_not_hold_it_by_a_moment() -> None:
+    text = GOOD.replace('rocker = { bar = ["D", "C"], length_m = 0.75 }\n', "")
+    assert "holds it by a moment" in faults(text + SLIDER + SECTION)
+
+
+def test_modes_whose_half_waves_are_short_are_refused() -> None:
+    scene = parse_scene(GOOD + SECTION, "test")
+    flexible_links(scene, Modes(25))
+    with pytest.raises(CrankcheckError, match="use 25 or fewer"):
+        flexible_links(scene, Modes(26))
+    for nothing in (Modes(0, 0), Polynomials(0, 0)):
+        with pytest.raises(CrankcheckError, match=r"not describe elastic\.coupler"):
+            flexible_links(scene, nothing)
+    flexible_links(scene, Modes(3, 0))
