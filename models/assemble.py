@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from models.controlled import Controlled
 from models.degrees import within_a_turn
 from models.elastic_schema import ElasticTable
 from models.elastic_tables import elastic_of, faults_of_beams, mass_of
@@ -18,6 +19,7 @@ from models.released import Released
 from models.scene import GROUND, Driver, Link, Point, Scene, Slider, span
 from models.schema import (
     AcceleratingDriver,
+    ControlledDriver,
     DriverTable,
     FreeDriver,
     FrictionTable,
@@ -204,6 +206,8 @@ def _law(driver: DriverTable) -> Law:
         return Released(start_rad, driver.speed_rad_s, driver.duration_s)
     if isinstance(driver, AcceleratingDriver):
         return Accelerating(start_rad, driver.speed_rad_s, driver.acceleration_rad_s2)
+    if isinstance(driver, ControlledDriver):
+        return Controlled(start_rad, driver.speed_rad_s, driver.kp_n_m_rad, driver.kd_n_m_s)
     return ConstantSpeed(start_rad, driver.speed_rad_s)
 
 

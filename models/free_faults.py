@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+from models.controlled import Controlled
 from models.released import Released
 from models.scene import Scene
 from models.tabulated import Tabulated
@@ -17,15 +18,15 @@ SAME = 1e-9
 def faults_of_free_motion(scene: Scene) -> Iterator[str]:
     """One line per fault of a scene that is let go, and of one that is driven and has a start."""
     law = scene.driver.law
+    if scene.start.shape == "periodic" and isinstance(law, Controlled | Released):
+        yield (
+            'start.shape: found "periodic" with a driver whose angle is not told: it comes back '
+            'after no period that is known before; give "quasi-static" or "straight"'
+        )
     if not isinstance(law, Released):
         if replace(scene.start, shape=None):
             yield 'start: it goes with law = "free"; a driven mechanism starts as its law has it'
         return
-    if scene.start.shape == "periodic":
-        yield (
-            'start.shape: found "periodic" with law = "free", which comes back after no period '
-            'that is known before; give "quasi-static" or "straight"'
-        )
     yield from _of_driver(scene, law)
     for joint in scene.coulomb_joints:
         yield (

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Integral
 
+from models.controlled import Controlled
 from models.elastic import ElasticLink
 from models.errors import CrankcheckError
 from models.friction import ConstantFriction, Friction
@@ -139,6 +140,9 @@ def _law(law: Law) -> Table:
     start = {"start_deg": in_degrees(law.start_rad), "speed_rad_s": law.speed_rad_s}
     if isinstance(law, Released):
         return {"law": "free", **start, "duration_s": law.duration_s}
+    if isinstance(law, Controlled):
+        gains = {"kp_n_m_rad": law.kp_n_m_rad, "kd_n_m_s": law.kd_n_m_s}
+        return {"law": "controlled", **start, **gains}
     if isinstance(law, FromRest):
         return {"law": "from-rest", **start, "rise_s": law.rise_s}
     if isinstance(law, Accelerating):

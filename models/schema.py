@@ -104,6 +104,17 @@ class AcceleratingDriver(Table):
     start_deg: Degrees = 0.0
 
 
+class ControlledDriver(Table):
+    """A link that a torque holds to a constant speed, by a controller with two gains."""
+
+    link: Name
+    law: Literal["controlled"]
+    speed_rad_s: RateNumber
+    kp_n_m_rad: NonNegative
+    kd_n_m_s: NonNegative
+    start_deg: Degrees = 0.0
+
+
 class FreeDriver(Table):
     """A link that is let go, with a speed or from rest, for a duration."""
 
@@ -207,11 +218,19 @@ class SceneTable(Table):
     elastic: dict[Name, ElasticTable] = Field(default_factory=dict, max_length=MOST_BODIES)
 
 
-DriverTable = ConstantDriver | OscillatingDriver | FromRestDriver | AcceleratingDriver | FreeDriver
+DriverTable = (
+    ConstantDriver
+    | OscillatingDriver
+    | FromRestDriver
+    | AcceleratingDriver
+    | ControlledDriver
+    | FreeDriver
+)
 DRIVERS: dict[str, type[DriverTable]] = {
     "constant": ConstantDriver,
     "oscillating": OscillatingDriver,
     "from-rest": FromRestDriver,
     "accelerating": AcceleratingDriver,
+    "controlled": ControlledDriver,
     "free": FreeDriver,
 }

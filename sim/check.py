@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from models.controlled import Controlled
 from models.errors import EngineError
 from models.joints import bodies
 from models.motion import State
@@ -56,6 +57,11 @@ def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) ->
         raise EngineError(
             f"{scene.name}: {engine.name} is given no springs ({names}); take them out to run it, "
             "or use the reference alone"
+        )
+    if isinstance(scene.driver.law, Controlled):
+        raise EngineError(
+            f"{scene.name}: its driver is controlled, and {engine.name} is given none that gives "
+            'way; take law = "constant", or use the reference alone'
         )
     rubbing = [
         f"friction.{name}"

@@ -27,6 +27,7 @@ from analytic.multibody.body_set import FlexibleBody
 from analytic.multibody.configuration import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from models.array import Array
+from models.controlled import Controlled
 from models.errors import CrankcheckError
 from models.laws import Law
 
@@ -64,6 +65,11 @@ class ReducedForm:
     """The equations of an assembly whose driver follows a law."""
 
     def __init__(self, assembly: Assembly, forces: GeneralisedForces, law: Law) -> None:
+        if isinstance(law, Controlled):
+            raise CrankcheckError(
+                f"{assembly.scene.name}: its driver is controlled, and gives way to elastic links; "
+                'solve it by analytic.elastic.control, or take law = "constant"'
+            )
         self.assembly, self.forces, self.law = assembly, forces, law
         self._driver = assembly.at[assembly.scene.driver.link] + 2
         rigid = {at + k for at in assembly.at.values() for k in range(3)}

@@ -23,8 +23,9 @@ from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.energy_balance import EnergyBalance
+from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.joint_forces import joint_forces
-from analytic.multibody.release_multibody import ready
+from analytic.multibody.release_multibody import Acting, ready
 from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError, StructureError
@@ -72,11 +73,12 @@ class ReleasedElasticMotion:
     stiffened: bool
     method: Method
     tolerance: float
+    acting: Acting = GeneralisedForces
 
     @cached_property
     def _ready(self) -> tuple[Dynamics, Array, Array]:
         flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
-        return ready(self.scene, assembled(self.scene), flexible)
+        return ready(self.scene, assembled(self.scene), flexible, self.acting)
 
     @property
     def dynamics(self) -> Dynamics:
@@ -116,8 +118,9 @@ class ReleasedElasticMotion:
         for some, piece, instant, _ in self._instants(time_s):
             motion = as_motion(assembly, some, instant.now, instant.all_seconds)
             multipliers = self.form.multipliers(piece.tangent, instant)
+            driving = self.dynamics.forces.driving(some, instant.now)
             forces = joint_forces(
-                self.scene, assembly.joints.pin_pairs(), some, -multipliers, np.zeros_like(some)
+                self.scene, assembly.joints.pin_pairs(), some, -multipliers, driving
             )
             parts.append(replace(motion, forces=forces))
         return Motion.joined(parts)
@@ -206,11 +209,24 @@ def release_elastic(
         As `release_multibody`; loads with kinks over the state, which collocation does not take.
     """
     check_duration(scene.name, until_s)
+    return follow(scene, until_s, by, stiffened, method, tolerance, GeneralisedForces)
+
+
+def follow(
+    scene: Scene,
+    until_s: float,
+    by: Discretisation | None,
+    stiffened: bool,
+    method: Method,
+    tolerance: float | None,
+    acting: Acting,
+) -> ReleasedElasticMotion:
+    """The motion under what is ``acting``. Parameters and errors as those of `release_elastic`."""
     if tolerance is None:
         axial = any(link.stretches for link in scene.elastic.values())
         tolerance = WITH_AXIAL if axial else TOLERANCE
     motion = ReleasedElasticMotion(
-        scene, float(until_s), by or Modes(), stiffened, method, tolerance
+        scene, float(until_s), by or Modes(), stiffened, method, tolerance, acting
     )
     assert motion.form  # raises what there is to raise now
     return motion

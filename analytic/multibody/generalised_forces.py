@@ -79,6 +79,10 @@ class GeneralisedForces:
             right -= pull[:, None] * deflection.gradient
         return right
 
+    def driving(self, time_s: Array, now: Configuration) -> Array:
+        """The torque on the driver that is no load [N m], (T,): none, as it is let go."""
+        return np.zeros(len(time_s))
+
     def _marker(self, load: Load) -> int:
         if load.point is None:
             return self.assembly.frames[load.body]

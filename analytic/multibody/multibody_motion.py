@@ -106,7 +106,7 @@ class MultibodyMotion:
             motion = as_motion(self.dynamics.assembly, some, now, seconds)
             forces = joint_forces(
                 self.scene, self.dynamics.assembly.joints.pin_pairs(), some, -multipliers,
-                np.zeros_like(some),
+                self.dynamics.forces.driving(some, now),
             )  # fmt: skip
             parts.append(replace(motion, forces=forces))
         return Motion.joined(parts)

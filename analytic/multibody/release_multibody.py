@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from models.motion import State
 from models.released import check_duration
 from models.scene import Scene
 
+Acting = Callable[[Assembly, Array], GeneralisedForces]
 PROJECTED = Projection()
 LIGHT = 1e-12
 """The mass of a freedom over that of the heaviest, below which it counts as none."""
@@ -32,6 +33,7 @@ def release_multibody(
     *,
     near: State | None = None,
     flexible: Mapping[str, Flexible] = RIGID,
+    acting: Acting = GeneralisedForces,
 ) -> MultibodyMotion:
     """The motion of a scene from its start, when it is let go.
 
@@ -49,6 +51,8 @@ def release_multibody(
         links in ``[start]``.
     flexible : Mapping
         What makes the bodies of its elastic links (`analytic.elastic.discretisation`), by name.
+    acting : Acting
+        What makes the forces on an assembly at its start (n,).
 
     Raises
     ------
@@ -57,7 +61,7 @@ def release_multibody(
         other; a freedom without mass; friction; a time that is none; an integration that fails.
     """
     check_duration(scene.name, until_s)
-    dynamics, q, rates = ready(scene, near, flexible)
+    dynamics, q, rates = ready(scene, near, flexible, acting)
     return MultibodyMotion(dynamics, method, float(until_s), (q, rates))
 
 
@@ -74,7 +78,10 @@ def start_state(scene: Scene, near: State | None = None) -> State:
 
 
 def ready(
-    scene: Scene, near: State | None, flexible: Mapping[str, Flexible] = RIGID
+    scene: Scene,
+    near: State | None,
+    flexible: Mapping[str, Flexible] = RIGID,
+    acting: Acting = GeneralisedForces,
 ) -> tuple[Dynamics, Array, Array]:
     """The equations of a scene, and its coordinates and rates (n,) at the start.
 
@@ -90,7 +97,7 @@ def ready(
     outset = Outset(assembly)
     q, rates = outset.find(near)
     free = outset.freedoms(q)
-    dynamics = Dynamics(assembly, GeneralisedForces(assembly, q), assembly.size - len(free))
+    dynamics = Dynamics(assembly, acting(assembly, q), assembly.size - len(free))
     _check_start(dynamics, q, free)
     if flexible and scene.start.shape != "straight":
         q, rates = bent_start(dynamics, near)

@@ -196,7 +196,7 @@ def test_what_can_not_start_or_be_integrated_so_says_why() -> None:
     with pytest.raises(CrankcheckError, match=r"integrated up to 0\.1 s"):
         release_elastic(PULSE, 0.1, Modes(1)).at(np.array([0.2]))
     text = find_scene("fourbar-elastic-pulse").read_text(encoding="utf-8")
-    with pytest.raises(SceneError, match='found "periodic" with law = "free"'):
+    with pytest.raises(SceneError, match='found "periodic" with a driver'):
         parse_scene(text.replace('shape = "quasi-static"', 'shape = "periodic"'), "file.toml")
 
 

@@ -1,0 +1,145 @@
+"""A crank that a controller holds to its speed: it gives way, and the vibration goes."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic.elastic.control import ControlledForces, control_elastic
+from analytic.elastic.discretisation import Modes, flexible_links
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.released import assembled, release_elastic
+from analytic.forces.kinetostatics import forces
+from analytic.multibody.release_multibody import release_multibody
+from models.array import Array
+from models.controlled import Controlled
+from models.elastic import Shape
+from models.errors import CrankcheckError, SceneError
+from models.files import find_scene, load_scene, parse_scene
+from models.laws import ConstantSpeed
+from models.scene import Scene
+from models.scene_text import scene_text
+from sim.check import refuse_unknown_forces
+from sim.registry import ENGINES, engine
+
+SCENE = load_scene("fourbar-elastic-controlled")
+LAW = SCENE.driver.law
+assert isinstance(LAW, Controlled)
+TURN_S = LAW.period_s
+
+
+def with_gains(scene: Scene, kp: float, kd: float) -> Scene:
+    """The scene with another controller."""
+    law = Controlled(LAW.start_rad, LAW.speed_rad_s, kp, kd)
+    return replace(scene, driver=replace(scene.driver, law=law))
+
+
+def largest(series: Array) -> float:
+    return float(np.abs(series).max())
+
+
+def test_it_quells_what_rings_for_ever_under_a_crank_of_constant_speed() -> None:
+    """Both start straight; the periodic motion is what is left when nothing rings."""
+    constant = ConstantSpeed(LAW.start_rad, LAW.speed_rad_s)
+    driven = replace(SCENE, driver=replace(SCENE.driver, law=constant))
+    time_s = TURN_S * np.linspace(1.0, 1.3, 31)
+
+    def bent(start: Shape) -> Array:
+        by = DrivenElasticMotion(driven, 1.3 * TURN_S, Modes(1), start, stiffened=True)
+        return by.at(time_s).elastic["coupler"].middle
+
+    periodic = bent("periodic")
+    controlled = control_elastic(SCENE, 1.3 * TURN_S, Modes(1)).at(time_s)
+    assert largest(bent("straight") - periodic) > 0.5 * largest(periodic)
+    assert largest(controlled.elastic["coupler"].middle - periodic) < 0.01 * largest(periodic)
+
+
+def test_with_multipliers_it_is_the_same_motion() -> None:
+    until_s = 0.1 * TURN_S
+    time_s = np.linspace(0.0, until_s, 11)
+    motion = control_elastic(SCENE, until_s, Modes(1)).at(time_s)
+    other = release_multibody(
+        SCENE, until_s, near=assembled(SCENE), flexible=flexible_links(SCENE, Modes(1)),
+        acting=ControlledForces,
+    ).at(time_s)  # fmt: skip
+    assert motion.forces is not None
+    assert other.forces is not None
+    pairs = [
+        (motion.elastic["coupler"].middle, other.elastic["coupler"].middle),
+        (motion.links["crank"].alpha, other.links["crank"].alpha),
+        (motion.forces.torque, other.forces.torque),
+        (motion.forces.pins["C"]["coupler"], other.forces.pins["C"]["coupler"]),
+    ]
+    for own, beside in pairs:
+        assert largest(own - beside) < 1e-8 * largest(own)
+
+
+def test_the_torque_is_that_of_the_controller_and_all_work_there_is() -> None:
+    motion = control_elastic(SCENE, 0.2 * TURN_S, Modes(1))
+    time_s = np.linspace(0.0, 0.2 * TURN_S, 11)
+    own, energy = motion.at(time_s), motion.energy(time_s)
+    crank = own.links["crank"]
+    needed = forces(replace(SCENE, elastic={}), time_s, bound=False).torque
+    told, speed, _ = LAW.at(time_s)
+    assert own.forces is not None
+    np.testing.assert_allclose(
+        own.forces.torque, needed - 10.0 * (crank.theta - told) - 0.1 * (crank.omega - speed),
+        atol=1e-12,
+    )  # fmt: skip
+    assert np.ptp(energy.balance) < 1e-9 * energy.kinetic.max()
+    assert np.ptp(energy.work) > 1e-3 * energy.kinetic.max()
+
+
+def test_with_a_stiff_link_the_crank_keeps_to_its_law() -> None:
+    """From the quasi-static shape, as a rigid mechanism that starts on its way does."""
+    stiff = replace(
+        SCENE,
+        elastic={"coupler": replace(SCENE.elastic["coupler"], flexural_n_m2=4.725e6)},
+        start=replace(SCENE.start, shape="quasi-static"),
+    )
+    time_s = np.linspace(0.0, 0.1 * TURN_S, 6)
+    crank = control_elastic(stiff, 0.1 * TURN_S, Modes(1)).at(time_s).links["crank"]
+    assert largest(crank.theta - LAW.at(time_s)[0]) < 1e-8
+
+
+def test_without_gains_what_it_needs_is_not_enough() -> None:
+    """The torque of the rigid mechanism alone lets the crank drift off."""
+    alone = control_elastic(with_gains(SCENE, 0.0, 0.0), 0.5 * TURN_S, Modes(1))
+    crank = alone.at(np.array([0.0, 0.5 * TURN_S])).links["crank"]
+    assert abs(crank.theta[-1] - LAW.at(np.array([0.5 * TURN_S]))[0][0]) > 1e-3
+
+
+def test_a_file_says_it_and_reads_back() -> None:
+    text = find_scene("fourbar-elastic-controlled").read_text(encoding="utf-8")
+    table = tomllib.loads(text)["driver"]
+    assert Controlled(LAW.start_rad, 7.3686, table["kp_n_m_rad"], table["kd_n_m_s"]) == LAW
+    assert parse_scene(scene_text(SCENE), "again").driver == SCENE.driver
+    for old, new, words in [
+        ("kp_n_m_rad = 10.0", "kp_n_m_rad = -1.0", "driver.kp_n_m_rad: found -1"),
+        ("kd_n_m_s = 0.1\n", "", "driver.kd_n_m_s"),
+        ('shape = "straight"', 'shape = "periodic"', "whose angle is not told"),
+    ]:
+        with pytest.raises(SceneError, match=words.replace(".", r"\.")):
+            parse_scene(text.replace(old, new), "file.toml")
+    with pytest.raises(ValueError, match="gains of 0 or more"):
+        with_gains(SCENE, 1.0, -1.0)
+
+
+def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
+    with pytest.raises(CrankcheckError, match="is controlled, and gives way"):
+        assert DrivenElasticMotion(SCENE, 1.0, Modes(1), "straight", stiffened=True).form
+    with pytest.raises(CrankcheckError, match="its driver is not controlled"):
+        control_elastic(load_scene("fourbar-elastic"), 1.0)
+    for name in ENGINES:
+        with pytest.raises(CrankcheckError, match="its driver is controlled"):
+            refuse_unknown_forces(SCENE, engine(name), with_forces=False)
+
+
+def test_let_go_it_has_no_controller() -> None:
+    time_s = np.array([0.0, 0.01])
+    free = release_elastic(SCENE, 0.01, Modes(1)).at(time_s)
+    assert free.forces is not None
+    assert largest(free.forces.torque) == 0.0
