@@ -133,6 +133,15 @@ class DrivenElasticMotion:
         z, rates, seconds = self.history.at(time_s)
         return self.form.at(time_s, z, rates, self.form.near(time_s)), seconds
 
+    @property
+    def assembly(self) -> Assembly:
+        """Its bodies and joints."""
+        return self.form.assembly
+
+    def coordinates_at(self, time_s: Array) -> Array:
+        """Those of the assembly at times [s], (T, n)."""
+        return self.instant(time_s)[0].now.q
+
     def at(self, time_s: Array) -> Motion:
         """The motion at times [s], (T,), with its reactions and the driving torque. Raises
         CrankcheckError for times after ``until_s``, unless it is periodic."""

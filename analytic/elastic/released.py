@@ -20,6 +20,7 @@ from analytic.elastic.free_windows import Piece, by_collocation
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
+from analytic.multibody.assembly import Assembly
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.generalised_forces import GeneralisedForces
@@ -123,6 +124,15 @@ class ReleasedElasticMotion:
             )
             parts.append(replace(motion, forces=forces))
         return Motion.joined(parts)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Its bodies and joints."""
+        return self.dynamics.assembly
+
+    def coordinates_at(self, time_s: Array) -> Array:
+        """Those of the assembly at times [s], (T,) in ascending order, (T, n)."""
+        return np.concatenate([instant.now.q for _, _, instant, _ in self._instants(time_s)])
 
     def energy(self, time_s: Array) -> EnergyBalance:
         """The energies at times [s], (T,) in ascending order: `EnergyBalance.balance` stays."""

@@ -10,14 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.released import ReleasedElasticMotion
+from analytic.multibody.energy_balance import EnergyBalance
 from models.array import Array
 from models.motion import Motion
 
+ElasticHistory = DrivenElasticMotion | ReleasedElasticMotion
+"""What follows a law, and what is let go."""
 TOGETHER = 2000
 """Instants: some 100 MB."""
 
 
-def sampled(motion: DrivenElasticMotion, time_s: Array) -> Motion:
+def sampled(motion: ElasticHistory, time_s: Array) -> Motion:
     """The motion at times [s], (T,), in any order."""
     order = np.argsort(time_s, kind="stable")
     whole = Motion.joined([motion.at(time_s[part]) for part in _parts(order)])
@@ -28,16 +32,23 @@ def sampled(motion: DrivenElasticMotion, time_s: Array) -> Motion:
     return replace(asked, forces=whole.forces and whole.forces.stretch(back))
 
 
-def bent(motion: DrivenElasticMotion, time_s: Array, shares: Array) -> dict[str, Array]:
+def bent(motion: ElasticHistory, time_s: Array, shares: Array) -> dict[str, Array]:
     """How far elastic links are from the line between their pins, by name [m], (T, K), at times [s]
-    (T,), and at shares (K,) of the length from the first pin to the second."""
+    (T,) in ascending order, and at shares (K,) of the length from the first pin to the second."""
     found: dict[str, list[Array]] = {}
     for part in _parts(np.arange(time_s.size)):
-        now, _ = motion.instant(time_s[part])
-        for name, (body, own) in motion.form.assembly.elastic.items():
-            places = body.deflections(now.now.q[:, own], shares * body.length_m)
+        q = motion.coordinates_at(time_s[part])
+        for name, (body, own) in motion.assembly.elastic.items():
+            places = body.deflections(q[:, own], shares * body.length_m)
             found.setdefault(name, []).append(places)
     return {name: np.concatenate(each) for name, each in found.items()}
+
+
+def energies(motion: ReleasedElasticMotion, time_s: Array) -> EnergyBalance:
+    """Of what is let go, at times [s], (T,) in ascending order."""
+    parts = [motion.energy(time_s[part]) for part in _parts(np.arange(time_s.size))]
+    each = zip(*(vars(part).values() for part in parts), strict=True)
+    return EnergyBalance(*(np.concatenate(own) for own in each))
 
 
 def _parts(order: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:

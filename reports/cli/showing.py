@@ -73,15 +73,15 @@ class SolveRequest:
     ] = None
     modes: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Elastic links: sines across each (default 5)."),
+        typer.Option(metavar="N", help="Elastic links: sines across each."),
     ] = None
     axial_modes: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Elastic links: sines along each (default 2)."),
+        typer.Option(metavar="N", help="Elastic links: sines along each."),
     ] = None
     elements: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Elastic links: beam elements of each, in place of sines."),
+        typer.Option(metavar="N", help="Elastic links: beam elements of each."),
     ] = None
     shape: Annotated[
         str | None,

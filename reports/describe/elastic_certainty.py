@@ -7,12 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.elastic.discretisation import Segments
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.discretisation import Discretisation, Elements, Segments
+from analytic.elastic.released import ReleasedElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.motion import Motion
+from reports.describe.elastic_words import described
 from reports.output.numbers import error_text
 
+ROUNDING = 1e-13
+"""To which joints are closed, and equations met: differences are no less."""
 SAMPLES = 73
 """Instants of a motion that are compared."""
 
@@ -37,7 +41,8 @@ class Differences:
             for name, link in one.links.items()
         ]
         torques = (each.forces.torque for each in (one, other) if each.forces is not None)
-        return Differences(max(bent, default=0.0), max(turned, default=0.0), _over(*torques))
+        every = max(bent, default=0.0), max(turned, default=0.0), _over(*torques)
+        return Differences(*(max(ROUNDING, each) for each in every))
 
 
 def _over(one: Array, other: Array) -> float:
@@ -45,19 +50,14 @@ def _over(one: Array, other: Array) -> float:
     return float(np.nanmax(np.abs(one - other), initial=0.0)) / (largest or 1.0)
 
 
-def certainty(motion: DrivenElasticMotion) -> list[str]:
-    """What a motion may be off by, in sentences. Raises CrankcheckError where a finer one can not
+def certainty(motion: ElasticHistory) -> list[str]:
+    """What a motion may be off by, in sentences. Raises CrankcheckError where another one can not
     be had."""
     if isinstance(motion.by, Segments):
         return []  # it is what an engine has, and not the beam
     time_s = np.linspace(0.0, motion.until_s, SAMPLES)
     own = motion.at(time_s)
-    finer = Differences.of(own, replace(motion, by=motion.by.finer).at(time_s))
-    notes = [
-        f"As the next finer description has it, deflections are off by about "
-        f"{error_text(finer.deflection)} of the largest, angles by {error_text(finer.angle_rad)} "
-        f"rad, the torque by {error_text(finer.torque)} of its largest."
-    ]
+    notes = [_by_other_shapes(motion, time_s, own)]
     if not motion.stiffened:
         short = Differences.of(own, replace(motion, stiffened=True).at(time_s))
         notes.append(
@@ -66,3 +66,30 @@ def certainty(motion: DrivenElasticMotion) -> list[str]:
             "with it."
         )
     return notes
+
+
+def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
+    """By the next finer description; of what is let go, which takes long to integrate, by one of
+    fewer shapes, whose error is the larger one."""
+    if not isinstance(motion, ReleasedElasticMotion):
+        found = Differences.of(own, motion.finer.at(time_s))
+        return (
+            f"As the next finer description has it, deflections are off by about "
+            f"{error_text(found.deflection)} of the largest, angles by "
+            f"{error_text(found.angle_rad)} rad, the torque by {error_text(found.torque)} of its "
+            "largest."
+        )
+    fewer = coarser(motion.by)
+    found = Differences.of(replace(motion, by=fewer).at(time_s), own)
+    return (
+        f"By {described(motion.scene, fewer)} deflections are off this by "
+        f"{error_text(found.deflection)} of the largest, angles by {error_text(found.angle_rad)} "
+        "rad; this is off by less."
+    )
+
+
+def coarser(by: Discretisation) -> Discretisation:
+    """About half as many shapes of each kind, and at least one."""
+    if isinstance(by, Elements | Segments):
+        return replace(by, count=max(1, by.count // 2))
+    return replace(by, across=max(1, (by.across + 1) // 2), along=max(1, by.along // 2))

@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.sampled import bent, sampled
+from analytic.elastic.released import ReleasedElasticMotion
+from analytic.elastic.sampled import ElasticHistory, bent, sampled
 from analytic.forces.kinetostatics import forces
+from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
+from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.elastic_words import described
@@ -66,6 +68,12 @@ class ElasticCourse:
         """Periods of the driver from the start to the end."""
         return float(self.time_s[-1]) / self.scene.driver.law.period_s
 
+    @property
+    def base(self) -> Motion:
+        """What displacements are drawn from: rigid links, where these are driven alike; let go they
+        are soon elsewhere, and the motion itself is drawn with its links bent."""
+        return self.motion if self.scene.is_free else self.rigid
+
     def apart(self) -> Iterator[Apart]:
         """What elastic links change: the angles of links, without that of a driver that follows a
         law, which is told, and the displacements of sliders."""
@@ -78,7 +86,8 @@ class ElasticCourse:
 
     @property
     def torques(self) -> tuple[Array, Array] | None:
-        """Those of the drive with elastic links and with rigid ones [N m], (T,)."""
+        """Those of the drive with elastic links and with rigid ones [N m], (T,); None without a
+        drive."""
         acting, rigid = self.motion.forces, self.rigid.forces
         return None if acting is None or rigid is None else (acting.torque, rigid.torque)
 
@@ -94,17 +103,27 @@ def closely_sampled(scene: Scene, until_s: float) -> Array:
     return np.linspace(0.0, until_s, int(np.clip(round(count), LEAST, MOST)) + 1)
 
 
-def elastic_course(motion: DrivenElasticMotion, time_s: Array) -> ElasticCourse:
-    """A driven motion at times [s], (T,). Raises CrankcheckError where there is none."""
+def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
+    """A motion at times [s], (T,) in ascending order. Raises CrankcheckError where there is
+    none."""
     scene = motion.scene
-    rigid = solve(rigid_of(scene), time_s, bound=False)
-    acting = forces(rigid_of(scene), time_s, bound=False, skip_dead_points=True)
-    words = [described(scene, motion.by), f"start {motion.start}"]
+    words = [described(scene, motion.by), f"start {start_of(motion)}"]
     words += ["shortening left out"] * (not motion.stiffened)
-    return ElasticCourse(
-        scene,
-        sampled(motion, time_s),
-        replace(rigid, forces=acting),
-        bent(motion, time_s, SHARES),
-        ", ".join(words),
-    )
+    own, rigid = sampled(motion, time_s), _with_rigid_links(motion, time_s)
+    return ElasticCourse(scene, own, rigid, bent(motion, time_s, SHARES), ", ".join(words))
+
+
+def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:
+    """The same mechanism, driven or let go alike, with its forces where it is driven."""
+    scene = rigid_of(motion.scene)
+    if scene.is_free:
+        return release(scene, motion.until_s).at(time_s, bound=False)
+    acting = forces(scene, time_s, bound=False, skip_dead_points=True)
+    return replace(solve(scene, time_s, bound=False), forces=acting)
+
+
+def start_of(motion: ElasticHistory) -> Shape:
+    """The shape at time 0."""
+    if isinstance(motion, ReleasedElasticMotion):
+        return motion.scene.start.shape or "quasi-static"
+    return motion.start

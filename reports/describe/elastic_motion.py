@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
+from analytic.elastic.released import ReleasedElasticMotion
+from analytic.elastic.sampled import ElasticHistory, energies
 from models.array import Array
 from models.elastic_line import line_of
 from models.motion import Motion
@@ -33,6 +35,16 @@ def rigid_columns(rigid: Motion) -> dict[str, Array]:
     if rigid.forces is not None:
         columns["torque_rigid_n_m"] = rigid.forces.torque
     return columns
+
+
+def energy_columns(motion: ElasticHistory, time_s: Array) -> dict[str, Array]:
+    """What is let go has of energy and work, by names with units, at times (T,) in any order."""
+    if not isinstance(motion, ReleasedElasticMotion):
+        return {}
+    order = np.argsort(time_s, kind="stable")
+    energy, back = energies(motion, time_s[order]), np.argsort(order)
+    columns = {"kinetic_j": energy.kinetic, "potential_j": energy.potential, "work_j": energy.work}
+    return {name: series[back] for name, series in columns.items()}
 
 
 def elastic_frame(course: ElasticCourse, *, with_forces: bool) -> pd.DataFrame:

@@ -41,14 +41,20 @@ def described(scene: Scene, by: Discretisation) -> str:
     bends, stretches = (
         any(getattr(own, kind) for own in scene.elastic.values()) for kind in ("bends", "stretches")
     )
-    if isinstance(by, Modes | Polynomials):
-        shape = "sine" if isinstance(by, Modes) else "polynomial"
-        parts = [f"{count(by.across, shape)} across"] * bends
-        parts += [f"{count(by.along, shape)} along"] * stretches
-        return listed(parts)
+    if isinstance(by, Modes):
+        return listed(_across_and_along(by, "sine", bends=bends, stretches=stretches))
+    if isinstance(by, Polynomials):
+        return listed(_across_and_along(by, "polynomial", bends=bends, stretches=stretches))
     if isinstance(by, Elements):
         return count(by.count, "beam element")
     return count(by.count, "rigid segment")
+
+
+def _across_and_along(
+    by: Modes | Polynomials, noun: str, *, bends: bool, stretches: bool
+) -> list[str]:
+    across, along = count(by.across, noun), count(by.along, noun)
+    return [f"{across} across"] * bends + [f"{along} along"] * stretches
 
 
 def _link(scene: Scene, own: ElasticLink) -> str:

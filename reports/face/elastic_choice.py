@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast, get_args
 
 from models.elastic import Shape
@@ -14,6 +14,8 @@ from reports.face.arguments import is_true, one_of, whole_of
 if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
     from analytic.elastic.discretisation import Discretisation
     from analytic.elastic.elastic_motion import DrivenElasticMotion
+    from analytic.elastic.released import ReleasedElasticMotion
+    from analytic.elastic.sampled import ElasticHistory
 
 MOST_MODES, MOST_ELEMENTS = 40, 40
 """More change nothing but the time that they take: the stiffest of them follow nothing."""
@@ -54,7 +56,7 @@ class ElasticChoice:
 
     def discretisation(self, scene: Scene) -> Discretisation:
         """Raises CrankcheckError for numbers that are none, and for those that go together."""
-        from analytic.elastic.discretisation import Elements, Modes
+        from analytic.elastic.discretisation import REFERENCE, Elements, Modes
 
         usual = Modes()
         if self.elements is not None:
@@ -74,6 +76,8 @@ class ElasticChoice:
                     f"{option} {value}: no elastic link of {scene.name} {kind}; give one "
                     f"{kind} = true, or leave {option} out"
                 )
+        if self.modes is None and self.axial_modes is None and not scene.is_free:
+            return REFERENCE
         return Modes(
             usual.across if self.modes is None else _number(self.modes, "--modes", MOST_MODES),
             usual.along
@@ -86,11 +90,27 @@ class ElasticChoice:
         asked = self.shape or scene.start.shape or STARTS_AS
         chosen = cast(Shape, one_of(asked, "--shape", get_args(Shape)))
         if chosen == "periodic" and not isinstance(scene.driver.law, ConstantSpeed | Oscillating):
+            law = "is let go" if scene.is_free else "does not come back after a period"
             raise CrankcheckError(
-                f"--shape periodic: the driver of {scene.name} does not come back after a period; "
-                "give it a constant speed, or --shape quasi-static"
+                f"--shape periodic: the driver of {scene.name} {law}; give it a constant speed, or "
+                "--shape quasi-static"
             )
         return chosen
+
+    def motion(self, scene: Scene, until_s: float) -> ElasticHistory:
+        """As `driven`, or as `released`."""
+        return (self.released if scene.is_free else self.driven)(scene, until_s)
+
+    def released(self, scene: Scene, until_s: float) -> ReleasedElasticMotion:
+        """The motion of a scene that is let go, from 0 to a time [s].
+
+        Raises CrankcheckError for what can not be asked, and what it does not allow.
+        """
+        from analytic.elastic.released import release_elastic
+
+        stiffened = not is_true(self.linear, "--linear")
+        begun = replace(scene, start=replace(scene.start, shape=self.start(scene)))
+        return release_elastic(begun, until_s, self.discretisation(scene), stiffened=stiffened)
 
     def driven(self, scene: Scene, until_s: float) -> DrivenElasticMotion:
         """The motion of a scene that follows its law, from 0 to a time [s].

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.sampled import sampled
+from analytic.elastic.sampled import ElasticHistory, sampled
 from analytic.result import Selection
 from models.array import Array
 from models.errors import CrankcheckError
 from models.motion import Motion
 from models.scene import Scene
 from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, closely_sampled, elastic_course
+from reports.describe.elastic_course import ElasticCourse, closely_sampled, elastic_course, start_of
 from reports.face.elastic_choice import ElasticChoice
 from reports.face.solution import ROWS, Solution, drawn, thinned
 
@@ -32,10 +31,10 @@ class ElasticSolution(Solution):
 
     As `Solution`, with ``elastic``: how far each elastic link is bent in its middle, and stretched
     [m]. Its bound is None: `certainty` says how far it is to be trusted. ``vibration`` is the whole
-    of it (`analytic.elastic.elastic_motion.DrivenElasticMotion`).
+    of it (`analytic.elastic.elastic_motion.DrivenElasticMotion`, or `ReleasedElasticMotion`).
     """
 
-    vibration: DrivenElasticMotion
+    vibration: ElasticHistory
 
     @cached_property
     def rigid(self) -> Motion:
@@ -49,16 +48,18 @@ class ElasticSolution(Solution):
 
     def frame(self) -> pd.DataFrame:
         """As of `Solution`, with ``coupler_deflection_m`` and ``coupler_extension_m`` of elastic
-        links, and what rigid ones would have, ``rocker_theta_rigid_rad``."""
-        from reports.describe.elastic_motion import rigid_columns
+        links, what rigid ones would have, ``rocker_theta_rigid_rad``, and the energies of what is
+        let go."""
+        from reports.describe.elastic_motion import energy_columns, rigid_columns
 
         rigid = self.rigid if self.forces is not None else replace(self.rigid, forces=None)
-        return super().frame().assign(**rigid_columns(rigid))
+        energy = energy_columns(self.vibration, self.time_s)
+        return super().frame().assign(**rigid_columns(rigid), **energy)
 
     def show(self, console: Console) -> None:
         from reports.face.elastic_text import show_elastic
 
-        few = thinned(self, ROWS).time_s
+        few = np.sort(thinned(self, ROWS).time_s)
         shown, fine = (
             self._course(each)
             for each in (few, closely_sampled(self.scene, self.vibration.until_s))
@@ -87,11 +88,11 @@ def elastic_solution(
         Times before the start, what `ElasticChoice` refuses, and motions that are not found.
     """
     until_s = max(float(np.max(time_s)), 0.0) or scene.driver.law.period_s
-    vibration = choice.driven(scene, until_s)
-    if float(np.min(time_s)) < 0.0 and vibration.start != "periodic":
+    vibration = choice.motion(scene, until_s)
+    if float(np.min(time_s)) < 0.0 and start_of(vibration) != "periodic":
         raise CrankcheckError(
             f"time_s: t = {float(np.min(time_s)):g} s, and {scene.name} starts at 0, "
-            f"{vibration.start}; give times from there on, or --shape periodic"
+            f"{start_of(vibration)}; give times from there on, or --shape periodic"
         )
     whole = sampled(vibration, time_s)
     motion = replace(

@@ -7,9 +7,11 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from analytic.structure.mobility import analyse
-from reports.describe.elastic_course import ElasticCourse
+from models.errors import StructureError
+from models.scene import Scene
+from reports.describe.elastic_course import ElasticCourse, start_of
 from reports.describe.elastic_motion import (
     elastic_tables,
     extremes,
@@ -19,12 +21,13 @@ from reports.describe.elastic_motion import (
 from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
 from reports.describe.force_tables import motion_force_tables
 from reports.describe.frame import cleaned
+from reports.describe.law import describe_law
 from reports.face.solution_text import heading
 
 
 def show_elastic(
     console: Console,
-    motion: DrivenElasticMotion,
+    motion: ElasticHistory,
     shown: ElasticCourse,
     fine: ElasticCourse,
     certainty: Sequence[str],
@@ -35,8 +38,7 @@ def show_elastic(
     sampled, ``fine``."""
     scene = motion.scene
     facts = elastic_facts(scene, motion.by, stiffened=motion.stiffened)
-    told = heading(scene, analyse(scene)) + "\n".join(facts) + "\n"
-    console.print(told, highlight=False, markup=False)
+    console.print(_heading(scene) + "\n".join(facts) + "\n", highlight=False, markup=False)
     for table in elastic_tables(shown, console.width):
         console.print(table, "")
     if forces and shown.motion.forces is not None:
@@ -44,7 +46,15 @@ def show_elastic(
         for table in motion_force_tables(scene, cleaned(shown.motion), acting, console.width):
             console.print(table, "")
     console.print(extremes_table(scene, extremes(fine)), "")
-    for line in (start_words(scene, motion.start), *certainty):
+    for line in (start_words(scene, start_of(motion)), *certainty):
         console.print(line, highlight=False, markup=False)
     for line in elastic_warnings(scene, largest_deflections(fine)):
         console.print(line, style="yellow", highlight=False, markup=False)
+
+
+def _heading(scene: Scene) -> str:
+    """What the mechanism is; of one of more freedoms, or of no dyads, its start."""
+    try:
+        return heading(scene, analyse(scene))
+    except StructureError:
+        return f"{scene.name}: {scene.source}\ndriver {scene.driver.link}, {describe_law(scene)}\n"

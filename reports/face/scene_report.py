@@ -3,7 +3,7 @@ for."""
 
 from __future__ import annotations
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
 from reports.describe.elastic_course import closely_sampled, elastic_course
@@ -24,7 +24,7 @@ def page_of(scene: Scene, *, with_forces: bool) -> str:
     return scene_page(scene, figures)
 
 
-def elastic_page_of(motion: DrivenElasticMotion) -> str:
+def elastic_page_of(motion: ElasticHistory) -> str:
     """The page of a motion with elastic links as HTML. Raises CrankcheckError as `elastic_page`."""
     course = elastic_course(motion, closely_sampled(motion.scene, motion.until_s))
     return elastic_page(

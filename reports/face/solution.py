@@ -143,10 +143,10 @@ def solve(
         asked.refuse_of_rigid(scene)
     if time_s is None:
         time_s = np.linspace(0.0, scene.driver.law.period_s, SAMPLES)
-    if scene.is_free:
-        return _free_solution(scene, time_s, links, points, sliders, bound=bound, forces=forces)
     if scene.elastic:
         return _elastic_solution(scene, time_s, links, points, sliders, asked, forces=forces)
+    if scene.is_free:
+        return _free_solution(scene, time_s, links, points, sliders, bound=bound, forces=forces)
     # Whatever the times are, they are looked at there.
     motion = kinematics.solve(
         scene,
@@ -195,9 +195,10 @@ def _elastic_solution(
     """The motion of a scene with elastic links. Raises CrankcheckError."""
     from reports.face.elastic_solution import elastic_solution  # slow to import
 
+    if is_true(forces, "forces") and scene.is_free:
+        raise CrankcheckError(f"forces=True: {scene.name} is let go, and has no driving torque")
     wanted = Selection.of(scene, links, points, sliders)
-    instants = samples(time_s, "time_s")
-    return elastic_solution(scene, instants, wanted, asked, forces=is_true(forces, "forces"))
+    return elastic_solution(scene, samples(time_s, "time_s"), wanted, asked, forces=forces)
 
 
 def _refuse_far(scene: Scene, motion: Motion) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
 from reports.describe.elastic_course import ElasticCourse
@@ -34,9 +34,7 @@ def free_page(free: FreeMotion, figures: Mapping[str, bytes]) -> str:
     return assembled(_head(free.scene, words), [free_motion.build(free, figures)])
 
 
-def elastic_page(
-    motion: DrivenElasticMotion, fine: ElasticCourse, figures: Mapping[str, bytes]
-) -> str:
+def elastic_page(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> str:
     """The page of a motion with elastic links; ``fine`` is the same closely sampled, ``figures``
     are SVG files by name. Raises CrankcheckError where there is no motion."""
     links = count(len(motion.scene.elastic), "elastic link")

@@ -49,13 +49,12 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         check_file(request.output, "-o", (*ENDINGS, PAGE), inputs=[find_scene(request.scene)])
     scene = load_scene(request.scene)
     asked = elastic_choice(request)
-    if scene.elastic and not scene.is_free:
+    if scene.elastic:
         from reports.cli.commands.solve_elastic import run_solve_elastic  # slow to import
 
         run_solve_elastic(scene, request, asked, console)
         return
-    if not scene.elastic:
-        asked.refuse_of_rigid(scene)
+    asked.refuse_of_rigid(scene)
     if scene.is_free:
         from reports.cli.commands.solve_free import run_solve_free  # slow to import
 

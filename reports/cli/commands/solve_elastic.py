@@ -1,18 +1,19 @@
-"""`crankcheck solve` of a driven scene with elastic links: how they bend over time."""
+"""`crankcheck solve` of a scene with elastic links, driven or let go: how they bend over time."""
 
 from __future__ import annotations
 
 from rich.console import Console
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.errors import CrankcheckError, harmless
 from models.scene import Scene
 from reports.cli.commands.solve import PAGE, instants_of, refuse_times
+from reports.cli.commands.solve_free import free_instants, refuse_turns
 from reports.cli.showing import SolveRequest
 from reports.describe.elastic_certainty import certainty
 from reports.describe.elastic_course import closely_sampled, elastic_course
-from reports.describe.elastic_motion import elastic_frame
+from reports.describe.elastic_motion import elastic_frame, energy_columns
 from reports.face.elastic_choice import ElasticChoice
 from reports.face.elastic_text import show_elastic
 from reports.output.frame_file import write_frame
@@ -24,8 +25,8 @@ def run_solve_elastic(
 ) -> None:
     """Show or write the motion. Raises CrankcheckError for what can not be asked of it."""
     _check(scene, request)
-    time_s = instants_of(scene, request)
-    motion = asked.driven(scene, float(time_s[-1]))
+    time_s = (free_instants if scene.is_free else instants_of)(scene, request)
+    motion = asked.motion(scene, float(time_s[-1]))
     if request.output is None and request.figures is None:
         shown = elastic_course(motion, time_s)
         fine = elastic_course(motion, closely_sampled(scene, motion.until_s))
@@ -39,7 +40,7 @@ def run_solve_elastic(
 
 def _check(scene: Scene, request: SolveRequest) -> None:
     """Refuse what is asked of rigid links alone. Raises CrankcheckError."""
-    refuse_times(scene, request)
+    (refuse_turns if scene.is_free else refuse_times)(scene, request)
     given = {
         "--at-deg": request.at_deg,
         "--clockwise": request.clockwise or None,
@@ -53,17 +54,18 @@ def _check(scene: Scene, request: SolveRequest) -> None:
                 "--steps-per-turn"
             )
     is_page = request.output is not None and request.output.suffix.lower() == PAGE
-    if is_page and request.steps_per_turn is not None:
-        raise CrankcheckError(
-            f"-o {request.output}: a page has its own samples; leave out --steps-per-turn"
-        )
+    for option, value in (("--steps-per-turn", request.steps_per_turn), ("--steps", request.steps)):
+        if is_page and value is not None:
+            raise CrankcheckError(
+                f"-o {request.output}: a page has its own samples; leave out {option}"
+            )
     if request.figures is not None:
         from reports.figures.elastic.course_figures import elastic_figure_files
 
         check_folder(request.figures, "--figures", elastic_figure_files())
 
 
-def _written(motion: DrivenElasticMotion, time_s: Array, request: SolveRequest) -> list[str]:
+def _written(motion: ElasticHistory, time_s: Array, request: SolveRequest) -> list[str]:
     """Write what was asked for; what was written, a line each."""
     told, scene, output = [], motion.scene, request.output
     if request.figures is not None:
@@ -78,6 +80,7 @@ def _written(motion: DrivenElasticMotion, time_s: Array, request: SolveRequest) 
         told.append(f"{output}: {scene.name} with elastic links over {motion.until_s:.6g} s")
     elif output is not None:
         frame = elastic_frame(elastic_course(motion, time_s), with_forces=request.forces)
+        frame = frame.assign(**energy_columns(motion, time_s))
         write_frame(output, frame, "motion", {"scene": scene.name, "source": scene.source})
         told.append(f"{output}: {time_s.size} samples of {scene.name} with elastic links")
     return told

@@ -25,11 +25,11 @@ ON_SCREEN, IN_A_FILE, MOST_SAMPLES = 12, 1000, 1_000_000
 
 def run_solve_free(scene: Scene, request: SolveRequest, console: Console) -> None:
     """Show or write the free motion. Raises CrankcheckError for what can not be asked of it."""
-    _refuse_turns(scene, request)
+    refuse_turns(scene, request)
     is_page = request.output is not None and request.output.suffix.lower() == PAGE
     if is_page and request.steps is not None:
         raise CrankcheckError(f"-o {request.output}: a page has its own samples; leave out --steps")
-    time_s = _instants(scene, request)
+    time_s = free_instants(scene, request)
     if request.figures is not None:
         from reports.figures.free.writing import free_figure_files, written_free_figures
 
@@ -58,7 +58,7 @@ def run_solve_free(scene: Scene, request: SolveRequest, console: Console) -> Non
         console.print(more, style="dim", highlight=False)
 
 
-def _refuse_turns(scene: Scene, request: SolveRequest) -> None:
+def refuse_turns(scene: Scene, request: SolveRequest) -> None:
     """Refuse what is asked of a driver that follows a law. Raises CrankcheckError."""
     given = {
         "--at-deg": request.at_deg,
@@ -76,7 +76,7 @@ def _refuse_turns(scene: Scene, request: SolveRequest) -> None:
             )
 
 
-def _instants(scene: Scene, request: SolveRequest) -> Array:
+def free_instants(scene: Scene, request: SolveRequest) -> Array:
     """From 0 to the end, both included [s]. Raises CrankcheckError."""
     until_s = scene.driver.law.period_s if request.duration is None else request.duration
     if not (math.isfinite(until_s) and until_s > 0.0):

@@ -23,11 +23,11 @@ GHOST = {"color": "#a9b3bd", "linewidth": 1.0, "zorder": 1}
 
 def draw(course: ElasticCourse) -> Figure | None:
     """Six positions, evenly spread over the motion, from its start on."""
-    scene, rigid = course.scene, course.rigid
-    size = size_of_motion(rigid)
-    factor = magnification(course.motion, rigid, course.bent, size)
-    own = Magnified(scene, course.motion, rigid, course.bent, factor)
-    low, high = box_of(rigid)
+    scene, base = course.scene, course.base
+    size = size_of_motion(base)
+    factor = magnification(course.motion, base, course.bent, size)
+    own = Magnified(scene, course.motion, base, course.bent, factor)
+    low, high = box_of(base)
     low, high = low + 0.5 * MARGIN * size, high - 0.5 * MARGIN * size
     panels = Panels(ROWS, COLUMNS, 1.0, 0.06, 0.06, 0.22, 0.06, between=(0.1, 0.22))
     wide = (PAGE_IN - 0.12 - 2 * panels.between[0]) / COLUMNS
@@ -37,8 +37,10 @@ def draw(course: ElasticCourse) -> Figure | None:
         (Line2D([], [], color=colour, linewidth=2.0), f"{name}{' (elastic)' * (name in own.bent)}")
         for name, colour in colours.items()
     ]
-    entries.append((Line2D([], [], **GHOST), "rigid links"))  # type: ignore[arg-type]  # looks of a line
-    title = f"Displacements from rigid links, magnified {factor:g} times: {scene.name}"
+    ghost = "lines between pins" if scene.is_free else "rigid links"
+    entries.append((Line2D([], [], **GHOST), ghost))  # type: ignore[arg-type]  # looks of a line
+    what = "Deflections" if scene.is_free else "Displacements from rigid links"
+    title = f"{what}, magnified {factor:g} times: {scene.name}"
     figure, panes = sheet(
         PAGE_IN, Panels(**{**vars(panels), "height": height}), title, entries, notes(course)
     )
@@ -48,7 +50,7 @@ def draw(course: ElasticCourse) -> Figure | None:
         _position(axes, own, index, colours)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xticks=[], yticks=[])
         axes.set_aspect("equal", adjustable="box")
-        degrees = math.degrees(rigid.links[scene.driver.link].theta[index]) % 360.0
+        degrees = math.degrees(base.links[scene.driver.link].theta[index]) % 360.0
         when = f"{scene.driver.link} {degrees:.0f} deg"
         if scene.is_free or course.turns > 1.0:
             when += f", {course.time_s[index]:.3g} s"

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
 from models.elastic_line import line_of
 from models.laws import ConstantSpeed
 from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import ElasticCourse, elastic_course
+from reports.describe.elastic_course import ElasticCourse, elastic_course, start_of
 from reports.describe.elastic_motion import extremes, largest_deflections
 from reports.describe.elastic_words import elastic_facts, elastic_warnings, start_words
 from reports.drawing.magnified import magnification
@@ -29,7 +29,7 @@ CAPTIONS: Mapping[str, str] = {
     "angles": "What links do with elastic links and with rigid ones, and what is between them.",
     "extension": "By how much the pins of each elastic link are further apart than at rest.",
     "torque": "The driving torque with elastic links and with rigid ones.",
-    "positions": "The mechanism at six instants; displacements from rigid links are magnified.",
+    "positions": "The mechanism at six instants, magnified as it says.",
 }
 """What stands under a figure; one that is not here has its name."""
 MOST = 1201
@@ -40,19 +40,17 @@ STEPS = (1.0, 2.0, 5.0)
 """Of the factors that are offered, within a power of ten."""
 
 
-def build(
-    motion: DrivenElasticMotion, fine: ElasticCourse, figures: Mapping[str, bytes]
-) -> Section:
+def build(motion: ElasticHistory, fine: ElasticCourse, figures: Mapping[str, bytes]) -> Section:
     """The section; ``fine`` is the motion closely sampled, ``figures`` are SVG files by name."""
     scene = motion.scene
     turns = motion.until_s / scene.driver.law.period_s
     count = int(np.clip(round((INSTANTS - 1) * turns), INSTANTS - 1, MOST - 1)) + 1
     course = elastic_course(motion, np.linspace(0.0, motion.until_s, count))
-    factor = magnification(course.motion, course.rigid, course.bent, size_of_motion(course.rigid))
-    drawn = drawing(scene, course.time_s, course.rigid)
+    factor = magnification(course.motion, course.base, course.bent, size_of_motion(course.base))
+    drawn = drawing(scene, course.time_s, course.base)
     if not isinstance(scene.driver.law, ConstantSpeed) or turns > 1.0 + 1e-9:
         drawn |= {"until_s": motion.until_s}
-    notes = [start_words(scene, motion.start), *certainty(motion)]
+    notes = [start_words(scene, start_of(motion)), *certainty(motion)]
     return Section(
         anchor="motion",
         title="In motion",
@@ -65,6 +63,7 @@ def build(
             "factor": f"{factor:g}",
             "rows": extremes(fine),
             "driver": scene.driver.link,
+            "free": scene.is_free,
             "notes": [*notes, *elastic_warnings(scene, largest_deflections(fine))],
             "figures": [
                 (name, CAPTIONS.get(name, name), base64.b64encode(svg).decode("ascii"))
@@ -92,9 +91,9 @@ def factors(chosen: float) -> list[tuple[str, str]]:
 
 
 def _moved(course: ElasticCourse) -> Array:
-    """How far points and guides are off those with rigid links: x and y by point [m], then angles
+    """How far points and guides are off those of the drawing: x and y by point [m], then angles
     of the links that carry guides [rad], (R, T), as the rows of the drawing."""
-    elastic, rigid = course.motion, course.rigid
+    elastic, rigid = course.motion, course.base
     rows = [
         row
         for name in moving_points(course.scene)
