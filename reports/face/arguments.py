@@ -14,7 +14,7 @@ import numpy as np
 from models.errors import CrankcheckError, shown, suggestion
 from models.files import every_shipped, load_scene
 from models.scene import KEPT, Scene
-from reports.judge.tolerance import DEFAULTS
+from reports.judge.tolerance import DEFAULTS, ELASTIC
 from reports.output.numbers import listed
 from reports.plan.steps import positive
 from sim.engine import SettingValue
@@ -151,7 +151,7 @@ def tolerances_of(tolerance: object, option: str) -> dict[str, float]:
         )
     found: dict[str, float] = {}
     for name, number in tolerance.items():
-        if name not in DEFAULTS:
+        if name not in ELASTIC:
             hint = suggestion(str(name), DEFAULTS, "use one of", 2, 0.6)
             raise CrankcheckError(f"{option} {shown(name)}: it is no quantity; {hint}")
         unit = "pure numbers: rad, lengths over that of the longest link"
