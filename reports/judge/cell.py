@@ -11,7 +11,6 @@ from typing import Any, Literal
 from models.errors import CrankcheckError, EngineError
 from models.motion import State
 from models.scene import Same, Scene
-from models.segmented import SegmentedScene
 from reports.compare.asked import not_asked_for
 from reports.compare.beside import Truth, truth_of
 from reports.compare.compare import compare
@@ -97,6 +96,8 @@ class Cell:
         """The scene that an engine is given: of elastic links, the segments."""
         if not self.scene.elastic:
             return self.scene
+        from models.segmented import SegmentedScene  # where links bend alone
+
         return SegmentedScene(self.scene, self.segments, self.springs == "corrected").rigid
 
     @property

@@ -106,6 +106,7 @@ def cell_row(checked: Checked) -> dict[str, object]:
             checked.limits[name].number if name in checked.limits else None
         )
     placed = ("phase", *named("place")) if free else named("place")
+    placed = ("deflection",) if bends else placed  # what elastic links are about
     row["place_pure"] = _worst(*(row[f"{name}_pure"] for name in placed))
     convergence = checked.convergence
     row |= free_row(checked) if free else {}

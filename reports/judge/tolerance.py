@@ -38,6 +38,12 @@ with the masses, as no acceleration of a light link says. On the shipped scenes 
 of it at 1 ms, and up to 0.7 at shorter steps; over the step and the curvature alone its drifts went
 from 0.02 to 19 times one limit.
 
+Where links bend, rates have as many joints in a row as there are segments, each with a part of its
+own: their budget grows with the root of that number. The deflection of the links, a share of its
+largest, has the budget of places over that (``bends``), and what the swings of the springs are off
+by (`_swung`); all that is held to the beam, what the exact chain of as many segments is off it by
+(`reports.compare.elastic`), as that is no engine's fault.
+
 Forces are shares of the largest of the reference, in which the masses cancel: no ratio of these is
 in their budget, but in that of the start (`reports.judge.start_allowance`).
 
@@ -106,6 +112,8 @@ def default(tolerance: Tolerance, errors: Errors) -> float:
     if tolerance.closes:
         bend = max(bend, 2.0 * errors.worst_jolt)
     budget = (tolerance.coefficient * step**tolerance.order + errors.summed_rad) * bend
+    if tolerance.rate and errors.elastic is not None:
+        budget *= math.sqrt(errors.elastic.segments)
     budget += tolerance.drifting * errors.drifted_rad * step**tolerance.order
     lasted = errors.travel_rad * step ** (tolerance.order + 1) * curvature**1.5
     budget += tolerance.lasting * lasted
@@ -232,13 +240,17 @@ def refuse_forces_unasked(option: str, quantities: Iterable[str]) -> None:
         )
 
 
-def refuse_of_other_motion(option: str, quantities: Iterable[str], free: Iterable[bool]) -> None:
-    """Refuse limits of what none of the cells has, which are ``free`` or driven. Raises
-    CrankcheckError."""
-    known = {name for each in set(free) for name in (FREE if each else DEFAULTS)}
+def refuse_of_other_motion(
+    option: str, quantities: Iterable[str], free: Iterable[bool], *, bends: bool = False
+) -> None:
+    """Refuse limits of what none of the cells has, which are ``free`` or driven; ``bends``
+    says that one has elastic links. Raises CrankcheckError."""
+    driven = ELASTIC if bends else DEFAULTS
+    known = {name for each in set(free) for name in (FREE if each else driven)}
     other = [name for name in quantities if name not in known]
     if other:
         of = "of free motion; let scenes go with --free, or" if other[0] in FREE else "of a drive;"
+        of = "of elastic links;" if other[0] in ELASTIC.keys() - DEFAULTS.keys() else of
         raise CrankcheckError(
             f"{option} {other[0]}: it is {of} leave {other[0]} out. There is {', '.join(known)}"
         )

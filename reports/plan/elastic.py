@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import CrankcheckError, EngineError, shown
+from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import SEGMENTS, Springs
+from reports.plan.chosen import refuse_unfollowed
 from reports.plan.steps import STEPS_PER_TURN
 
 if TYPE_CHECKING:
@@ -83,6 +85,29 @@ def refuse_free_elastic(scene: Scene) -> None:
             f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
             "give the driver a law, or leave [elastic] out"
         )
+
+
+def rigid_alone(what: str) -> Callable[[Scene], None]:
+    """A check of scenes for a command that has no elastic links; it raises CrankcheckError."""
+
+    def check(scene: Scene) -> None:
+        if scene.elastic:
+            raise CrankcheckError(
+                f"{scene.name}: {', '.join(scene.elastic)} bends, and `crankcheck {what}` takes "
+                "rigid links; `crankcheck verify`, `sweep` and `run` take elastic ones"
+            )
+        refuse_unfollowed(scene)
+
+    return check
+
+
+def segmented(scene: Scene) -> tuple[Scene, State]:
+    """What an engine is given of a scene with elastic links, and the state that it starts from.
+    Raises CrankcheckError as `elastic_truth`."""
+    from reports.compare.elastic.elastic_truth import elastic_truth  # for elastic links alone
+
+    truth = elastic_truth(scene, SEGMENTS, SPRINGS[0], scene.driver.law.period_s)
+    return truth.given, truth.start
 
 
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:

@@ -23,6 +23,7 @@ from reports.output.console import tell
 from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
+from reports.plan.elastic import rigid_alone
 from reports.results.lines import lines
 from reports.store.reader import Stored, read_store
 from reports.workers.progress import progress_bar
@@ -80,7 +81,7 @@ def _scenes(
         texts = stored_scenes(stored)
         return [parse_scene(text, f"{stored.folder}: {n}") for n, text in texts.items()], texts
     names = request.scenes or USUAL_SCENES
-    return chosen_scenes(names), scene_texts(names)
+    return chosen_scenes(names, rigid_alone("advise")), scene_texts(names)
 
 
 def _refuse_unrun(found: Sequence[SearchResult]) -> None:

@@ -22,6 +22,7 @@ from reports.compare.free.kept_motion import released_state
 from reports.describe.law import describe_law
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
+from reports.plan.elastic import segmented
 from sim.registry import available, brought, engine
 
 
@@ -77,14 +78,21 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
     """
     if output is not None:
         check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
-    scene = load_scene(name)
-    start = start_of(scene)
+    scene, start = opened(load_scene(name))
     text = build(scene, start, replace(exact(scene), close=close))
     if output is None:
         console.file.write(text)
         return
     write(output, text)
     console.print(harmless(f"{output}: MJCF of {scene.name}"), highlight=False, markup=False)
+
+
+def opened(scene: Scene) -> tuple[Scene, State]:
+    """What an engine is given of a scene, which of elastic links are segments, and where it begins.
+    Raises CrankcheckError where it can not."""
+    if scene.elastic and not scene.is_free:
+        return segmented(scene)
+    return scene, start_of(scene)
 
 
 def start_of(scene: Scene) -> State:

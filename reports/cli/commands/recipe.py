@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from rich.console import Console
 
-from analytic.kinematics import solve
 from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
+from reports.cli.commands.listing import opened
 from reports.cli.recipes import ForceRecipeRequest
 from reports.output.write import check_file, write
 from reports.plan.steps import MOST_STEPS
@@ -36,7 +35,7 @@ def run_force_recipe(request: ForceRecipeRequest, console: Console) -> int:
     settings = resolved(profile_of(engine(request.engine), request.profile), None)
     period = scene.driver.law.period_s
     check_steps(scene, period, period / request.steps_per_turn, 1, 1)
-    start = solve(scene, np.zeros(1)).state()
+    scene, start = opened(scene)
     text = force_recipe(request.engine, scene, start, settings, request.steps_per_turn)
     if request.output is None:
         console.file.write(text)

@@ -19,6 +19,7 @@ from reports.cli.measuring import TuneRequest
 from reports.judge.three_steps import AT_ROUNDING
 from reports.output.provenance import crankcheck_version, provenance
 from reports.plan.chosen import chosen_engines, chosen_scenes, left_out_note
+from reports.plan.elastic import rigid_alone
 from reports.plan.key import MEASURE, digest
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import refuse_singular
@@ -116,7 +117,13 @@ def _goal(request: TuneRequest) -> Goal:
         raise CrankcheckError("tune: name a scene or several, such as fourbar-lecture-1")
     positive("--turns", request.turns, "turns; 1 is one period of the driver")
     name = chosen_engines([request.engine])[0]
-    goal = Goal(tuple(chosen_scenes(request.scenes)), name, PROFILE, target, request.turns)
+    goal = Goal(
+        tuple(chosen_scenes(request.scenes, rigid_alone("tune"))),
+        name,
+        PROFILE,
+        target,
+        request.turns,
+    )
     if goal.most < goal.least:
         raise CrankcheckError(
             f"--turns {request.turns:g}: a run of a search has {MOST_SEARCHED} steps at most; take "

@@ -113,7 +113,9 @@ def plan(request: VerifyRequest) -> list[Cell]:
         refuse_forces_unasked("--tol", tolerance)
     scenes = _scenes(request)
     _refuse_options(request, scenes)
-    refuse_of_other_motion("--tol", tolerance, [scene.is_free for scene in scenes])
+    bends = any(scene.elastic for scene in scenes)
+    free = [scene.is_free for scene in scenes]
+    refuse_of_other_motion("--tol", tolerance, free, bends=bends)
     engines = chosen_engines(request.engines)
     profiles = chosen_profiles(request.profiles, engines)
     refuse_rigid(scenes, request.segments, request.springs)

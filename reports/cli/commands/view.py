@@ -10,7 +10,7 @@ from rich.console import Console
 
 from models.errors import harmless
 from models.files import find_scene, load_scene
-from reports.cli.commands.listing import start_of
+from reports.cli.commands.listing import opened
 from reports.output.write import check_file, write
 from sim.viewing import viewer
 
@@ -30,7 +30,7 @@ def run_view(
         check_file(output, "-o", ENDINGS, inputs=read)
     scene = load_scene(name)
     if output is None and has_screen() and not with_forces:
-        viewer()(scene, start_of(scene))
+        viewer()(*opened(scene))
         return
     if output is None:
         output = Path(f"{scene.name}.gif")

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from reports.compare.errors import Errors
-from reports.judge.rules.rule import Evidence, Finding
+from reports.judge.rules.rule import Evidence, Finding, Level
+
+UNSURE = 0.05
+"""A doubt of the beam, of the largest deflection, that is told as advice: next to a resonance."""
 
 
 class TruthEnds:
@@ -14,7 +17,11 @@ class TruthEnds:
         "segments, that chain beside the beam, and what the beam itself may be off by. Where one "
         "of the last two is the largest, no engine and no step tells more."
     )
-    cure = "More segments (--segments), or --springs corrected; a shorter step does not help."
+    cure = (
+        "More segments (--segments), or --springs corrected; a shorter step does not help. Where "
+        "the beam itself is in doubt, keep away from whole numbers of its frequency over the "
+        "speed, or give it damping_s."
+    )
 
     def check(self, evidence: Evidence) -> Finding | None:
         errors = evidence.errors
@@ -29,7 +36,8 @@ class TruthEnds:
         if own > max(elastic.chain, elastic.doubt):
             return Finding(self.id, "pass", f"the engine is what is off: {parts}", own)
         ends = "the segments end" if elastic.chain > elastic.doubt else "the truth ends"
-        return Finding(self.id, "pass", f"{ends} before the engine does: {parts}", own)
+        level: Level = "advice" if elastic.doubt > UNSURE else "pass"
+        return Finding(self.id, level, f"{ends} before the engine does: {parts}", own)
 
 
 def engine_share(errors: Errors) -> float:

@@ -81,11 +81,12 @@ def test_every_option_reaches_its_field(monkeypatch: pytest.MonkeyPatch) -> None
     line = (
         "verify a b --engine c --engine d --profile e --dt 0.1 --steps-per-turn 2 --turns 3 "
         "--tol angle=1 --drive servo --no-convergence --jobs 4 --junit f --csv g --json h -o i "
-        "--baseline j --factor 5 --forces --free --duration 6"
+        "--baseline j --factor 5 --forces --free --duration 6 --segments 7 --springs k"
     )
     request = checking.VerifyRequest(
         ["a", "b"], ["c", "d"], ["e"], 0.1, 2.0, 3.0, ["angle=1"], "servo", False, 4, Path("f"),
-        Path("g"), Path("h"), Path("i"), Path("j"), 5.0, True, True, 6.0,
+        Path("g"), Path("h"), Path("i"), Path("j"), 5.0, True, True, 6.0, 7,
+        "k",
     )  # fmt: skip
     of_models = (
         "verify --mjcf a --speed 1 --key b --start 2 --branch c=1 --write-scene d --limit-s 3 "
