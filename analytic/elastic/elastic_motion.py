@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from analytic.elastic.coordinates import coordinates
-from analytic.elastic.discretisation import Discretisation, flexible_links
+from analytic.elastic.discretisation import Discretisation, Segments, flexible_links
 from analytic.elastic.drive_check import check_drive
 from analytic.elastic.elastic_doubt import ElasticDoubt
 from analytic.elastic.periodic import PeriodicMotion, periodic_motion
@@ -38,8 +38,12 @@ PER_TURN, PER_CYCLE = 24, 6
 """Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10
 nodes follow the third to 9 digits, and those above as far as their part in the motion needs."""
 
+MOST_PER_TURN = 2000
+"""What rings faster is so stiff that it hardly bends; the method stands it, and the doubt tells."""
 MOST_WINDOWS = 50_000
 """Minutes of work."""
+MOST_BENT = 0.1
+"""Of the length of a link: bent further, its slopes are not small."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +123,8 @@ class DrivenElasticMotion:
                 slowest = max(slowest, link.bending_rad_s(line.length_m, line.density_kg_m))
         turns = self.until_s / self.scene.driver.law.period_s
         cycles = self.until_s * slowest / math.tau
-        windows = math.ceil(max(2.0, PER_TURN * turns, PER_CYCLE * cycles))
+        followed = min(PER_CYCLE * cycles, MOST_PER_TURN * turns)
+        windows = math.ceil(max(2.0, PER_TURN * turns, followed))
         if windows > MOST_WINDOWS:
             raise CrankcheckError(
                 f"{self.scene.name}: {self.until_s:g} s are {windows} windows of the motion of its "
@@ -162,11 +167,22 @@ class DrivenElasticMotion:
         return replace(motion, forces=forces, elastic=self._shapes(now.now.q))
 
     def _shapes(self, q: Array) -> dict[str, LinkShape]:
-        """How the links are bent and stretched at coordinates (T, n)."""
-        return {
+        """How the links are bent and stretched at coordinates (T, n). Raises CrankcheckError where
+        that is too far for the theory."""
+        found = {
             name: LinkShape(
                 body.deflections(q[:, own], np.array([0.5 * body.length_m]))[:, 0],
                 body.extension(q[:, own]),
             )
             for name, (body, own) in self.form.assembly.elastic.items()
         }
+        for name, shape in found.items():
+            share = float(np.abs(shape.middle).max(initial=0.0))
+            share /= self.form.assembly.elastic[name][0].length_m
+            if share > MOST_BENT and not isinstance(self.by, Segments):
+                raise CrankcheckError(
+                    f"{self.scene.name}: {name} bends by {share:.2g} of its length, which is too "
+                    f"far for a beam of small slopes: up to {MOST_BENT:g} it is one; make it "
+                    "stiffer, or drive slower"
+                )
+        return found

@@ -30,7 +30,8 @@ BLOCK = 16
 """Windows that are solved for at once."""
 MOST_ROUNDS, MOST_TANGENTS = 40, 6
 CLOSE = 1e-13
-"""What a round may change accelerations by, over the largest."""
+"""What a round may change accelerations by, over the largest; where rounding leaves more, of links
+that hardly bend, what it may move them by, over the longest link."""
 SLOW = 0.3
 """What a round may leave of the one before it until the derivatives are taken anew."""
 
@@ -170,7 +171,9 @@ class _Block:
             block, owed = _Block.along(h, z, rates, block.seconds + step), 0.0 * rates
             at = block.nodes(h)
             size = float(np.abs(step).max()) / (float(np.abs(block.seconds).max()) or 1.0)
-            if size <= CLOSE or (size < 1e-9 and size >= 0.5 * last):
+            moved = float(h.max()) ** 2 * float(np.abs(step).max())
+            small = size < 1e-9 or moved < CLOSE * form.assembly.scene.longest_m
+            if size <= CLOSE or (small and size >= 0.5 * last):
                 return block
             if not np.isfinite(size) or (tangents == MOST_TANGENTS and size > last):
                 return None
