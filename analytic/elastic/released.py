@@ -44,7 +44,7 @@ COARSER = 100.0
 
 
 @dataclass(frozen=True)
-class ElasticDoubt:
+class DoubtOverTime:
     """What a motion may be off by, the largest so far at T times: ``deflection_m`` of the middle of
     any elastic link, ``angle_rad`` of any link."""
 
@@ -52,7 +52,7 @@ class ElasticDoubt:
     angle_rad: Array
 
     @staticmethod
-    def between(motion: Motion, *others: Motion) -> ElasticDoubt:
+    def between(motion: Motion, *others: Motion) -> DoubtOverTime:
         """How far a motion is from others."""
         bent, turned = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
         for other in others:
@@ -60,7 +60,7 @@ class ElasticDoubt:
                 bent = np.maximum(bent, np.abs(own.middle - other.elastic[name].middle))
             for name, link in motion.links.items():
                 turned = np.maximum(turned, np.abs(link.theta - other.links[name].theta))
-        return ElasticDoubt(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
+        return DoubtOverTime(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,11 +153,11 @@ class ReleasedElasticMotion:
         """The motion integrated to a larger tolerance."""
         return replace(self, tolerance=COARSER * self.tolerance)
 
-    def doubt(self, time_s: Array) -> ElasticDoubt:
+    def doubt(self, time_s: Array) -> DoubtOverTime:
         """What the motion may be off by at times [s], (T,) in ascending order: how far it is from
         that of the next finer shapes, and from one integrated to a larger tolerance."""
         own = self.at(time_s)
-        return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s))
+        return DoubtOverTime.between(own, self.finer.at(time_s), self.coarser.at(time_s))
 
     def _instants(self, time_s: Array) -> Iterator[tuple[Array, Piece, FreeInstant, Array]]:
         """Times, the piece that they are in, the equations and the work until then."""
