@@ -128,7 +128,7 @@ def test_a_resonance_ends_with_2(crank: Crank) -> None:
         (("fourbar-elastic", "--speeds", "1:5:999999"), "give 5000 or fewer"),
         (("fourbar-elastic", "--map", "coupler"), "its own mass is that of the beam; use rocker"),
         (("fourbar-elastic", "--map", "crank"), "its speed is told"),
-        (("fourbar-elastic", "--map", "lever"), "no link of that name; use rocker"),
+        (("fourbar-elastic", "--map", "lever"), "no link or slider of that name; use rocker"),
         (("fourbar-elastic", "--factors", "1:2:3"), "give --map LINK"),
     ],
 )
