@@ -95,9 +95,7 @@ class AnySpeed:
         }
         between = low + 0.3 * (high - low)
         off = apart(self._summed(series, between), self._direct(between))
-        # At the low end of a wide range the small differences of large numbers are left.
-        lost = apart(self._summed(series, low), forms[0])
-        return None if max(off, lost) > SAME else series
+        return None if off > SAME else series
 
     def _direct(self, speed: float) -> LinearForm:
         form = self.form(speed)

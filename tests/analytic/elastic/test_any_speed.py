@@ -41,13 +41,6 @@ def test_a_load_that_goes_with_the_speed_otherwise_is_met_as_well() -> None:
     assert off(scene, 11.0) < 1e-7
 
 
-def test_a_wide_range_loses_no_digits() -> None:
-    scene = replace(fourbar(), gravity_m_s2=(0.0, -9.81))
-    wide = AnySpeed(scene, BY, 1e-6, 1e6)
-    form = form_of(at_speed(scene, 1.0), BY)
-    assert apart(wide.linear(1.0), linearise(form, wide.linear(1.0).time_s, 1e-4)) < 1e-6
-
-
 def test_other_laws_are_refused() -> None:
     scene = fourbar()
     law = FromRest(0.0, 10.0, 0.2)

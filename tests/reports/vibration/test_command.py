@@ -125,6 +125,7 @@ def test_a_resonance_ends_with_2(crank: Crank) -> None:
         (("fourbar-elastic", "--speeds", "0:5:9"), "two numbers above 0"),
         (("fourbar-elastic", "--speeds", "1:inf:9"), "write FROM:TO:COUNT"),
         (("fourbar-elastic", "--speeds", "1:5:1"), "give 2 or more"),
+        (("fourbar-elastic", "--speeds", "1e-9:5:9"), "do not vibrate there; start at 0.0077"),
         (("fourbar-elastic", "--speeds", "1:5:999999"), "give 5000 or fewer"),
         (("fourbar-elastic", "--map", "coupler"), "its own mass is that of the beam; use rocker"),
         (("fourbar-elastic", "--map", "crank"), "its speed is told"),
