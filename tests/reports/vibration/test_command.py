@@ -141,7 +141,8 @@ def test_mistakes_are_told(crank: Crank, options: tuple[str, ...], told: str) ->
 
 
 def test_a_law_that_does_not_last_is_refused(crank: Crank) -> None:
-    name = scene_at(10.5, start_deg='law = "from-rest"\nrise_s = 0.2\nstart_deg')
+    law = {"start_deg": 'law = "from-rest"\nrise_s = 0.2\nstart_deg', '"periodic"': '"straight"'}
+    name = scene_at(10.5, **law)
     result = crank(name)
     assert result.exit_code == 2
     assert "vibration is told of a driver at constant speed" in " ".join(result.output.split())
