@@ -14,7 +14,7 @@ import numpy as np
 from analytic.elastic.discretisation import Modes
 from analytic.elastic.over_speeds import OverSpeeds, over_speeds
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, cut
 from models.scene import Scene
 
 
@@ -46,35 +46,43 @@ class InertiaMap:
         return np.array([[point.stability.largest for point in one.points] for one in self.over])
 
 
-def with_inertia(scene: Scene, link: str, factor: float) -> Scene:
-    """The scene with a rigid link so many times as heavy.
+def with_inertia(scene: Scene, body: str, factor: float) -> Scene:
+    """The scene with a rigid link, or the block of a slider, so many times as heavy.
 
     Raises
     ------
     CrankcheckError
-        No such link; one that is elastic, or the driver, or without mass.
+        No such body; one that is elastic, or the driver, or without mass.
     """
-    others = [
-        name
+    links = {
+        name: own
         for name, own in scene.links.items()
-        if name not in scene.elastic and name != scene.driver.link
-        if own.mass_kg or own.inertia_kg_m2
-    ]
-    if link not in others:
-        found = (
-            "it is elastic, and its own mass is that of the beam"
-            if link in scene.elastic
-            else "its speed is told, whatever its inertia"
-            if link == scene.driver.link
-            else "it has no mass"
-            if link in scene.links
-            else "no link of that name"
-        )
-        use = ", ".join(others) or "a scene with a rigid link that follows"
-        raise CrankcheckError(f"{scene.name}: inertia of {link}: {found}; use {use}")
-    own = scene.links[link]
-    heavy = replace(own, mass_kg=factor * own.mass_kg, inertia_kg_m2=factor * own.inertia_kg_m2)
-    return replace(scene, links={**scene.links, link: heavy})
+        if name not in scene.elastic and name != scene.driver.link and own.mass_kg
+    }
+    blocks = {name: own for name, own in scene.sliders.items() if own.mass_kg and name not in links}
+    if body in links:
+        own = links[body]
+        heavy = replace(own, mass_kg=factor * own.mass_kg, inertia_kg_m2=factor * own.inertia_kg_m2)
+        return replace(scene, links={**scene.links, body: heavy})
+    if body in blocks:
+        block = blocks[body]
+        mass, inertia = factor * block.mass_kg, factor * block.inertia_kg_m2
+        heavier = replace(block, mass_kg=mass, inertia_kg_m2=inertia)
+        return replace(scene, sliders={**scene.sliders, body: heavier})
+    use = ", ".join((*links, *blocks)) or "a scene with a rigid link of mass beside the driver"
+    why = _unchanged(scene, body)
+    raise CrankcheckError(f"{scene.name}: inertia of {cut(body)}: {why}; use {use}")
+
+
+def _unchanged(scene: Scene, body: str) -> str:
+    """Why the inertia of a body is not to be changed."""
+    if body in scene.elastic:
+        return "it is elastic, and its own mass is that of the beam"
+    if body == scene.driver.link:
+        return "its speed is told, whatever its inertia"
+    if body in scene.links or body in scene.sliders:
+        return "it has no mass"
+    return "no link or slider of that name"
 
 
 def over_inertia(scene: Scene, by: Modes, speeds: Array, link: str, factors: Array) -> InertiaMap:

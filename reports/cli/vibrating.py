@@ -27,7 +27,9 @@ class VibrationRequest:
     map_link: Annotated[
         str | None,
         typer.Option(
-            "--map", metavar="LINK", help="Over speeds and over the inertia of a rigid link."
+            "--map",
+            metavar="LINK",
+            help="Over speeds and over the inertia of a rigid link or of a slider's block.",
         ),
     ] = None
     factors: Annotated[

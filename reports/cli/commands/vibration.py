@@ -33,6 +33,8 @@ MOST_COUNT = 5000
 RATIOS, COUNT = (12.5, 2.5), 101
 """With --map alone: frequency ratios that speeds are between, and how many."""
 FACTORS = "0.1:10:9"
+MOST_RATIO = 1e4
+"""A frequency ratio from which on a turn holds more vibrations than windows follow."""
 ONE, MANY = 5, 3
 """Modes across each link, at one speed and at many: three give the deflection to 1e-3 of itself."""
 
@@ -135,6 +137,12 @@ def _asked_speeds(scene: Scene, text: str | None) -> Array:
         low, high = (lowest_rad_s(scene) / ratio for ratio in RATIOS)
         return np.linspace(low, high, COUNT)
     low, high, count = asked_range(text, "--speeds", "5:40:200")
+    slowest = lowest_rad_s(scene) / MOST_RATIO
+    if low < slowest:
+        raise CrankcheckError(
+            f"--speeds: found {low:g} rad/s, which the lowest natural frequency of a link is over "
+            f"{MOST_RATIO:g} times of: links do not vibrate there; start at {slowest:.2g} or more"
+        )
     return np.linspace(low, high, count)
 
 

@@ -71,11 +71,12 @@ def draw_spectrum(vibration: SteadyVibration) -> Figure:
     tops = []
     for k, (own, colour) in enumerate(zip(each, COLOURS * len(each), strict=False)):
         orders = np.arange(min(ORDERS + 1, len(own.amplitudes)))
-        heights = np.maximum(own.amplitudes[orders] / own.length_m, SMALLEST)
+        orders = orders[own.amplitudes[orders] > SMALLEST * own.length_m]
+        heights = own.amplitudes[orders] / own.length_m
         shift = 0.18 * (k - 0.5 * (len(each) - 1))
         panel.vlines(orders + shift, SMALLEST, heights, color=colour, linewidth=1.2)
         panel.plot(orders + shift, heights, color=colour, marker="o", markersize=2.4, linestyle="")
-        tops.append(heights.max())
+        tops.append(heights.max(initial=SMALLEST))
     for deviation in shown:
         panel.axvline(deviation.order, color="#8a8a8a", linestyle=":", linewidth=0.9)
     logarithmic(panel, "y", SMALLEST, max(3.0 * max(tops), 1e2 * SMALLEST))

@@ -75,7 +75,7 @@ def test_a_heavy_rocker_makes_it_unstable() -> None:
     [
         ("coupler", "it is elastic, and its own mass is that of the beam; use rocker"),
         ("crank", "its speed is told, whatever its inertia; use rocker"),
-        ("lever", "no link of that name; use rocker"),
+        ("lever", "no link or slider of that name; use rocker"),
     ],
 )
 def test_inertia_that_is_not_to_be_changed_is_refused(link: str, why: str) -> None:

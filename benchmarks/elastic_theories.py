@@ -1,0 +1,104 @@
+"""Where the theories of elastic links part, over the frequency ratio of the shipped four-bar.
+
+`python benchmarks/elastic_theories.py [RATIO ...]` prints, for each on its own periodic motion,
+what the deflection of the coupler's middle is off that of the unlinearised beam, over its largest:
+
+    linear       about the rigid motion, without the stiffness that pull gives (the thesis)
+    stiffened    the same with it
+    chain n      n rigid segments with springs between them, exactly solved: what engines are given
+    corrected n  the same with springs that give the chain the sag of the beam
+
+Whole ratios resonate. About a minute and a half.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+if __name__ == "__main__":  # run as a file: the packages are beside this folder
+    sys.path[0] = str(Path(__file__).resolve().parents[1])
+
+from analytic.elastic.any_speed import at_speed
+from analytic.elastic.discretisation import Discretisation, Modes, Segments
+from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.linearised import linearise
+from analytic.elastic.natural import lowest_rad_s
+from analytic.elastic.periodic import (
+    FIRST,
+    PeriodicMotion,
+    instants,
+    linear_motion,
+    periodic_motion,
+)
+from analytic.elastic.reduced import ReducedForm
+from models.array import Array
+from models.files import load_scene
+from models.scene import Scene
+
+RATIOS = (3.5, 5.5, 8.5, 10.5, 14.5, 20.5)
+INSTANTS = 129
+SEGMENTS = (4, 8, 16)
+
+
+def form_of(scene: Scene, by: Discretisation, *, stiffened: bool = True) -> ReducedForm:
+    """The equations of motion."""
+    return DrivenElasticMotion(scene, 1.0, by, "periodic", stiffened).form
+
+
+def middle(form: ReducedForm, motion: PeriodicMotion) -> Array:
+    """The deflection of the middle of the one elastic link over a period [m]."""
+    z = motion.at(instants(INSTANTS, form.period_s))[0]
+    ((body, _),) = form.assembly.elastic.values()
+    q = np.concatenate([np.zeros((len(z), 3)), z], axis=1)
+    return body.deflections(q, np.array([0.5 * body.length_m]))[:, 0]
+
+
+def linear(form: ReducedForm) -> PeriodicMotion:
+    """The periodic motion of the equations linearised about the rigid motion."""
+    scale = FIRST * form.assembly.scene.longest_m
+    return linear_motion(form, linearise(form, instants(65, form.period_s), scale))
+
+
+def row(scene: Scene, ratio: float, segments: tuple[int, ...] = SEGMENTS) -> dict[str, float]:
+    """What the theories are off at a frequency ratio, as shares; and the deflection over the
+    length."""
+    at = at_speed(scene, lowest_rad_s(scene) / ratio)
+    beam = form_of(at, Modes(7, 0))
+    exact = middle(beam, periodic_motion(beam))
+    largest = float(np.abs(exact).max())
+    length = next(iter(beam.assembly.elastic.values()))[0].length_m
+    told = {"ratio": ratio, "w / l": largest / length}
+
+    def off(name: str, form: ReducedForm, motion: PeriodicMotion) -> None:
+        told[name] = float(np.abs(middle(form, motion) - exact).max()) / largest
+
+    for name, stiffened in (("linear", False), ("stiffened", True)):
+        form = form_of(at, Modes(7, 0), stiffened=stiffened)
+        off(name, form, linear(form))
+    for corrected, name in ((False, "chain"), (True, "corrected")):
+        for count in segments:
+            form = form_of(at, Segments(count, corrected))
+            off(f"{name} {count}", form, periodic_motion(form))
+    return told
+
+
+def main() -> None:
+    scene = load_scene("fourbar-elastic")
+    heads: list[str] = []
+    for ratio in map(float, sys.argv[1:] or RATIOS):
+        began = time.perf_counter()
+        told = row(scene, ratio)
+        if not heads:
+            heads = list(told)
+            print("".join(f"{head:>14}" for head in (*heads, "s")))
+        shares = [f"{100.0 * told[head]:>13.3g}%" for head in heads[1:]]
+        took = time.perf_counter() - began
+        print(f"{told['ratio']:>14.4g}{''.join(shares)}{took:>14.1f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+"""The figures of vibration: nothing over something else, and the right curves."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.over_inertia import over_inertia as inertia_map
+from analytic.elastic.over_speeds import OverSpeeds, over_speeds
+from analytic.elastic.steady_vibration import SteadyVibration, steady_vibration
+from models.files import load_scene
+from reports.figures.style import styled
+from reports.figures.vibration import over_inertia, over_speed, over_turn
+from tests.reports.figures.test_layout import boxes
+
+ONE = Modes(1, 0)
+
+
+@pytest.fixture(scope="module")
+def vibration() -> SteadyVibration:
+    return steady_vibration(load_scene("fourbar-elastic"), ONE)
+
+
+@pytest.fixture(scope="module")
+def speeds() -> OverSpeeds:
+    return over_speeds(load_scene("fourbar-elastic"), ONE, np.linspace(8.0, 60.0, 27))
+
+
+@pytest.fixture(scope="module")
+def figures(vibration: SteadyVibration, speeds: OverSpeeds) -> dict[str, Callable[[], Figure]]:
+    def mapped() -> Figure:
+        factors, few = np.array([1.0, 30.0]), np.linspace(17.0, 19.0, 3)
+        return over_inertia.draw(inertia_map(vibration.scene, ONE, few, "rocker", factors))
+
+    return {
+        "deflection": lambda: over_turn.draw(vibration),
+        "spectrum": lambda: over_turn.draw_spectrum(vibration),
+        "speeds": lambda: over_speed.draw(speeds),
+        "waterfall": lambda: over_speed.draw_waterfall(speeds),
+        "map": mapped,
+    }
+
+
+@pytest.mark.parametrize("name", ["deflection", "spectrum", "speeds", "waterfall", "map"])
+def test_words_keep_off_each_other_and_off_the_edge(
+    figures: dict[str, Callable[[], Figure]], name: str
+) -> None:
+    with styled():
+        drawn = figures[name]()
+        found = boxes(drawn)
+    page = drawn.bbox
+    for text, box in found:
+        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
+        assert inside, f"{text!r} leaves the sheet"
+    for (a, first), (b, second) in itertools.combinations(found, 2):
+        shared = Bbox.intersection(first, second)
+        assert shared is None or min(shared.width, shared.height) < 2.0, f"{a!r} on {b!r}"
+
+
+def test_the_curve_is_the_deflection(vibration: SteadyVibration) -> None:
+    with styled():
+        (axes,) = over_turn.draw(vibration).axes
+    curve = np.asarray(axes.lines[0].get_ydata(), dtype=float)
+    swing = vibration.swings["coupler"]
+    assert np.abs(curve).max() == pytest.approx(1e3 * swing.largest_m, rel=2e-3)
+    assert curve[0] == pytest.approx(curve[-1], abs=1e-9)
+    assert curve[0] == pytest.approx(1e3 * swing.middle[0], abs=1e-9)
