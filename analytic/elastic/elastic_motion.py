@@ -15,6 +15,7 @@ import numpy as np
 
 from analytic.elastic.coordinates import coordinates
 from analytic.elastic.discretisation import Discretisation, flexible_links
+from analytic.elastic.drive_check import check_drive
 from analytic.elastic.elastic_doubt import ElasticDoubt
 from analytic.elastic.periodic import PeriodicMotion, periodic_motion
 from analytic.elastic.reduced import Instant, ReducedForm, quasi_static_start
@@ -27,6 +28,7 @@ from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.elastic import Shape
 from models.elastic_line import line_of
+from models.errors import CrankcheckError
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
 from models.samples import samples
@@ -35,6 +37,9 @@ from models.scene import Scene
 PER_TURN, PER_CYCLE = 24, 6
 """Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10
 nodes follow the third to 9 digits, and those above as far as their part in the motion needs."""
+
+MOST_WINDOWS = 50_000
+"""Minutes of work."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +56,10 @@ class DrivenElasticMotion:
 
     @cached_property
     def form(self) -> ReducedForm:
-        """The equations of motion."""
+        """The equations of motion. Raises CrankcheckError for a scene without elastic links, or a
+        drive that they can not follow."""
+        turn = self.scene.driver.law.period_s if self.start == "periodic" else 0.0
+        check_drive(self.scene, max(turn, self.until_s))
         flexible = flexible_links(self.scene, self.by, stiffened=self.stiffened)
         assembly = Assembly(self.scene, flexible)
         start = coordinates(assembly, solve(self.scene, np.zeros(1)))[0]
@@ -112,6 +120,12 @@ class DrivenElasticMotion:
         turns = self.until_s / self.scene.driver.law.period_s
         cycles = self.until_s * slowest / math.tau
         windows = math.ceil(max(2.0, PER_TURN * turns, PER_CYCLE * cycles))
+        if windows > MOST_WINDOWS:
+            raise CrankcheckError(
+                f"{self.scene.name}: {self.until_s:g} s are {windows} windows of the motion of its "
+                f"elastic links; {MOST_WINDOWS} are the most: follow them for a shorter time, or "
+                'on their periodic motion ([start] shape = "periodic")'
+            )
         return int(windows * 2**self.halved)
 
     def instant(self, time_s: Array) -> tuple[Instant, Array]:
@@ -129,8 +143,15 @@ class DrivenElasticMotion:
         return self.instant(time_s)[0].now.q
 
     def at(self, time_s: Array) -> Motion:
-        """The motion at times [s], (T,), with its reactions and the driving torque."""
+        """The motion at times [s], (T,), with its reactions and the driving torque. Raises
+        CrankcheckError for times after ``until_s``, unless it is periodic."""
         instants = samples(time_s, "time_s")
+        last = float(instants.max(initial=0.0))
+        if self.start != "periodic" and last > self.until_s * (1.0 + 1e-12):
+            raise CrankcheckError(
+                f"{self.scene.name}: asked for {last:g} s, and its elastic links are followed up "
+                f"to {self.until_s:g} s; ask for that, or follow them further"
+            )
         form, assembly = self.form, self.form.assembly
         now, seconds = self.instant(instants)
         motion = as_motion(assembly, instants, now.now, now.all_seconds(seconds))

@@ -130,7 +130,11 @@ class ReducedForm:
         for _ in range(MOST_STEPS):
             now = self.assembly.at_rest(q)
             jacobian = self.assembly.joints.jacobian(now)[:, :, self._rest]
-            step = np.linalg.solve(jacobian, -self.assembly.joints.gaps(now)[:, :, None])[:, :, 0]
+            gaps = self.assembly.joints.gaps(now)
+            try:
+                step = np.linalg.solve(jacobian, -gaps[:, :, None])[:, :, 0]
+            except np.linalg.LinAlgError:
+                break  # a dead point
             q[:, self._rest] += step
             last, size = size, float(np.abs(step / units).max())
             if size <= CLOSED or (size < 1e-8 and size >= 0.5 * last):

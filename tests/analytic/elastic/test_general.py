@@ -127,6 +127,21 @@ def test_loads_and_springs_act_on_a_chain_as_they_do_on_the_beam() -> None:
     assert errors[1] < errors[0] / 3.0
 
 
+def test_a_force_in_the_frame_of_a_bent_link_turns_with_it_where_it_acts() -> None:
+    scene = replace(rich(0.9, (0.4, -0.3)), springs={})
+    motion = DrivenElasticMotion(scene, 1.0, Polynomials(4), "straight", stiffened=True)
+    form, at = motion.form, np.zeros(1)
+    z = 1e-2 * np.ones((1, form.size))
+    now = form.at(at, z, 0.0 * z, form.near(at)).now
+    beam, own = form.assembly.elastic["coupler"]
+    force = form.forces.on(at, now)[0, own][:2]  # what it does to the place of the frame
+    x = np.array([0.26 - 1e-6, 0.26 + 1e-6])
+    slope = float(np.diff(beam.deflections(now.q[:, own], x)[0])[0]) / 2e-6
+    assert abs(slope) > 1e-3
+    angle = now.q[0, own][2] + slope + scene.loads["push"].direction_rad
+    assert force == pytest.approx([0.4 * math.cos(angle), 0.4 * math.sin(angle)], abs=1e-9)
+
+
 def test_a_stiff_link_has_the_reactions_of_the_rigid_one() -> None:
     scene = rich(0.9, (0.4, -0.3))
     own = scene.elastic["coupler"]
