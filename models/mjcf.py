@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from xml.sax.saxutils import quoteattr
 
+from models.controlled import Controlled
 from models.errors import EngineError
 from models.joints import bodies, local_point
 from models.mjcf_friction import friction_of, planned
@@ -46,10 +47,11 @@ def build(
     Raises
     ------
     EngineError
-        A body without mass, a slider that needs one, or a pin in ``close`` that closes no loop; a
-        load or friction that MuJoCo can not have there.
+        A body without mass, a driver that is controlled, a slider that needs one, or a pin in
+        ``close`` that closes no loop; a load or friction that MuJoCo can not have there.
     """
     _check_masses(scene)
+    _check_driver(scene)
     writing = exact(scene) if writing is None else writing
     tree = tree or planned(scene, state, writing)
     lines = [
@@ -78,6 +80,15 @@ def _check_masses(scene: Scene) -> None:
                 f"{body}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; MuJoCo moves no body with "
                 f"less than {LEAST_MASS:g} of either, give both"
             )
+
+
+def _check_driver(scene: Scene) -> None:
+    """Refuse a driver that gives way: the model drives it whatever that takes."""
+    if isinstance(scene.driver.law, Controlled):
+        raise EngineError(
+            f"{scene.name}: its driver is controlled, and this model would hold it to its speed "
+            'without giving way; take law = "constant"'
+        )
 
 
 def _options(scene: Scene, writing: Writing) -> list[str]:

@@ -59,7 +59,7 @@ def control_elastic(
     by: Discretisation | None = None,
     *,
     stiffened: bool = True,
-    method: Method = "gauss",
+    method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
     """The motion of a scene with elastic links whose driver is controlled.

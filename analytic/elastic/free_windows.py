@@ -1,14 +1,16 @@
-"""Elastic links of what is let go, over time: Gauss' collocation in windows of a length of its own.
+"""Elastic links of what is let go, over time: collocation in windows of a length of their own.
 
 As `analytic.elastic.vibration`, in the tangent of the position with which each window begins. A
-window is short enough where the series of its motion has come to an end; what rings faster than
-windows are long has to be too small to be seen, and stays so, as the method is stable at every
-length. Loads over time are smooth within each window.
+window is short enough where the series of its motion has come to an end. Gauss' nodes keep what
+rings, and its energy. Where links stretch, these ring along themselves a thousand times faster than
+across, and too little to be seen: Radau's nodes let that die out, so that windows may be as long as
+for what bends. Loads over time are smooth within each window.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
@@ -17,15 +19,16 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg import block_diag  # type: ignore[import-untyped]  # ships no stubs
 
+from analytic.elastic.radau_nodes import radau
 from analytic.elastic.tangent_form import FreeInstant, Tangent, TangentForm
-from analytic.free.gauss import gauss
+from analytic.free.gauss import Gauss, gauss
 from analytic.multibody.switches import edges, switches
 from models.array import Array
 from models.errors import CrankcheckError
 
 NODES = 10
-RULE = gauss(NODES)
-TWICE, END_TWICE = RULE.once @ RULE.once, RULE.end_once @ RULE.once
+LIFT = gauss(NODES)
+"""Its integrals of Legendre's polynomials are those of every rule."""
 TAIL = 3
 """Of the last coefficients of a series, whose largest counts."""
 MOST_ROUNDS, CLOSE = 30, 1e-15
@@ -69,8 +72,8 @@ class Window:
         h = self.end_s - self.start_s
         share = (time_s - self.start_s) / h
         x = 2.0 * share - 1.0
-        once = legendre.legvander(x, NODES) @ RULE.lift_once
-        twice = legendre.legvander(x, NODES + 1) @ RULE.lift_twice
+        once = legendre.legvander(x, NODES) @ LIFT.lift_once
+        twice = legendre.legvander(x, NODES + 1) @ LIFT.lift_twice
         return (
             h * share[:, None] * self.rates + h * h * twice @ self.series,
             self.rates + h * once @ self.series,
@@ -78,7 +81,7 @@ class Window:
         )
 
 
-def by_gauss(
+def by_collocation(
     form: TangentForm, q: Array, rates: Array, until_s: float, tolerance: float
 ) -> tuple[Window, ...]:
     """The motion from a closed position and rates (n,) on.
@@ -99,7 +102,9 @@ def by_gauss(
             "motion, which collocation needs; integrate it by the equations with multipliers "
             "(analytic.multibody.release_multibody)"
         )
-    going = _Going(form, q, rates, tolerance, FIRST * until_s)
+    stretches = any(link.stretches for link in form.dynamics.assembly.scene.elastic.values())
+    rule = radau(NODES) if stretches else LIFT
+    going = _Going(form, rule, q, rates, tolerance, FIRST * until_s)
     times = edges(form.dynamics.forces.scene, until_s)
     return tuple(
         window
@@ -113,6 +118,7 @@ class _Going:
     """Where an integration is: the state and work at its last window's end, the next length."""
 
     form: TangentForm
+    rule: Gauss
     q: Array
     rates: Array
     tolerance: float
@@ -161,7 +167,8 @@ class _Going:
         """A window, and the end of its series; none where it is too long."""
         h = end_s - start_s
         rates = self.form.coordinates(tangent, self.rates)
-        times = start_s + h * RULE.places
+        # Radau's last node is the end, where loads still have the value before it.
+        times = np.minimum(start_s + h * self.rule.places, math.nextafter(end_s, start_s))
         try:
             found = self._met(tangent, times, h, rates)
         except (CrankcheckError, np.linalg.LinAlgError):
@@ -169,27 +176,29 @@ class _Going:
         if found is None:
             return None, 1e3 * self.tolerance
         seconds, instant = found
-        series = RULE.series @ seconds
-        tail = h * h * float(np.abs((RULE.lift_twice @ series)[-TAIL:]).max())
+        series = self.rule.series @ seconds
+        tail = h * h * float(np.abs((LIFT.lift_twice @ series)[-TAIL:]).max())
         if tail > 4.0 * self.tolerance:
             return None, tail
         power = self.form.dynamics.power(instant.now, instant.applied)
-        own = Window(start_s, end_s, tangent, rates, series, RULE.series @ power, self.work)
+        own = Window(start_s, end_s, tangent, rates, series, self.rule.series @ power, self.work)
         return own, tail
 
     def _met(
         self, tangent: Tangent, times: Array, h: float, rates: Array
     ) -> tuple[Array, FreeInstant] | None:
         """y'' at the nodes (NODES, f), with the equations there."""
-        form, f = self.form, len(rates)
-        drift = h * RULE.places[:, None] * rates
+        form, rule, f = self.form, self.rule, len(rates)
+        # Rates are integrated as accelerations are: else the method would not be stable.
+        twice = h * h * rule.once @ rule.once
+        drift = h * rule.places[:, None] * rates
         start = form.at(times[:1], tangent, drift[:1], rates[None])
         # Inertia changes within a window; what is stiff by far less.
         slopes = start.inertia[0] @ form.derivatives(float(times[0]), tangent, drift[0], rates)
-        stiff = np.kron(h * h * TWICE, slopes[:, :f]) + np.kron(h * RULE.once, slopes[:, f:])
+        stiff = np.kron(twice, slopes[:, :f]) + np.kron(h * rule.once, slopes[:, f:])
         seconds, inverse, last = np.repeat(start.seconds, NODES, axis=0), None, np.inf
         for _ in range(MOST_ROUNDS):
-            y, y_rates = drift + h * h * TWICE @ seconds, rates + h * RULE.once @ seconds
+            y, y_rates = drift + twice @ seconds, rates + h * rule.once @ seconds
             instant = form.at(times, tangent, y, y_rates)
             if inverse is None:
                 inverse = np.linalg.inv(block_diag(*instant.inertia) - stiff)

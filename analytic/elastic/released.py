@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
 from analytic.elastic.free_by_library import by_library
-from analytic.elastic.free_windows import Piece, by_gauss
+from analytic.elastic.free_windows import Piece, by_collocation
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
@@ -34,17 +34,17 @@ from models.released import check_duration
 from models.samples import samples
 from models.scene import Scene
 
-Method = Literal["gauss", "radau"]
+Method = Literal["collocation", "library"]
 TOLERANCE = 1e-11
-WITH_AXIAL = 1e-9
+WITH_AXIAL = 1e-10
 """The same where links stretch: they ring along themselves a thousand times faster than across, by
-1e-10 m or less, and a method that is stable need not follow that."""
+1e-10 m or less, which is left to die out; at 1e-11 it would be followed, in ten times the time."""
 COARSER = 100.0
 """By how much larger is the tolerance of the motion that this one is held to."""
 
 
 @dataclass(frozen=True)
-class ElasticDoubt:
+class DoubtOverTime:
     """What a motion may be off by, the largest so far at T times: ``deflection_m`` of the middle of
     any elastic link, ``angle_rad`` of any link."""
 
@@ -52,7 +52,7 @@ class ElasticDoubt:
     angle_rad: Array
 
     @staticmethod
-    def between(motion: Motion, *others: Motion) -> ElasticDoubt:
+    def between(motion: Motion, *others: Motion) -> DoubtOverTime:
         """How far a motion is from others."""
         bent, turned = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
         for other in others:
@@ -60,7 +60,7 @@ class ElasticDoubt:
                 bent = np.maximum(bent, np.abs(own.middle - other.elastic[name].middle))
             for name, link in motion.links.items():
                 turned = np.maximum(turned, np.abs(link.theta - other.links[name].theta))
-        return ElasticDoubt(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
+        return DoubtOverTime(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ class ReleasedElasticMotion:
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The motion, one piece after the other."""
-        integrate = by_gauss if self.method == "gauss" else by_library
+        integrate = by_collocation if self.method == "collocation" else by_library
         return integrate(self.form, *self.start, self.until_s, self.tolerance)
 
     def at(self, time_s: Array) -> Motion:
@@ -153,11 +153,11 @@ class ReleasedElasticMotion:
         """The motion integrated to a larger tolerance."""
         return replace(self, tolerance=COARSER * self.tolerance)
 
-    def doubt(self, time_s: Array) -> ElasticDoubt:
+    def doubt(self, time_s: Array) -> DoubtOverTime:
         """What the motion may be off by at times [s], (T,) in ascending order: how far it is from
         that of the next finer shapes, and from one integrated to a larger tolerance."""
         own = self.at(time_s)
-        return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s))
+        return DoubtOverTime.between(own, self.finer.at(time_s), self.coarser.at(time_s))
 
     def _instants(self, time_s: Array) -> Iterator[tuple[Array, Piece, FreeInstant, Array]]:
         """Times, the piece that they are in, the equations and the work until then."""
@@ -181,7 +181,7 @@ def release_elastic(
     by: Discretisation | None = None,
     *,
     stiffened: bool = True,
-    method: Method = "gauss",
+    method: Method = "collocation",
     tolerance: float | None = None,
 ) -> ReleasedElasticMotion:
     """The motion of a scene with elastic links from its start, when it is let go.
@@ -197,11 +197,11 @@ def release_elastic(
         How its elastic links are described; None for `Modes`.
     stiffened : bool
         Keep the shortening of bent links; without, as the thesis has them.
-    method : "gauss" or "radau"
-        Of collocation, or the library's.
+    method : "collocation" or "library"
+        By windows of our own, or by the library's method for stiff equations.
     tolerance : float or None
-        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-9 with
-        links that stretch.
+        Of a window, or a step, over the longest link or in radians; None for 1e-11, or 1e-10
+        with links that stretch.
 
     Raises
     ------

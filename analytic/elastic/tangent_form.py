@@ -1,8 +1,8 @@
 """A mechanism that nothing drives, by coordinates in the tangent of its position.
 
 At a position that is closed the directions which the joints allow, V, and those which they do not,
-W, are columns of one orthogonal matrix (in the units of coordinates). Near by, every closed
-position has one y::
+W, are columns of one orthogonal matrix (in the units of coordinates; those of links alone, while
+the coefficients of elastic ones are what they are). Near by, every closed position has one y::
 
     q = q0 + V y + W s(y)      q' = B y'      q'' = B y'' + c
 
@@ -29,6 +29,8 @@ from models.errors import CrankcheckError
 MOST_STEPS = 20
 CLOSED = 1e-14
 """A step of Newton's method, in the units of coordinates, after which none is taken."""
+INDEPENDENT = 1e-7
+"""A singular value over the largest, from which on rows count as independent of each other."""
 NUDGE = 1e-7
 """What y is changed by for derivatives; rates are by the same over their own size."""
 
@@ -88,12 +90,24 @@ class TangentForm:
     dynamics: Dynamics
 
     def tangent(self, q: Array) -> Tangent:
-        """The tangent at a closed position (n,)."""
+        """The tangent at a closed position (n,).
+
+        The coefficients of elastic links are among the y as they are, as what is stiff is linear in
+        them; but where links would hold each other if they were rigid.
+        """
         assembly = self.dynamics.assembly
         units, rank = assembly.units, self.dynamics.rank
-        jacobian = assembly.joints.jacobian(assembly.at_rest(q[None]))[0]
-        rows, _, directions = np.linalg.svd(jacobian * units)
-        across = (directions * units).T
+        jacobian = assembly.joints.jacobian(assembly.at_rest(q[None]))[0] * units
+        turning = np.delete(np.arange(len(q)), assembly.coefficients)
+        rows, sizes, directions = np.linalg.svd(jacobian[:, turning])
+        own = assembly.coefficients
+        if len(sizes) < rank or sizes[rank - 1] <= INDEPENDENT * sizes[0]:
+            rows, _, directions = np.linalg.svd(jacobian)
+            turning, own = np.arange(len(q)), own[:0]
+        across = np.zeros((len(q), len(q)))
+        across[np.ix_(turning, np.arange(len(turning)))] = directions.T
+        across[own, len(turning) + np.arange(len(own))] = 1.0
+        across *= units[:, None]
         return Tangent(q, across[:, rank:], across[:, :rank], rows[:, :rank])
 
     def coordinates(self, at: Tangent, rates: Array) -> Array:

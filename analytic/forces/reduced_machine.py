@@ -83,6 +83,7 @@ def _masses(scene: Scene) -> dict[str, tuple[float, float, Point]]:
     return own
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # accelerations at change points
 def inertia_and_slope(scene: Scene, unit: Chunk) -> tuple[Array, Array]:
     """The reduced moment of inertia and its derivative [kg m^2], (T,), of a chunk with the driver
     at 1 rad/s, steady: there accelerations are the derivatives of rates by its angle."""

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from analytic.multibody.assembly import Assembly
 from analytic.multibody.dynamics import Dynamics
-from analytic.multibody.outset import Outset
+from analytic.multibody.outset import INDEPENDENT, Outset
 from analytic.multibody.saddle import Saddle
 from models.array import Array
-from models.errors import CrankcheckError
+from models.errors import CrankcheckError, few
 from models.motion import State
 
 MOST_ROUNDS = 100
@@ -29,11 +29,13 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
     Raises
     ------
     CrankcheckError
-        As `Outset.find`; links that are so soft that no such shape is found.
+        As `Outset.find`; links that are so soft that no such shape is found; links that the joints
+        hold as they are.
     """
     assembly, outset = dynamics.assembly, Outset(dynamics.assembly)
     free, inverse = assembly.coefficients, np.linalg.inv(elastic_stiffness(assembly))
     q, rates = outset.find(near)
+    _check_free(dynamics, q)
     last = np.inf
     for _ in range(MOST_ROUNDS):
         step = inverse @ _held(dynamics, free, q, rates)
@@ -52,6 +54,19 @@ def bent_start(dynamics: Dynamics, near: State | None) -> tuple[Array, Array]:
         f"{assembly.scene.name}: its elastic links are too soft for a quasi-static shape to start "
         'with; give them shape = "straight" in [start]'
     )
+
+
+def _check_free(dynamics: Dynamics, q: Array) -> None:
+    """Raises CrankcheckError where the joints leave elastic links no shape to choose: more links
+    than the motion needs, whose lengths say those of each other."""
+    assembly = dynamics.assembly
+    rows = assembly.joints.jacobian(assembly.at_rest(q[None]))[0]
+    rows[:, assembly.coefficients] = 0.0
+    if np.linalg.matrix_rank(assembly.scaled(rows), tol=INDEPENDENT) < dynamics.rank:
+        raise CrankcheckError(
+            f"{assembly.scene.name}: its joints hold {few(assembly.elastic, 6)} in shape, which is "
+            'then not quasi-static of its own; give shape = "straight" in [start]'
+        )
 
 
 def _held(dynamics: Dynamics, free: NDArray[np.intp], q: Array, rates: Array) -> Array:

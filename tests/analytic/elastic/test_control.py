@@ -13,6 +13,7 @@ from analytic.elastic.discretisation import Modes, flexible_links
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.released import assembled, release_elastic
 from analytic.forces.kinetostatics import forces
+from analytic.kinematics import solve
 from analytic.multibody.release_multibody import release_multibody
 from models.array import Array
 from models.controlled import Controlled
@@ -20,6 +21,7 @@ from models.elastic import Shape
 from models.errors import CrankcheckError, SceneError
 from models.files import find_scene, load_scene, parse_scene
 from models.laws import ConstantSpeed
+from models.mjcf import build
 from models.scene import Scene
 from models.scene_text import scene_text
 from sim.check import refuse_unknown_forces
@@ -133,6 +135,9 @@ def test_nobody_takes_it_for_a_crank_that_is_told() -> None:
         assert DrivenElasticMotion(SCENE, 1.0, Modes(1), "straight", stiffened=True).form
     with pytest.raises(CrankcheckError, match="its driver is not controlled"):
         control_elastic(load_scene("fourbar-elastic"), 1.0)
+    state = solve(SCENE, np.zeros(1), bound=False).state()
+    with pytest.raises(CrankcheckError, match="without giving way"):
+        build(SCENE, state)
     for name in ENGINES:
         with pytest.raises(CrankcheckError, match="its driver is controlled"):
             refuse_unknown_forces(SCENE, engine(name), with_forces=False)
