@@ -22,8 +22,8 @@ SLIGHT = 1e-2
 to about that share of it."""
 STARTS: dict[Shape, str] = {
     "periodic": "Starts on the periodic motion: it comes back after a period of the driver.",
-    "quasi-static": "Starts with the deflection that the rigid motion asks for, at rest in it "
-    "(quasi-static); what that leaves of the vibration rings on{damped}.",
+    "quasi-static": "Starts with the deflection that the rigid motion asks for (quasi-static); "
+    "what that leaves of the vibration rings on{damped}.",
     "straight": "Starts straight: it rings, at up to twice the deflection that the motion asks "
     "for{damped}.",
 }
