@@ -69,9 +69,9 @@ def certainty(motion: ElasticHistory) -> list[str]:
 
 
 def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
-    """By the next finer description; of what is let go, which takes long to integrate, by one of
+    """By the next finer description; of elements, and of what is let go, which take long, by one of
     fewer shapes, whose error is the larger one."""
-    if not isinstance(motion, ReleasedElasticMotion):
+    if not isinstance(motion, ReleasedElasticMotion) and not isinstance(motion.by, Elements):
         found = Differences.of(own, motion.finer.at(time_s))
         return (
             f"As the next finer description has it, deflections are off by about "

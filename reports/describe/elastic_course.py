@@ -14,6 +14,7 @@ from analytic.forces.kinetostatics import forces
 from analytic.free.release import release
 from analytic.kinematics import solve
 from models.array import Array
+from models.controlled import Controlled
 from models.elastic import Shape
 from models.motion import Motion
 from models.scene import Scene
@@ -78,7 +79,8 @@ class ElasticCourse:
         """What elastic links change: the angles of links, without that of a driver that follows a
         law, which is told, and the displacements of sliders."""
         for name, link in self.motion.links.items():
-            if name != self.scene.driver.link or self.scene.is_free:
+            gives_way = self.scene.is_free or isinstance(self.scene.driver.law, Controlled)
+            if name != self.scene.driver.link or gives_way:
                 yield Apart(name, "rad", link.theta, self.rigid.links[name].theta)
         for name, slider in self.motion.sliders.items():
             rigid = self.rigid.sliders[name].displacement

@@ -15,13 +15,15 @@ from reports.output.numbers import count, listed, readable
 
 NEAR = 0.1
 """From a whole frequency ratio: undamped, what is so near to it is nearly resonant."""
+SLOW = 20
+"""A ratio beyond which what resonates is too small to be seen."""
 SLIGHT = 1e-2
 """What the square of a slope may be, so that a curvature is the second derivative of a deflection
 to about that share of it."""
 STARTS: dict[Shape, str] = {
     "periodic": "Starts on the periodic motion: it comes back after a period of the driver.",
-    "quasi-static": "Starts with the deflection that the rigid motion asks for, at rest in it "
-    "(quasi-static); what that leaves of the vibration rings on{damped}.",
+    "quasi-static": "Starts with the deflection that the rigid motion asks for (quasi-static); "
+    "what that leaves of the vibration rings on{damped}.",
     "straight": "Starts straight: it rings, at up to twice the deflection that the motion asks "
     "for{damped}.",
 }
@@ -95,7 +97,7 @@ def elastic_warnings(scene: Scene, largest_m: dict[str, float]) -> Iterator[str]
         line = line_of(scene, name)
         if own.bends and not own.damping_s and isinstance(law, ConstantSpeed):
             ratio = own.bending_rad_s(line.length_m, line.density_kg_m) / abs(law.speed_rad_s)
-            if round(ratio) >= 1 and abs(ratio - round(ratio)) < NEAR:
+            if 1 <= round(ratio) <= SLOW and abs(ratio - round(ratio)) < NEAR:
                 yield (
                     f"Near resonance: the first natural frequency of {name} is {ratio:.4g} times "
                     "the speed, and nothing damps it; small changes of either change all of its "

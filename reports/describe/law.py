@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from models.controlled import Controlled
 from models.laws import Accelerating, ConstantSpeed, FromRest, Oscillating
 from models.released import Released
 from models.scene import Scene
@@ -12,6 +13,11 @@ from models.scene import Scene
 def describe_law(scene: Scene) -> str:
     """The driver's law in a few words."""
     law = scene.driver.law
+    if isinstance(law, Controlled):
+        return (
+            f"controlled to {law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg, by "
+            f"kP = {law.kp_n_m_rad:g} N m/rad and kD = {law.kd_n_m_s:g} N m s/rad"
+        )
     if isinstance(law, ConstantSpeed):
         return f"{law.speed_rad_s:g} rad/s from {math.degrees(law.start_rad):g} deg"
     if isinstance(law, Accelerating):

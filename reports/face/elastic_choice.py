@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast, get_args
 
+from models.controlled import Controlled
 from models.elastic import Shape
 from models.errors import CrankcheckError
 from models.laws import ConstantSpeed, Oscillating
@@ -17,7 +18,7 @@ if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
     from analytic.elastic.released import ReleasedElasticMotion
     from analytic.elastic.sampled import ElasticHistory
 
-MOST_MODES, MOST_ELEMENTS = 40, 40
+MOST_MODES, MOST_ELEMENTS = 20, 12
 """More change nothing but the time that they take: the stiffest of them follow nothing."""
 STARTS_AS = "quasi-static"
 """What a scene starts with that does not say."""
@@ -59,6 +60,7 @@ class ElasticChoice:
         from analytic.elastic.discretisation import REFERENCE, Elements, Modes
 
         usual = Modes()
+        gives_way = scene.is_free or isinstance(scene.driver.law, Controlled)
         if self.elements is not None:
             for option, value in (("--modes", self.modes), ("--axial-modes", self.axial_modes)):
                 if value is not None:
@@ -76,7 +78,7 @@ class ElasticChoice:
                     f"{option} {value}: no elastic link of {scene.name} {kind}; give one "
                     f"{kind} = true, or leave {option} out"
                 )
-        if self.modes is None and self.axial_modes is None and not scene.is_free:
+        if self.modes is None and self.axial_modes is None and not gives_way:
             return REFERENCE
         return Modes(
             usual.across if self.modes is None else _number(self.modes, "--modes", MOST_MODES),
@@ -89,28 +91,33 @@ class ElasticChoice:
         """The shape at time 0. Raises CrankcheckError for a periodic motion of what is not."""
         asked = self.shape or scene.start.shape or STARTS_AS
         chosen = cast(Shape, one_of(asked, "--shape", get_args(Shape)))
-        if chosen == "periodic" and not isinstance(scene.driver.law, ConstantSpeed | Oscillating):
-            law = "is let go" if scene.is_free else "does not come back after a period"
+        law = scene.driver.law
+        told = isinstance(law, ConstantSpeed | Oscillating) and not isinstance(law, Controlled)
+        if chosen == "periodic" and not told:
+            words = "is let go" if scene.is_free else "does not come back after a period"
             raise CrankcheckError(
-                f"--shape periodic: the driver of {scene.name} {law}; give it a constant speed, or "
-                "--shape quasi-static"
+                f"--shape periodic: the driver of {scene.name} {words}; give it a constant "
+                "speed, or --shape quasi-static"
             )
         return chosen
 
     def motion(self, scene: Scene, until_s: float) -> ElasticHistory:
-        """As `driven`, or as `released`."""
-        return (self.released if scene.is_free else self.driven)(scene, until_s)
+        """As `driven`, or as `released`, which a driver that is controlled is as well."""
+        gives_way = scene.is_free or isinstance(scene.driver.law, Controlled)
+        return (self.released if gives_way else self.driven)(scene, until_s)
 
     def released(self, scene: Scene, until_s: float) -> ReleasedElasticMotion:
-        """The motion of a scene that is let go, from 0 to a time [s].
+        """The motion of a scene that is let go, or controlled, from 0 to a time [s].
 
         Raises CrankcheckError for what can not be asked, and what it does not allow.
         """
+        from analytic.elastic.control import control_elastic
         from analytic.elastic.released import release_elastic
 
         stiffened = not is_true(self.linear, "--linear")
         begun = replace(scene, start=replace(scene.start, shape=self.start(scene)))
-        return release_elastic(begun, until_s, self.discretisation(scene), stiffened=stiffened)
+        follow = release_elastic if scene.is_free else control_elastic
+        return follow(begun, until_s, self.discretisation(scene), stiffened=stiffened)
 
     def driven(self, scene: Scene, until_s: float) -> DrivenElasticMotion:
         """The motion of a scene that follows its law, from 0 to a time [s].
