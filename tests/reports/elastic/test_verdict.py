@@ -89,3 +89,30 @@ def test_a_step_that_the_springs_do_not_hold_says_which_would(scene: Scene) -> N
     found = check(cell(scene, segments=8))
     assert found.status == "diverged"
     assert "take 1833 steps a turn, or fewer segments" in found.reason
+
+
+def test_corrected_springs_have_the_sag_of_the_beam(scene: Scene) -> None:
+    found = check(cell(scene, springs="corrected"))
+    assert found.verdict == "within"
+    assert found.errors is not None
+    beam = found.errors.worst("deflection")
+    assert beam is not None
+    assert beam.pure < 3e-3
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+def test_reactions_and_torque_are_those_of_the_beam(scene: Scene, engine: str) -> None:
+    found = check(cell(scene, engine, with_forces=True))
+    assert found.verdict == "within", [finding.text for finding in found.failures]
+    assert found.errors is not None
+    reaction, torque = found.errors.worst("reaction"), found.errors.worst("torque")
+    assert reaction is not None
+    assert torque is not None
+    assert max(reaction.pure, torque.pure) < 0.01
+
+
+def test_a_link_that_stretches_is_no_chain(scene: Scene) -> None:
+    coupler = replace(scene.elastic["coupler"], axial_n=6.3e6)
+    found = check(cell(replace(scene, elastic={"coupler": coupler})))
+    assert found.verdict == "unsupported"
+    assert "elastic.coupler stretches" in found.reason
