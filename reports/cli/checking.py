@@ -204,6 +204,9 @@ class SelftestRequest:
     free: Annotated[
         bool, typer.Option("--free", help="Plant faults of dynamics in free motion instead.")
     ] = False
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Plant faults of elastic links instead.")
+    ] = False
 
 
 @command

@@ -33,7 +33,11 @@ WHOLE = ("total", "geometric")
 ROUNDING = sys.float_info.epsilon
 """A rate that is off by this share of its scale, at most, is the next number or the same."""
 
-
+BENT = ("deflection", "segments")
+SAME_BEND = 1e-11
+"""Of the largest deflection: rounding; the nearest engine was off by 5e-7."""
+STRAIGHT = 1e8
+"""The longest link over the largest deflection, of links that do not bend for anybody."""
 UNROUNDED = 1e-9
 """An acceleration that is off by more is so by more than rounding."""
 
@@ -41,7 +45,7 @@ UNROUNDED = 1e-9
 def too_good(errors: Errors, placing: Placing, order: int) -> list[Error]:
     """The errors that are too small for their body and step, the smallest first."""
     found = _nearer(errors, order) if placing == "integrated" else _the_same(errors)
-    return sorted(found, key=lambda row: row.pure)
+    return sorted([*found, *_bent_the_same(errors)], key=lambda row: row.pure)
 
 
 def _nearer(errors: Errors, order: int) -> Iterator[Error]:
@@ -63,6 +67,15 @@ def _nearer(errors: Errors, order: int) -> Iterator[Error]:
     for widest in (gap, borne):
         if widest and widest.pure <= least * max(errors.uneven.values(), default=-1):
             yield widest
+
+
+def _bent_the_same(errors: Errors) -> Iterator[Error]:
+    """Deflections that are those of a theory to rounding: no engine's steps and joints are."""
+    if errors.elastic is None or errors.elastic.slender >= STRAIGHT:
+        return
+    for row in errors.rows:
+        if row.quantity in BENT and row.kind in WHOLE and row.pure <= SAME_BEND:
+            yield row
 
 
 def _the_same(errors: Errors) -> Iterator[Error]:

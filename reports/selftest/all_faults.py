@@ -8,6 +8,7 @@ from models.errors import CrankcheckError, suggestion
 from reports.selftest import (
     clock,
     dynamics,
+    elastic,
     engines,
     forces,
     handed_back,
@@ -36,6 +37,7 @@ FAULTS: dict[str, Fault] = {
         dynamics,
         stepping,
         record,
+        elastic,
     )
     for fault in module.FAULTS
 }
@@ -53,6 +55,9 @@ GROUPS = {
     "dynamics": "let go, as another machine",
     "stepping": "let go, and spoilt inside the engine",
     "record": "let go, and wrong in the log",
+    "segments": "elastic links, as another chain",
+    "vibration": "elastic links, spoilt inside the engine",
+    "deflection": "elastic links, wrong in the log",
 }
 
 

@@ -44,17 +44,23 @@ FaultGroup = Literal[
     "dynamics",
     "stepping",
     "record",
+    "segments",
+    "vibration",
+    "deflection",
 ]
-RunKind = Literal["motion", "forces", "free"]
-"""What the runs are that faults are planted in: driven ones, the same with their forces, or of a
-mechanism that was let go."""
-INSIDE = ("engine", "stepping")
+RunKind = Literal["motion", "forces", "free", "elastic"]
+"""What the runs are that faults are planted in: driven ones, the same with their forces, of a
+mechanism that was let go, or of one whose links bend."""
+INSIDE = ("engine", "stepping", "vibration")
 """The groups of what goes wrong inside an engine."""
 KINDS: Mapping[str, RunKind] = {
     "force": "forces",
     "dynamics": "free",
     "stepping": "free",
     "record": "free",
+    "segments": "elastic",
+    "vibration": "elastic",
+    "deflection": "elastic",
 }
 """By group, where it is not motion."""
 

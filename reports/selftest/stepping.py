@@ -25,11 +25,11 @@ def after_look(act: Act) -> Plant:
     return done_to(act, lambda _: (1,))
 
 
-def _now_and_then(steps: int) -> range:
+def now_and_then(steps: int) -> range:
     return range(1, steps, max(steps // TIMES, 1))
 
 
-def _explicit(share: float) -> CellRunner:
+def explicit(share: float) -> CellRunner:
     """Positions go on with the velocity before each step, as explicit Euler has it, or a share of
     the way there: they are held back by the step times the change of velocity."""
 
@@ -88,12 +88,12 @@ FAULTS = (
         "rad/s",
         says=(REFUSED, "turns at"),
     ),
-    _fault("explicit-euler", "explicit steps: energy grows", "CC129", _explicit, 1.0, "of it"),
+    _fault("explicit-euler", "explicit steps: energy grows", "CC129", explicit, 1.0, "of it"),
     _fault(
         "energy-fed",
         f"speeds made larger, {TIMES} times",
         "CC129",
-        in_engine(_now_and_then, lambda tools, session, _o, size, _: tools.quicken(session, size)),
+        in_engine(now_and_then, lambda tools, session, _o, size, _: tools.quicken(session, size)),
         1e-3,
         "of it",
     ),

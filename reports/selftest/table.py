@@ -13,6 +13,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
+from reports.selftest.elastic_runs import ELASTIC_RUNS
 from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
@@ -188,8 +189,13 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
         for scene, (dt_s, steps) in FREE_RUNS.items()
         if scene in scenes
     ]
-    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free"} else []
-    return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else [])])
+    bent = [
+        f"{scene} in {own.segments} segments, {own.steps} steps a turn, 1 turn"
+        for scene, own in ELASTIC_RUNS.items()
+        if scene in scenes
+    ]
+    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free", "elastic"} else []
+    return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else []), *bent])
 
 
 def place_row(verdict: Verdict, place: FaultTrial) -> dict[str, object]:

@@ -18,9 +18,11 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
+from reports.selftest.elastic_runs import BENT, elastic_cell
 from reports.selftest.fault import FOURBAR, PROFILE, Fault, RunKind
 from reports.selftest.free_runs import FREE_RUNS, SWING
 from reports.selftest.unseen import UNSEEN, Unseen
+from reports.selftest.unseen_elastic import UNSEEN_ELASTIC
 from reports.selftest.unseen_free import UNSEEN_FREE
 from reports.workers.isolated import Limits, Lost
 from reports.workers.scheduler import run_all
@@ -34,6 +36,11 @@ CLOSE = 1.1
 """Sizes over each other that are near enough."""
 LIMITS = Limits(600.0, 4.0)
 """A fault takes some seconds, with the search for its smallest size."""
+_PLANTED: Mapping[RunKind, tuple[str, tuple[Unseen, ...]]] = {
+    "free": (SWING, UNSEEN_FREE),
+    "elastic": (BENT, UNSEEN_ELASTIC),
+}
+"""The scene in which what need not be seen is planted, where it is not the lecture's."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,7 @@ def held(scene: str, name: str, kind: RunKind = "motion") -> bool:
     adapter, cell = engine(name), _cell(load_scene(scene), name, STEPS, converge=False, kind=kind)
     settings = resolved(profile_of(adapter, PROFILE), None)
     try:
-        adapter.open(cell.scene, cell.truth.start, settings, cell.dt_s, cell.drive)
+        adapter.open(cell.given, cell.truth.start, settings, cell.dt_s, cell.drive)
     except EngineError:
         return False
     return True
@@ -132,7 +139,7 @@ class Passed:
 
 def passed_by(engines: Sequence[str], kind: RunKind = "motion", steps: int = STEPS) -> list[Passed]:
     """Plant what need not be seen, in one scene."""
-    scene, unseen = (SWING, UNSEEN_FREE) if kind == "free" else (FOURBAR, UNSEEN)
+    scene, unseen = _PLANTED.get(kind, (FOURBAR, UNSEEN))
     able = [name for name in engines if held(scene, name, kind)]
     return [_passed(each, load_scene(scene), able, steps, kind) for each in unseen]
 
@@ -194,6 +201,8 @@ def _cell(
     scene: Scene, engine: str, steps: int, *, converge: bool, kind: RunKind = "motion"
 ) -> Cell:
     """A turn of so many steps; of what is let go, the run that `FREE_RUNS` says, as much finer."""
+    if kind == "elastic":
+        return elastic_cell(scene.name, engine, steps / STEPS)
     if kind == "free":
         dt_s, of_run = FREE_RUNS[scene.name]
         dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS

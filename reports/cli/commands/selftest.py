@@ -17,6 +17,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
+from reports.selftest.elastic_runs import ELASTIC_RUNS
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.table import place_row, show
@@ -32,6 +33,7 @@ from reports.selftest.trial import (
 )
 from sim.registry import engine, offering
 
+KINDS_ASKED: tuple[RunKind, ...] = ("forces", "free", "elastic")
 IN_FOLDER = ("selftest.csv", "selftest.json")
 
 
@@ -65,11 +67,14 @@ def selftest(request: SelftestRequest, console: Console, progress: Console) -> i
 
 def _kind(request: SelftestRequest) -> RunKind:
     """What runs the faults are planted in, where none is named. Raises CrankcheckError."""
-    if request.forces and request.free:
+    given = {"forces": request.forces, "free": request.free, "elastic": request.elastic}
+    asked = [kind for kind in KINDS_ASKED if given[kind]]
+    if len(asked) > 1:
         raise CrankcheckError(
-            "--forces with --free: the faults of either have runs of their own; ask for one of them"
+            f"--{asked[0]} with --{asked[1]}: the faults of either have runs of their own; ask for "
+            "one of them"
         )
-    return "forces" if request.forces else "free" if request.free else "motion"
+    return asked[0] if asked else "motion"
 
 
 def _write(
@@ -94,9 +99,11 @@ def _write(
 def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
     """How long the runs are, and at which step; free ones by their scene."""
     kinds = {one.fault.kind for one in verdicts}
-    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free"} else {}
+    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free", "elastic"} else {}
     runs = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
-    return {"profile": PROFILE, **turn, **({"free": runs} if "free" in kinds else {})}
+    bent = {scene: vars(own) for scene, own in ELASTIC_RUNS.items()}
+    own = {"free": runs, "elastic": bent}
+    return {"profile": PROFILE, **turn, **{kind: own[kind] for kind in own if kind in kinds}}
 
 
 def _json(
