@@ -85,6 +85,15 @@ def refuse_free_elastic(scene: Scene) -> None:
         )
 
 
+def refuse_bent(scene: Scene, what: str, cure: str) -> None:
+    """Refuse elastic links where they would be taken as rigid. Raises CrankcheckError."""
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{what}: {', '.join(scene.elastic)} of {scene.name} bends, and would be taken as "
+            f"rigid here: {cure}"
+        )
+
+
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
     """Refuse what is asked of segments, where no scene has any. Raises CrankcheckError."""
     if any(scene.elastic for scene in scenes):

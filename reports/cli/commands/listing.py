@@ -15,13 +15,15 @@ from analytic.structure.mobility import analyse
 from models.errors import CrankcheckError, StructureError, harmless
 from models.files import KINEMATICS, find_scene, kinds, load_scene, shipped
 from models.mjcf import build
-from models.mjcf_options import exact
+from models.mjcf_options import Writing, exact
 from models.motion import State
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state
 from reports.describe.law import describe_law
+from reports.judge.cell import SEGMENTS
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
+from reports.plan.elastic import SPRINGS, held_steps, refuse_free_elastic
 from sim.registry import available, brought, engine
 
 
@@ -71,20 +73,34 @@ def engines(console: Console, settings: bool) -> None:
 
 
 def export(name: str, output: Path | None, close: tuple[str, ...], console: Console) -> None:
-    """The MJCF of a scene, assembled at its start, into a file or to the terminal.
+    """The MJCF of a scene, assembled at its start, into a file or to the terminal; an elastic link
+    is the chain of segments that the engine is given.
 
     Loops are closed at the pins of ``close``, the others where `models.tree` says.
     """
     if output is not None:
         check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
     scene = load_scene(name)
-    start = start_of(scene)
-    text = build(scene, start, replace(exact(scene), close=close))
+    given, start, options = _given(scene)
+    text = build(given, start, replace(options, close=close))
     if output is None:
         console.file.write(text)
         return
     write(output, text)
     console.print(harmless(f"{output}: MJCF of {scene.name}"), highlight=False, markup=False)
+
+
+def _given(scene: Scene) -> tuple[Scene, State, Writing]:
+    """The scene, elastic links as chains of segments, where it begins, and what it is run with: a
+    step that holds the segments. Raises CrankcheckError."""
+    if not scene.elastic:
+        return scene, start_of(scene), exact(scene)
+    from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
+
+    refuse_free_elastic(scene)
+    truth = elastic_truth(scene, SEGMENTS, SPRINGS[0], scene.driver.law.period_s)
+    steps = held_steps(scene, SEGMENTS, SPRINGS[0])
+    return truth.given, truth.start, exact(truth.given, steps)
 
 
 def start_of(scene: Scene) -> State:

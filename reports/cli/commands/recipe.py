@@ -12,6 +12,7 @@ from models.errors import CrankcheckError, harmless
 from models.files import find_scene, load_scene
 from reports.cli.recipes import ForceRecipeRequest
 from reports.output.write import check_file, write
+from reports.plan.elastic import refuse_bent
 from reports.plan.steps import MOST_STEPS
 from sim.force_recipes import force_recipe
 from sim.registry import engine
@@ -33,6 +34,7 @@ def run_force_recipe(request: ForceRecipeRequest, console: Console) -> int:
             f"each step, so give {MOST_STEPS} at most"
         )
     scene = load_scene(request.scene)
+    refuse_bent(scene, "recipe forces", "leave [elastic] out, or read them with run --forces")
     settings = resolved(profile_of(engine(request.engine), request.profile), None)
     period = scene.driver.law.period_s
     check_steps(scene, period, period / request.steps_per_turn, 1, 1)

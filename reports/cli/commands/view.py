@@ -12,6 +12,7 @@ from models.errors import harmless
 from models.files import find_scene, load_scene
 from reports.cli.commands.listing import start_of
 from reports.output.write import check_file, write
+from reports.plan.elastic import refuse_bent
 from sim.viewing import viewer
 
 ENDINGS = (".gif", ".png")
@@ -29,6 +30,7 @@ def run_view(
     if output is not None:
         check_file(output, "-o", ENDINGS, inputs=read)
     scene = load_scene(name)
+    refuse_bent(scene, "view", f"crankcheck solve {name} -o {scene.name}.html shows how it bends")
     if output is None and has_screen() and not with_forces:
         viewer()(scene, start_of(scene))
         return
