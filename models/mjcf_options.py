@@ -55,10 +55,10 @@ FREE_STEP_S = 1e-3
 """Of a mechanism that is let go, which says no period."""
 
 
-def exact(scene: Scene) -> Writing:
-    """RK4 at a thousandth of the driver's period, or of the time for which it is let go but a
+def exact(scene: Scene, steps: float = STEPS_PER_PERIOD) -> Writing:
+    """RK4 at so many ``steps`` of the driver's period, or of the time for which it is let go but a
     millisecond at most; the loops as stiff as that step allows."""
-    dt_s = scene.driver.law.period_s / STEPS_PER_PERIOD
+    dt_s = scene.driver.law.period_s / steps
     tolerance = TOLERANCE / FLYWHEEL_RATIO
     if scene.is_free:
         dt_s, tolerance = min(dt_s, FREE_STEP_S), TOLERANCE

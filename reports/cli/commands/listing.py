@@ -20,9 +20,10 @@ from models.motion import State
 from models.scene import Scene
 from reports.compare.free.kept_motion import released_state
 from reports.describe.law import describe_law
+from reports.judge.cell import SEGMENTS
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
-from reports.plan.elastic import segmented
+from reports.plan.elastic import SPRINGS, held_steps, segmented
 from sim.registry import available, brought, engine
 
 
@@ -72,14 +73,18 @@ def engines(console: Console, settings: bool) -> None:
 
 
 def export(name: str, output: Path | None, close: tuple[str, ...], console: Console) -> None:
-    """The MJCF of a scene, assembled at its start, into a file or to the terminal.
+    """The MJCF of a scene, assembled at its start, into a file or to the terminal; an elastic link
+    is the chain of segments that the engine is given.
 
     Loops are closed at the pins of ``close``, the others where `models.tree` says.
     """
     if output is not None:
         check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
-    scene, start = opened(load_scene(name))
-    text = build(scene, start, replace(exact(scene), close=close))
+    own = load_scene(name)
+    scene, start = opened(own)
+    # Of segments the step is one that holds their fastest vibration.
+    steps = (held_steps(own, SEGMENTS, SPRINGS[0]),) if own.elastic else ()
+    text = build(scene, start, replace(exact(scene, *steps), close=close))
     if output is None:
         console.file.write(text)
         return

@@ -65,6 +65,7 @@ def _written(request: RunRequest, done: Simulation) -> str:
     lines = [
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}",
-        f"next: {shlex.join(judge)}",
     ]
+    if not done.mechanism.elastic:  # whose logs are not judged
+        lines.append(f"next: {shlex.join(judge)}")
     return harmless("\n".join(lines))

@@ -1,4 +1,4 @@
-"""`crankcheck export` of what is let go: a model that runs as it is."""
+"""`crankcheck export` of what is let go, or bends: a model that runs as it is."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.free.release import release
 from models.files import load_scene
 from reports.cli import app
@@ -27,3 +29,29 @@ def test_a_model_that_is_let_go_moves_as_its_masses_say(name: str) -> None:
         rotation = data.body(link).xmat.reshape(3, 3)
         turn = np.arctan2(rotation[1, 0], rotation[0, 0]) - moved.theta[0]
         assert abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < 1e-4
+
+
+def test_an_elastic_link_is_exported_as_the_segments_that_bend() -> None:
+    told = CliRunner().invoke(app, ["export", "fourbar-elastic"], catch_exceptions=False)
+    assert told.exit_code == 0
+    model = mujoco.MjModel.from_xml_string(told.output)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    assert model.nbody == 1 + 2 + 16  # the world, crank and rocker, segments
+    while data.time < 0.02:
+        mujoco.mj_step(model, data)
+    by = DrivenElasticMotion(load_scene("fourbar-elastic"), 1.0, Modes(3), "periodic", True)
+    truth = by.at(np.array([data.time])).links["rocker"]
+    rotation = data.body("rocker").xmat.reshape(3, 3)
+    turn = np.arctan2(rotation[1, 0], rotation[0, 0]) - truth.theta[0]
+    assert abs(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) < 1e-5
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [["export", "fourbar-elastic-pulse"], ["view", "fourbar-elastic-pulse", "-o", "a.gif"]],
+)
+def test_no_link_that_bends_is_taken_as_rigid(asked: list[str]) -> None:
+    told = CliRunner().invoke(app, asked)
+    assert told.exit_code == 2
+    assert "elastic" in told.stderr
