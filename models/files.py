@@ -10,11 +10,13 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from models.assemble import scene_from_table
+from models.controlled import Controlled
 from models.errors import CrankcheckError, SceneError, cut, few, nearest, shown, suggestion
 from models.load_tables import LOADS, LawOfLoad
 from models.names import faults_of_names
 from models.one_or_more import names_in
 from models.regular import UnreadableError, regular_text
+from models.released import Released
 from models.scene import Scene
 from models.schema import DRIVERS, DriverTable, SceneTable
 from models.toml_text import tables
@@ -59,9 +61,15 @@ def names_of_scenes(names: str | Iterable[str]) -> list[str]:
 
 
 def reference_alone(kind: str) -> list[str]:
-    """The shipped scenes of a kind that no engine is given, as friction in them follows from the
-    reactions."""
-    return [name for name, path in shipped(kind).items() if read_scene(path).coulomb_joints]
+    """The shipped scenes of a kind that no engine is given: friction in them follows from the
+    reactions, or their elastic links are let go or have a controlled driver."""
+    return [name for name, path in shipped(kind).items() if _is_reference_alone(read_scene(path))]
+
+
+def _is_reference_alone(scene: Scene) -> bool:
+    law = scene.driver.law
+    loose = isinstance(law, Released | Controlled)
+    return bool(scene.coulomb_joints or (scene.elastic and loose))
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:

@@ -74,15 +74,15 @@ class Cell:
     @property
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
-        if self.drive == "free":
-            from reports.compare.free.free_truth import free_truth  # for what is let go alone
-
-            return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
         if self.scene.elastic:
             from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend
 
             until_s = self.dt_s * (self.steps + 1)
             return elastic_truth(self.scene, self.segments, self.springs, until_s)
+        if self.drive == "free":
+            from reports.compare.free.free_truth import free_truth  # for what is let go alone
+
+            return free_truth(self.scene, self.steps, self.dt_s, self.tolerance)
         return truth_of(Same(self.scene))
 
     @property

@@ -35,6 +35,7 @@ from reports.plan.elastic import (
     chosen_segments,
     chosen_springs,
     held_steps,
+    is_unheld,
     refuse_rigid,
     refuse_unelastic,
 )
@@ -47,7 +48,7 @@ from reports.plan.free import (
 )
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
-from reports.plan.steps import TURNS, counted, counted_free
+from reports.plan.steps import STEPS_PER_TURN, TURNS, counted, counted_free
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
 from sim.engine import Drive
@@ -178,6 +179,10 @@ def _refuse_options(request: VerifyRequest, scenes: Sequence[Scene]) -> None:
 
 def _steps(request: VerifyRequest, scene: Scene) -> tuple[float, int]:
     """Step [s] and number of steps of a scene. Raises CrankcheckError where it can not be run."""
+    if scene.elastic and is_unheld(scene):
+        return scene.driver.law.period_s / STEPS_PER_TURN, int(
+            STEPS_PER_TURN
+        )  # a row with its reason
     if scene.is_free:
         dt_s, count = counted_free(scene, request.dt_s, request.duration_s)
         refuse_unreleased(scene, dt_s * count)

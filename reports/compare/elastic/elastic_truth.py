@@ -16,6 +16,7 @@ from analytic.elastic.segment_start import segment_start
 from analytic.elastic.stiffness import fastest_rad_s
 from analytic.kinematics import solve
 from models.array import Array
+from models.controlled import Controlled
 from models.errors import CrankcheckError, EngineError
 from models.motion import Motion, State
 from models.scene import Same, Scene
@@ -35,11 +36,29 @@ from 2.8."""
 def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
     """The truth of a scene that is run until then [s], its elastic links in so many segments.
 
-    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches.
+    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches;
+    and of a scene that engines are not held to.
     """
+    if why := unheld(scene):
+        raise EngineError(why)
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
     return _truth(Same(scene), count, springs, until_s)
+
+
+def unheld(scene: Scene) -> str:
+    """Why engines are not held to a scene with elastic links; empty where they are."""
+    if scene.is_free:
+        return (
+            f"{scene.name} is let go and has elastic links, which engines are not held to; "
+            "`crankcheck solve` shows its motion"
+        )
+    if isinstance(scene.driver.law, Controlled):
+        return (
+            f"{scene.name}: its driver is controlled, which engines are not given; `crankcheck "
+            "solve` shows its motion"
+        )
+    return ""
 
 
 @lru_cache(maxsize=4)
