@@ -219,6 +219,9 @@ class StabilityRequest:
     free: Annotated[
         bool, typer.Option("--free", help="The cases of free motion, which are not among all.")
     ] = False
+    elastic: Annotated[
+        bool, typer.Option("--elastic", help="Those of elastic links, which are not among all.")
+    ] = False
 
 
 @command

@@ -56,7 +56,7 @@ GROUPS = {
     "stepping": "let go, and spoilt inside the engine",
     "record": "let go, and wrong in the log",
     "segments": "elastic links, as another chain",
-    "vibration": "elastic links, spoilt inside the engine",
+    "vibration": "elastic links, spoilt in the engine",
     "deflection": "elastic links, wrong in the log",
 }
 

@@ -51,7 +51,7 @@ FAULTS = (
     ),
     _chain(
         name="springs-corrected",
-        what="corrected springs, where plain were asked",
+        what="corrected springs, not plain ones",
         plant=in_chain(springs(as_corrected)),
     ),
     _chain(
@@ -63,33 +63,33 @@ FAULTS = (
     ),
     _chain(
         name="spring-missing",
-        what="the spring in the middle is soft, or gone",
+        what="the middle spring is soft, or gone",
         plant=in_chain(middle_spring(lambda one, n, share: stiffer(one, n, -share))),
         size=1.0,
         unit="of it",
     ),
     _chain(
         name="bending-reversed",
-        what="that spring pushes the wrong way",
+        what="it pushes the wrong way",
         plant=in_chain(middle_spring(reversed_spring)),
     ),
     _chain(
         name="spring-prebent",
-        what="that spring is slack at another angle",
+        what="it is slack at another angle",
         plant=in_chain(middle_spring(prebent)),
         size=1e-3,
         unit="rad",
     ),
     _chain(
         name="spring-damping",
-        what="damping of the springs is left on",
+        what="the springs damp",
         plant=in_chain(springs(damped)),
         size=1e-3,
         unit="s",
     ),
     _chain(
         name="inertia-at-ends",
-        what="segments with their mass at the ends",
+        what="segments' mass is at their ends",
         plant=in_chain(segments(at_its_ends)),
         size=1.0,
         unit="of it",
@@ -103,21 +103,21 @@ FAULTS = (
     ),
     _chain(
         name="rocker-heavy",
-        what="what the elastic link moves is too heavy",
+        what="what it moves is too heavy",
         plant=in_chain(heavy_rocker),
         size=10.0,
         unit="of it",
     ),
     _chain(
         name="node-moved",
-        what="a segment is longer, the next one shorter",
+        what="a node is elsewhere on the link",
         plant=node_moved,
         size=0.1,
         unit="of it",
     ),
     _chain(
         name="elastic-other",
-        what="softer and heavier, on its own periodic motion",
+        what="softer, heavier, moves as it should",
         plant=in_elastic_scene(modulus_and_mass),
         size=1e-2,
         unit="of it",
@@ -132,11 +132,11 @@ FAULTS = (
     ),
     _chain(
         name="start-straight",
-        what="starts straight, not on its periodic motion",
+        what="starts straight, and rings",
         plant=started("straight"),
     ),
     _chain(
-        name="start-quasi-static",
+        name="start-unswung",
         what="starts as if it did not swing",
         plant=started("quasi-static"),
     ),
@@ -149,7 +149,7 @@ FAULTS = (
     ),
     _inside(
         name="bending-explicit",
-        what="explicit steps: what turns is flung out",
+        what="explicit steps: it is flung out",
         plant=explicit,
         size=1.0,
         unit="of it",
@@ -184,7 +184,7 @@ FAULTS = (
     ),
     _log(
         name="other-node",
-        what="the middle has the deflection of the next node",
+        what="the next node's deflection",
         plant=in_chain_log(at_next_node),
     ),
     _log(
@@ -198,12 +198,12 @@ FAULTS = (
     ),
     _log(
         name="linear-given",
-        what="the linear theory, in the engine's place",
+        what="the linear theory, handed in",
         plant=in_chain_log(of_beam(stiffened=False)),
     ),
     _log(
         name="beam-given",
-        what="the beam, in the place of its segments",
+        what="the beam, handed back",
         plant=in_chain_log(of_beam(stiffened=True)),
     ),
     _log(

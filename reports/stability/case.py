@@ -11,6 +11,7 @@ from analytic.free.toggle_barrier import ToggleBarrier
 from models.errors import CrankcheckError
 from models.motion import State
 from models.scene import Scene
+from models.segmented import SegmentedScene
 from models.window_chain import Chain
 from reports.stability.matrix import CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
@@ -22,10 +23,14 @@ TURNS = 2.0
 BEYOND = 10.0
 """How far beyond its values a case may be looked at: by that factor."""
 Scale = Literal["log", "linear", "whole"]
-Judge = Literal["follow", "limit", "chain", "let-go", "toggle"]
+Judge = Literal["follow", "limit", "chain", "let-go", "toggle", "bend"]
 """What runs are held to, see `reports.stability.grading`."""
 FREE_JUDGES: tuple[Judge, ...] = ("let-go", "toggle")
 """The judges of cases of free motion, which are run when asked for."""
+
+
+ELASTIC_JUDGE: Judge = "bend"
+"""That of cases of elastic links, which are run when asked for as well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +51,8 @@ class Trial:
     ``limit_rad`` is the driver angle that cannot be passed, ``chain`` what is left free, and
     ``throw`` what is thrown at its toggle, where that is what is to be seen. A scene that is let go
     is held to its motion at the same time for ``followed_s`` [s], and after it to its geometry and
-    its energy alone; its turn is the time for which the scene says that it is let go.
+    its energy alone; its turn is the time for which the scene says that it is let go. An elastic
+    link is given to the engine as so many ``segments``.
     """
 
     scene: Scene
@@ -62,6 +68,12 @@ class Trial:
     chain: Chain | None = None
     throw: Throw | None = None
     followed_s: float = math.inf
+    segments: int = 0
+
+    @property
+    def given(self) -> Scene:
+        """The scene that the engine is given."""
+        return SegmentedScene(self.scene, self.segments).rigid if self.segments else self.scene
 
     @property
     def dt_s(self) -> float:
@@ -88,6 +100,11 @@ class Case(CaseFacts):
     trial: Callable[[float], Trial]
     scale: Scale = "log"
     judge: Judge = "follow"
+
+    @property
+    def elastic(self) -> bool:
+        """Whether it is one of elastic links."""
+        return self.judge == ELASTIC_JUDGE
 
     @property
     def free(self) -> bool:

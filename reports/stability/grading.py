@@ -13,6 +13,11 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.motion import Motion, State
 from reports.stability.case import Case, Judge, Trial
+from reports.stability.elastic_error_series import (
+    elastic_error_series,
+    elastic_motion,
+    elastic_start,
+)
 from reports.stability.error_series import ErrorSeries, error_series
 from reports.stability.falling_chain import falling, freely
 from reports.stability.force_error import force_error
@@ -50,6 +55,7 @@ JUDGES: Mapping[Judge, Yardstick] = {
     "limit": Yardstick(at_limit, held),
     "chain": Yardstick(freely, falling),
     "let-go": Yardstick(free_error_series, free_motion, free_start),
+    "bend": Yardstick(elastic_error_series, elastic_motion, elastic_start),
     "toggle": Yardstick(at_toggle, thrown_motion, thrown_start),
 }
 
@@ -90,7 +96,7 @@ def _graded(case: Case, trial: Trial, blank: Graded, *, forces: bool) -> tuple[G
     state = JUDGES[case.judge].start(trial)
     try:
         done = run(
-            trial.scene,
+            trial.given,
             state,
             blank.engine,
             blank.profile,

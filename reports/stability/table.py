@@ -126,7 +126,8 @@ def _legend(matrix: Matrix) -> str:
         "Numbers: the worst error of place (rad, or over the longest link; of a limit that of the "
         "crank, of a free chain that of its first pin and of its energy; let go, that at the same "
         "time over the sensitivity, that at the run's own angle, and the drift of the energy; of a "
-        "throw the angle that it is short of being over); easy to hard from left to right; held is "
+        "throw the angle that it is short of being over; of elastic links that of the "
+        "deflection, over the largest); easy to hard from left to right; held is "
         f"what stays within {classes}. {letters}.\n{forces}"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )

@@ -39,7 +39,7 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
         An unknown case, engine or profile, a value that has no reference, or a folder that can
         not be written.
     """
-    cases = _cases(request.cases, free=request.free)
+    cases = _cases(request.cases, free=request.free, elastic=request.elastic)
     engines = chosen_engines(request.engines)
     profiles = [name for name, _ in chosen_profiles(request.profiles or PROFILES, engines)]
     limits = checked_limits(request.limit_s, request.memory_gb)
@@ -74,8 +74,11 @@ def stability(request: StabilityRequest, console: Console, progress: Console) ->
     return 0
 
 
-def _cases(names: Sequence[str], *, free: bool) -> list[Case]:
-    """The named cases, or all: those that are let go with ``free``, else those that are driven."""
+def _cases(names: Sequence[str], *, free: bool, elastic: bool) -> list[Case]:
+    """The named cases, or all: those that are let go with ``free``, those of ``elastic`` links, or
+    those that are driven and rigid."""
+    if free and elastic:
+        raise CrankcheckError("--free with --elastic: no case is of both; ask for one of them")
     for name in names:
         if name not in CATALOGUE:
             raise CrankcheckError(f"case {name!r}: unknown; {suggestion(name, CATALOGUE, 'use')}")
@@ -83,7 +86,12 @@ def _cases(names: Sequence[str], *, free: bool) -> list[Case]:
     if driven:
         known = ", ".join(name for name, case in CATALOGUE.items() if case.free)
         raise CrankcheckError(f"--free and {driven[0]}: no case of free motion; those are {known}")
-    every = (name for name, case in CATALOGUE.items() if case.free == free)
+    rigid = [name for name in names if elastic and not CATALOGUE[name].elastic]
+    if rigid:
+        known = ", ".join(name for name, case in CATALOGUE.items() if case.elastic)
+        raise CrankcheckError(f"--elastic and {rigid[0]}: no elastic link in it; those are {known}")
+    kind = free, elastic
+    every = (name for name, case in CATALOGUE.items() if (case.free, case.elastic) == kind)
     return [CATALOGUE[name] for name in dict.fromkeys(names or every)]
 
 

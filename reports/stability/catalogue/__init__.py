@@ -13,6 +13,7 @@ from reports.stability.catalogue import (
     change_points,
     driving,
     duration,
+    elastic_links,
     free_motion,
     levers,
     limits,
@@ -39,6 +40,7 @@ GROUPS = {
     "slotted lever, crank through the pivot": levers.CASES,
     "free motion": free_motion.CASES,
     "free motion at a toggle": toggles.CASES,
+    "elastic links": elastic_links.CASES,
 }
 CATALOGUE: dict[str, Case] = {
     case.name: replace(case, group=group) for group, cases in GROUPS.items() for case in cases

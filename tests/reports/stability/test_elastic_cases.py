@@ -1,0 +1,73 @@
+"""Cases of elastic links: run when asked for, and graded by what the links bend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from reports.cli import app
+from reports.cli.commands.stability import _cases
+from reports.stability.catalogue import CATALOGUE
+from reports.stability.grading import graded
+from reports.stability.matrix import Graded
+
+ELASTIC = [name for name, case in CATALOGUE.items() if case.elastic]
+
+
+def run_of(name: str, value: float, engine: str = "mujoco") -> Graded:
+    return graded(CATALOGUE[name], engine, "tuned", value, draw=False)[0]
+
+
+def trials() -> Iterator[tuple[str, Any]]:
+    for name in ELASTIC:
+        for value in CATALOGUE[name].values:
+            yield name, CATALOGUE[name].trial(value)
+
+
+def test_cases_of_elastic_links_are_run_when_asked_for() -> None:
+    assert [case.name for case in _cases((), free=False, elastic=True)] == ELASTIC
+    assert not {case.name for case in _cases((), free=False, elastic=False)} & {*ELASTIC}
+    assert not {case.name for case in _cases((), free=True, elastic=False)} & {*ELASTIC}
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["coarse-step", "--elastic"], "no elastic link in it; those are elastic-thick"),
+        (["--free", "--elastic"], "no case is of both"),
+    ],
+)
+def test_what_is_not_elastic_is_refused(words: list[str], says: str) -> None:
+    done = CliRunner().invoke(app, ["stability", *words])
+    assert done.exit_code == 2
+    assert says in " ".join(done.output.replace("│", " ").split())
+
+
+def test_every_case_gives_segments_and_few_samples() -> None:
+    for name, trial in trials():
+        assert len(trial.given.links) == len(trial.scene.links) + trial.segments - 1, name
+        assert trial.steps / trial.every <= 4000, name
+
+
+def test_an_error_falls_with_the_step_squared() -> None:
+    coarse, fine = (run_of("elastic-step", steps, "pymunk").error for steps in (720.0, 1440.0))
+    assert coarse / fine == pytest.approx(4.0, rel=0.2)
+
+
+def test_a_stiffness_that_the_step_does_not_hold_says_which_would() -> None:
+    run = run_of("elastic-stiff", 100.0)
+    assert run.outcome == "diverged"
+    assert "steps a turn, or fewer segments" in run.reason
+    assert run_of("elastic-stiff", 9.0).outcome == "ok"
+
+
+def test_one_value_is_shown_from_the_command_line() -> None:
+    words = ["stability", "elastic-step", "--at", "360", "--profile", "tuned"]
+    done = CliRunner().invoke(app, [*words, "--engine", "pymunk"])
+    assert done.exit_code == 1
+    assert "a deflection, over the largest, is off by 0.029" in " ".join(done.output.split())
+    done = CliRunner().invoke(app, [*words, "--engine", "mujoco"])
+    assert done.exit_code == 0, done.output
