@@ -19,6 +19,8 @@ from models.files import load_scene
 from models.laws import FromRest
 from models.scene import Scene
 from tests.analytic.elastic.driven import fourbar, with_elastic
+from tests.analytic.elastic.turning import form_of as turning_form
+from tests.analytic.elastic.turning import fourbar as turning_fourbar
 
 
 def form_of(scene: Scene, by: Polynomials | Modes | Segments) -> ReducedForm:
@@ -110,5 +112,14 @@ def test_the_drive_gives_what_energy_and_damping_take(scene: Scene, start: Shape
 def test_what_bends_too_far_is_refused_with_words() -> None:
     soft = with_elastic(fourbar(), flexural_n_m2=1e-3)
     motion = DrivenElasticMotion(soft, 1.0, Polynomials(3), "straight", stiffened=True)
-    with pytest.raises(CrankcheckError, match=r"bent or stretched too far|take shorter"):
+    with pytest.raises(CrankcheckError, match=r"bent or stretched too far|bend too far"):
         motion.at(np.linspace(0.0, 1.0, 5))
+
+
+def test_a_window_that_is_too_long_is_halved() -> None:
+    form = turning_form(turning_fourbar(1.3))
+    still = np.zeros(form.size)
+    long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
+    middle = np.array([0.5 * form.period_s])
+    assert len(long.edges_s) > 3
+    assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
