@@ -82,7 +82,7 @@ class Beam:
         self._drawn = slice(3 + shapes.across, 3 + shapes.across + shapes.along)
         self.size = self._drawn.stop
         self.length_m = own.line.length_m
-        self.angular = np.arange(self.size) == 2
+        self.angular = np.concatenate([[False, False, True], shapes.slopes])
         self._on_link = np.array([place is not None for place, _ in markers], dtype=bool)
         local = [own.line.along(place or own.line.start) for place, _ in markers]
         x, y = np.array(local).reshape(-1, 2).T

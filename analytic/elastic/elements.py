@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from models.array import Array
+from models.array import Array, Mask
 
 # In s = x / l of an element: w at its start, slope at its start over l, the same at its end.
 CUBICS = tuple(
@@ -43,6 +43,12 @@ class HermiteElements:
     @property
     def along(self) -> int:
         return self.count if self.stretches else 0
+
+    @property
+    def slopes(self) -> Mask:
+        """Of each node the second of its two, where both ends have no deflection."""
+        odd = np.delete(np.arange(2 * self.count + 2) % 2 == 1, [0, 2 * self.count])
+        return np.concatenate([odd[: self.across], np.zeros(self.along, dtype=bool)])
 
     @property
     def breaks(self) -> Array:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.array import Array
+from models.array import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,10 @@ class SineModes:
     length_m: float
     across: int
     along: int = 0
+
+    @property
+    def slopes(self) -> Mask:
+        return np.zeros(self.across + self.along, dtype=bool)
 
     @property
     def breaks(self) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from models.array import Array
+from models.array import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,10 @@ class LegendrePolynomials:
     length_m: float
     across: int
     along: int = 0
+
+    @property
+    def slopes(self) -> Mask:
+        return np.zeros(self.across + self.along, dtype=bool)
 
     @property
     def breaks(self) -> Array:

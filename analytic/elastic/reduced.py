@@ -62,7 +62,8 @@ class Instant:
 
 
 class ReducedForm:
-    """The equations of an assembly whose driver follows a law."""
+    """The equations of an assembly whose driver follows a law; coefficients of its elastic links
+    that are angles are told as lengths, times the longest link."""
 
     def __init__(self, assembly: Assembly, forces: GeneralisedForces, law: Law) -> None:
         if isinstance(law, Controlled):
@@ -76,6 +77,9 @@ class ReducedForm:
         free = [i for i in range(assembly.size) if i not in rigid]
         self._free = np.array(free, dtype=int)
         self._rest = np.array(sorted(rigid - {self._driver}), dtype=int)
+        # What an angle among the coefficients is per metre here: all count as lengths, so that a
+        # step of 1e-4 longest links is as small for one as for the other, in mm and in km.
+        self._sizes = assembly.units[self._free] / assembly.scene.longest_m
         if assembly.joints.count != len(self._rest):
             raise CrankcheckError(
                 f"{assembly.scene.name}: {assembly.joints.count} equations of joints for "
@@ -108,8 +112,10 @@ class ReducedForm:
         told = np.concatenate([self._free, [self._driver]])
         count, n = q.shape
         by = np.zeros((count, n, len(told)))
-        by[:, told, range(len(told))] = 1.0
-        by[:, self._rest] = -np.linalg.solve(jacobian[:, :, self._rest], jacobian[:, :, told])
+        by[:, told, range(len(told))] = np.append(self._sizes, 1.0)
+        by[:, self._rest] = -np.linalg.solve(
+            jacobian[:, :, self._rest], jacobian[:, :, told] * np.append(self._sizes, 1.0)
+        )
         q_rates = (by @ np.column_stack([rates, omega])[:, :, None])[:, :, 0]
         now = self.assembly.at_rates(q, q_rates)
         gained = by[:, :, -1] * np.asarray(alpha)[:, None]
@@ -125,7 +131,7 @@ class ReducedForm:
     def _closed(self, phi: Array, z: Array, near: Array) -> Array:
         """The coordinates with a told driver and coefficients, by Newton's method."""
         q = near.copy()
-        q[:, self._driver], q[:, self._free] = phi, z
+        q[:, self._driver], q[:, self._free] = phi, z * self._sizes
         units, size = self.assembly.units[self._rest], np.inf
         for _ in range(MOST_STEPS):
             now = self.assembly.at_rest(q)
@@ -177,7 +183,8 @@ class ReducedForm:
         for name, (_, own) in self._elastic.items():
             at = slice(own.start + 3, own.stop)
             whole[at, at] = each[name]
-        return np.asarray(whole[np.ix_(self._free, self._free)])
+        sizes = np.outer(self._sizes, self._sizes)
+        return np.asarray(whole[np.ix_(self._free, self._free)] * sizes)
 
 
 def quasi_static(form: ReducedForm, time_s: float) -> Array:

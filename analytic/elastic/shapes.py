@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.polynomial import legendre
 
-from models.array import Array
+from models.array import Array, Mask
 
 
 class Shapes(Protocol):
@@ -30,6 +30,10 @@ class Shapes(Protocol):
 
     @property
     def along(self) -> int: ...
+
+    @property
+    def slopes(self) -> Mask:
+        """Which coefficients, those across and then those along, are slopes, and not lengths."""
 
     @property
     def breaks(self) -> Array: ...

@@ -28,6 +28,8 @@ TWICE, END_TWICE = RULE.once @ RULE.once, RULE.end_once @ RULE.once
 polynomials that they are, the method would not be stable."""
 BLOCK = 16
 """Windows that are solved for at once."""
+SHORTEST = 1.0 / 16.0
+"""A window, over those that were asked for, below which none is halved to meet the equations."""
 MOST_ROUNDS, MOST_TANGENTS = 40, 6
 CLOSE = 1e-13
 """What a round may change accelerations by, over the largest; where rounding leaves more, of links
@@ -75,7 +77,8 @@ def vibrate(
     kinks_s: Sequence[float] = (),
 ) -> VibrationHistory:
     """The motion from coefficients and rates (m,) at time 0, in so many windows of time, or a few
-    more: some end at ``kinks_s``, where the equations are not smooth.
+    more: some end at ``kinks_s``, where the equations are not smooth, and those in which they are
+    not met are halved.
 
     Raises
     ------
@@ -88,13 +91,17 @@ def vibrate(
     while done < len(edges) - 1:
         block = _Block.solved(form, edges[done : done + most + 1], z, rates)
         if block is None:
-            if most == 1:
+            begin, end = edges[done : done + 2]
+            if most > 1:
+                most = max(1, most // 4)
+            elif end - begin > SHORTEST * until_s / windows:
+                edges = np.insert(edges, done + 1, 0.5 * (begin + end))
+            else:
                 raise CrankcheckError(
-                    f"{form.assembly.scene.name}: at {edges[done]:g} s the equations of its "
-                    f"elastic links are not met in a window of {edges[done + 1] - edges[done]:g} "
-                    "s; take shorter ones"
+                    f"{form.assembly.scene.name}: at {begin:g} s the equations of its elastic "
+                    f"links are not met, not even in {end - begin:.3g} s: they bend too far for a "
+                    "beam; make them stiffer, or drive slower"
                 )
-            most = max(1, most // 4)
             continue
         kept.append(block)
         done += len(block.seconds)

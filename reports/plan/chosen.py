@@ -53,7 +53,7 @@ def left_out_note(names: str | Sequence[str]) -> str:
         return ""
     return (
         f"{' and '.join(several)}: left out, as engines are given no friction that grows with what "
-        "a joint bears, and no elastic links that are let go or driven by a controller; `crankcheck "
+        "a joint bears, nor elastic links that are let go or driven by a controller; `crankcheck "
         "solve` shows them"
     )
 

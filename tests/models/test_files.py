@@ -85,6 +85,7 @@ def test_all_scenes_of_a_kind_are_meant_by_its_name_and_those_of_no_kind_by_none
 def test_scenes_of_the_reference_alone_are_run_where_they_are_named() -> None:
     assert reference_alone("kinematics") == []
     assert reference_alone("forces") == ["slider-crank-self-locking"]
+    assert reference_alone("elastic") == ["fourbar-elastic-controlled", "fourbar-elastic-pulse"]
     named = names_of_scenes(["forces", "slider-crank-self-locking"])
     assert named[-1] == "slider-crank-self-locking"
 

@@ -19,6 +19,8 @@ from models.files import load_scene
 from models.laws import FromRest
 from models.scene import Scene
 from tests.analytic.elastic.driven import fourbar, with_elastic
+from tests.analytic.elastic.turning import form_of as turning_form
+from tests.analytic.elastic.turning import fourbar as turning_fourbar
 
 
 def form_of(scene: Scene, by: Polynomials | Modes | Segments) -> ReducedForm:
@@ -120,3 +122,12 @@ def test_a_link_that_hardly_bends_takes_no_more_windows_than_it_needs() -> None:
     middle = motion.at(np.linspace(0.0, 0.01, 5)).elastic["coupler"].middle
     assert 0.0 < np.abs(middle).max() < 1e-13
     assert len(motion.history.z) < 30
+
+
+def test_a_window_that_is_too_long_is_halved() -> None:
+    form = turning_form(turning_fourbar(1.3))
+    still = np.zeros(form.size)
+    long, short = (vibrate(form, still, still, form.period_s, count) for count in (2, 30))
+    middle = np.array([0.5 * form.period_s])
+    assert len(long.edges_s) > 3
+    assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
