@@ -64,6 +64,7 @@ benchmarks: $(VENV)/benchmark
 	$(BIN)/python benchmarks/logging.py
 	$(BIN)/python benchmarks/window_chain.py
 	$(BIN)/python benchmarks/free.py
+	$(BIN)/python benchmarks/elastic_engines.py --few
 
 models: $(VENV)/crankcheck
 	for scene in fourbar-lecture-1 slider-crank-central; do \
