@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from analytic.elastic.discretisation import Modes
+from analytic.elastic.discretisation import REFERENCE, Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.segmented import SegmentedScene
-from reports.compare.elastic.beam_theory import PERIODIC
 from reports.compare.elastic.elastic_truth import ElasticTruth
 from reports.judge.cell import CellRunner
 from reports.selftest.elastic_runs import sound_run, truth_of_chain
@@ -80,7 +79,7 @@ def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
     return _moved(motion, nodes[1], share * off[:, None] * across)
 
 
-def of_beam(*, stiffened: bool, by: Modes = PERIODIC) -> NodeChange:
+def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
     """Links, points and the middle of another theory, in the engine's place."""
 
     def changed(truth: ElasticTruth, motion: Motion, _: float) -> Motion:

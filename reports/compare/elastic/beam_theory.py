@@ -1,8 +1,9 @@
 """The beam that engines are held to, and what it may be off by.
 
-It is described by sines across, with the shortening of a bent link. What it may be off by is seen
-from fewer sines, and from where exact chains of more and more segments go to, which know nothing of
-sines or of foreshortening: their distance to it falls as 1/n^2, up to what the beam neglects.
+It is described by polynomials, with the shortening of a bent link. What it may be off by is seen
+from fewer of them, and from where exact chains of more and more segments go to, which know nothing
+of polynomials or of foreshortening: their distance to it falls as 1/n^2, up to what the beam
+neglects.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from analytic.elastic.discretisation import Modes
+from analytic.elastic.discretisation import REFERENCE, Polynomials
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.stiffness import slowest_rad_s
 from models.array import Array
@@ -24,9 +25,8 @@ from models.segmented import SegmentedScene
 from reports.compare.elastic.exact_chain import ExactChain
 from reports.quantities.elastic import largest_deflection
 
-PERIODIC, OTHER = Modes(7, 3), Modes(5, 2)
-"""Sines where the beam starts on its periodic motion, and where it is integrated, which takes
-twenty times as long."""
+FEWER = Polynomials(REFERENCE.across - 2, REFERENCE.along - 1)
+"""What says how far the reference is to be trusted."""
 FINE, COARSE, LEAST = 8, 4, 4
 """Segments of the chains that say where more and more of them go to; and of the one that is
 integrated where the motion is not periodic: the fastest frequency grows with the square of their
@@ -58,15 +58,15 @@ class BeamTheory:
 
     @cached_property
     def beam(self) -> DrivenElasticMotion:
-        return self._moved(PERIODIC if self.is_periodic else OTHER)
+        return self._moved(REFERENCE)
 
-    def _moved(self, by: Modes, *, stiffened: bool = True) -> DrivenElasticMotion:
+    def _moved(self, by: Polynomials, *, stiffened: bool = True) -> DrivenElasticMotion:
         return DrivenElasticMotion(self.scene, self.until_s, by, self.shape, stiffened)
 
     @cached_property
     def lowest_rad_s(self) -> float:
         """The lowest angular frequency of the links."""
-        return slowest_rad_s(self.scene, OTHER)
+        return slowest_rad_s(self.scene, REFERENCE)
 
     @cached_property
     def looks_s(self) -> Array:
@@ -86,16 +86,14 @@ class BeamTheory:
     @cached_property
     def linear_m(self) -> float:
         """What the linear theory, without foreshortening, is off by."""
-        by = PERIODIC if self.is_periodic else OTHER
-        return deflections_apart(self._moved(by, stiffened=False).at(self.looks_s), self.looked)
+        linear = self._moved(REFERENCE, stiffened=False).at(self.looks_s)
+        return deflections_apart(linear, self.looked)
 
     @cached_property
     def doubt_m(self) -> float:
-        """What the beam may be off by: what fewer sines are off it by and, where chains are soon
-        found, how far from it these go to."""
-        used = PERIODIC if self.is_periodic else OTHER
-        fewer = self._moved(Modes(used.across - 2, used.along - 1)).at(self.looks_s)
-        off = deflections_apart(fewer, self.looked)
+        """What the beam may be off by: what fewer polynomials are off it by and, where chains are
+        soon found, how far from it these go to."""
+        off = deflections_apart(self._moved(FEWER).at(self.looks_s), self.looked)
         chained = self.is_periodic and not any(e.stretches for e in self.scene.elastic.values())
         return max(off, self._beside_chains()) if chained else off
 
