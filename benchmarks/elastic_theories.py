@@ -51,9 +51,10 @@ def form_of(scene: Scene, by: Discretisation, *, stiffened: bool = True) -> Redu
 
 def middle(form: ReducedForm, motion: PeriodicMotion) -> Array:
     """The deflection of the middle of the one elastic link over a period [m]."""
-    z = motion.at(instants(INSTANTS, form.period_s))[0]
-    ((body, _),) = form.assembly.elastic.values()
-    q = np.concatenate([np.zeros((len(z), 3)), z], axis=1)
+    times = instants(INSTANTS, form.period_s)
+    z, rates, _ = motion.at(times)
+    ((body, own),) = form.assembly.elastic.values()
+    q = form.at(times, z, rates, form.near(times)).now.q[:, own]
     return body.deflections(q, np.array([0.5 * body.length_m]))[:, 0]
 
 

@@ -34,9 +34,8 @@ of a step, they take a share of the energy: the phase is off by ``opening`` of t
 
 The energy itself is off by ``arc`` times what the arcs of steps may make of its means, and ``late``
 times what impulses that come a step late may have lost (`analytic.forces.late_impulses`), weighed
-with the masses, as no acceleration of a light link says. On the shipped scenes pymunk has up to 0.4
-of it at 1 ms, and up to 0.7 at shorter steps; over the step and the curvature alone its drifts went
-from 0.02 to 19 times one limit.
+with the masses, as no acceleration of a light link says. On the shipped scenes pymunk has up to 0.6
+of it; over the step and the curvature alone its drifts went from 0.02 to 19 times one limit.
 
 Where links bend, rates have as many joints in a row as there are segments, each with a part of its
 own: their budget grows with the root of that number. The deflection of the links, a share of its

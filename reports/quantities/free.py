@@ -130,7 +130,7 @@ ENERGY = Quantity(
                 "arc of a step: by its work the energy is off, of second order, and loses a part "
                 "at every step, of third.",
                 cap=0.1,
-                arc=2.0,
+                arc=4.0,
                 late=0.5,
             ),
         ),

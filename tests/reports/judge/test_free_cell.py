@@ -141,7 +141,7 @@ def test_the_energy_is_held_to_what_late_impulses_make_of_it() -> None:
     errors = check(cell()).errors
     assert errors
     more = replace(errors, late=LateImpulses(0.01, 0.02, 0.03))
-    assert default(FREE["energy"], more) == pytest.approx(2.0 * 0.02 + 0.5 * 0.03, rel=1e-6)
+    assert default(FREE["energy"], more) == pytest.approx(4.0 * 0.02 + 0.5 * 0.03, rel=1e-6)
     assert default(FREE["phase"], more) > default(FREE["phase"], errors)
     assert default(FREE["geometry"], more) == default(FREE["geometry"], errors)
 

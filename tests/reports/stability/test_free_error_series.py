@@ -98,14 +98,16 @@ def test_a_step_that_is_too_large_is_seen() -> None:
 
 
 def test_cases_of_free_motion_are_run_when_asked_for() -> None:
-    free = {case.name for case in _cases([], free=True)}
-    driven = {case.name for case in _cases([], free=False)}
+    free = {case.name for case in _cases([], free=True, elastic=False)}
+    driven = {case.name for case in _cases([], free=False, elastic=False)}
+    elastic = {case.name for case in _cases([], free=False, elastic=True)}
     assert free == {name for name, case in CATALOGUE.items() if case.judge in ("let-go", "toggle")}
-    assert not free & driven
-    assert free | driven == set(CATALOGUE)
-    assert [case.name for case in _cases(["free-long"], free=False)] == ["free-long"]
+    assert len(free) + len(driven) + len(elastic) == len(CATALOGUE)
+    assert free | driven | elastic == set(CATALOGUE)
+    named = _cases(["free-long"], free=False, elastic=False)
+    assert [case.name for case in named] == ["free-long"]
     with pytest.raises(CrankcheckError, match="--free and kite: no case of free motion; those are"):
-        _cases(["free-long", "kite"], free=True)
+        _cases(["free-long", "kite"], free=True, elastic=False)
 
 
 def test_nothing_is_said_of_a_crank_that_nobody_drives() -> None:
