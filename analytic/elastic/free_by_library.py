@@ -24,7 +24,7 @@ FAR = 0.2
 
 @dataclass(frozen=True)
 class _Stretch:
-    """A piece of the motion (`Piece`): the state is y, y' and the work."""
+    """A piece of the motion (`FreePiece`): the state is y, y' and the work."""
 
     start_s: float
     end_s: float

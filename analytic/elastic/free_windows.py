@@ -39,7 +39,7 @@ SHORTEST = 1e-9
 """A window over all of the time, below which the motion can not go on."""
 
 
-class Piece(Protocol):
+class FreePiece(Protocol):
     """The motion from ``start_s`` to ``end_s`` in one tangent."""
 
     @property
@@ -56,7 +56,7 @@ class Piece(Protocol):
 
 
 @dataclass(frozen=True)
-class Window:
+class FreeWindow:
     """A piece by collocation: ``rates`` y' (f,) at its start, where y is 0; ``series`` (NODES, f)
     that of y'' in Legendre's polynomials, ``power`` (NODES,) that of the work's derivative."""
 
@@ -83,7 +83,7 @@ class Window:
 
 def by_collocation(
     form: TangentForm, q: Array, rates: Array, until_s: float, tolerance: float
-) -> tuple[Window, ...]:
+) -> tuple[FreeWindow, ...]:
     """The motion from a closed position and rates (n,) on.
 
     Parameters
@@ -126,7 +126,7 @@ class _Going:
     work: float = 0.0
     made: int = 0
 
-    def through(self, begin_s: float, end_s: float, shortest_s: float) -> Iterator[Window]:
+    def through(self, begin_s: float, end_s: float, shortest_s: float) -> Iterator[FreeWindow]:
         """The windows between two edges."""
         now_s = begin_s
         while now_s < end_s:
@@ -153,7 +153,7 @@ class _Going:
                 "fewer shapes"
             )
 
-    def _end(self, window: Window) -> None:
+    def _end(self, window: FreeWindow) -> None:
         """Go on to the end of a window."""
         end = np.array([window.end_s])
         y, rates, work = window.course(end)
@@ -163,7 +163,7 @@ class _Going:
 
     def _window(
         self, tangent: Tangent, start_s: float, end_s: float
-    ) -> tuple[Window | None, float]:
+    ) -> tuple[FreeWindow | None, float]:
         """A window, and the end of its series; none where it is too long."""
         h = end_s - start_s
         rates = self.form.coordinates(tangent, self.rates)
@@ -181,7 +181,9 @@ class _Going:
         if tail > 4.0 * self.tolerance:
             return None, tail
         power = self.form.dynamics.power(instant.now, instant.applied)
-        own = Window(start_s, end_s, tangent, rates, series, self.rule.series @ power, self.work)
+        own = FreeWindow(
+            start_s, end_s, tangent, rates, series, self.rule.series @ power, self.work
+        )
         return own, tail
 
     def _met(

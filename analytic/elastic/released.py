@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
 from analytic.elastic.free_by_library import by_library
-from analytic.elastic.free_windows import Piece, by_collocation
+from analytic.elastic.free_windows import FreePiece, by_collocation
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
@@ -106,7 +106,7 @@ class ReleasedElasticMotion:
         return tuple(edges(self.scene, self.until_s)[1:-1])
 
     @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
+    def pieces(self) -> tuple[FreePiece, ...]:
         """The motion, one piece after the other."""
         integrate = by_collocation if self.method == "collocation" else by_library
         return integrate(self.form, *self.start, self.until_s, self.tolerance)
@@ -140,8 +140,7 @@ class ReleasedElasticMotion:
             self.dynamics.energies(instant.now, work)
             for _, _, instant, work in self._instants(time_s)
         ]
-        each = zip(*(vars(part).values() for part in parts), strict=True)
-        return EnergyBalance(*(np.concatenate(own) for own in each))
+        return EnergyBalance.joined(parts)
 
     @cached_property
     def finer(self) -> ReleasedElasticMotion:
@@ -159,7 +158,7 @@ class ReleasedElasticMotion:
         own = self.at(time_s)
         return DoubtOverTime.between(own, self.finer.at(time_s), self.coarser.at(time_s))
 
-    def _instants(self, time_s: Array) -> Iterator[tuple[Array, Piece, FreeInstant, Array]]:
+    def _instants(self, time_s: Array) -> Iterator[tuple[Array, FreePiece, FreeInstant, Array]]:
         """Times, the piece that they are in, the equations and the work until then."""
         instants = samples(time_s, "time_s")
         if instants.min() < 0.0 or instants.max() > self.until_s * (1.0 + 1e-12):

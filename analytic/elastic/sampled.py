@@ -47,8 +47,7 @@ def bent(motion: ElasticHistory, time_s: Array, shares: Array) -> dict[str, Arra
 def energies(motion: ReleasedElasticMotion, time_s: Array) -> EnergyBalance:
     """Of what is let go, at times [s], (T,) in ascending order."""
     parts = [motion.energy(time_s[part]) for part in _parts(np.arange(time_s.size))]
-    each = zip(*(vars(part).values() for part in parts), strict=True)
-    return EnergyBalance(*(np.concatenate(own) for own in each))
+    return EnergyBalance.joined(parts)
 
 
 def _parts(order: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:

@@ -18,7 +18,7 @@ STEP = 1e-5
 
 
 @dataclass(frozen=True)
-class Tangent:
+class SlopesOverWindows:
     """``mass``, ``damping`` and ``stiffness`` at the ends and in the middle of W windows, (2 W + 1,
     m, m)."""
 
@@ -34,7 +34,7 @@ class Tangent:
         return np.asarray(np.einsum("sk,wkab->wsab", parabolas, three))
 
 
-def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> Tangent:
+def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> SlopesOverWindows:
     """Of the windows between edges [s] (W + 1,), where coefficients and rates are (W + 1, m)."""
     time_s, z, rates = (_with_middles(own) for own in (edges_s, z, rates))
     near, m = form.near(time_s), form.size
@@ -49,7 +49,7 @@ def tangent(form: ReducedForm, edges_s: Array, z: Array, rates: Array) -> Tangen
         stiffness[:, :, k] = (pushed - (now.force - base.force)) / by
         now = form.at(time_s, z, rates + per_s * one, near)
         damping[:, :, k] = (base.force - now.force) / per_s
-    return Tangent(base.mass, damping, stiffness)
+    return SlopesOverWindows(base.mass, damping, stiffness)
 
 
 def _with_middles(values: Array) -> Array:

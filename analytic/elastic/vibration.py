@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from analytic.elastic.reduced import ReducedForm
-from analytic.elastic.tangent import Tangent, tangent
+from analytic.elastic.tangent import SlopesOverWindows, tangent
 from analytic.free.gauss import gauss
 from models.array import Array
 from models.errors import CrankcheckError
@@ -201,7 +201,7 @@ class _Sweep:
     inverse: Array
 
     @staticmethod
-    def over(h: Array, own: Tangent) -> _Sweep:
+    def over(h: Array, own: SlopesOverWindows) -> _Sweep:
         mass, damping, stiffness = (
             own.at_shares(RULE.places, matrix) for matrix in (own.mass, own.damping, own.stiffness)
         )

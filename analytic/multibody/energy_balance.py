@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,3 +23,9 @@ class EnergyBalance:
     def balance(self) -> Array:
         """What stays as it is but for errors: energy less the work that was put in [J], (T,)."""
         return np.asarray(self.kinetic + self.potential - self.work)
+
+    @staticmethod
+    def joined(parts: Sequence[EnergyBalance]) -> EnergyBalance:
+        """Those of some instants after the other."""
+        each = zip(*(vars(part).values() for part in parts), strict=True)
+        return EnergyBalance(*(np.concatenate(own) for own in each))

@@ -176,9 +176,7 @@ class MultibodyMotion:
         parts = [
             self.dynamics.energies(now, work) for _, now, work in self._configurations(instants)
         ]
-        return EnergyBalance(
-            *(np.concatenate(own) for own in zip(*(vars(p).values() for p in parts), strict=True))
-        )
+        return EnergyBalance.joined(parts)
 
     def gap(self, time_s: Array) -> Array:
         """The largest violation of a constraint at times [s], [m or rad], (T,)."""
