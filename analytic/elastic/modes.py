@@ -12,24 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.array import Array, Mask
+from analytic.elastic.whole_link import WholeLink
+from models.array import Array
 
 
 @dataclass(frozen=True)
-class SineModes:
+class SineModes(WholeLink):
     """The first ``across`` and ``along`` modes (`Shapes`)."""
-
-    length_m: float
-    across: int
-    along: int = 0
-
-    @property
-    def slopes(self) -> Mask:
-        return np.zeros(self.across + self.along, dtype=bool)
-
-    @property
-    def breaks(self) -> Array:
-        return np.array([0.0, self.length_m])
 
     @property
     def nodes(self) -> int:

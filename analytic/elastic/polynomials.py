@@ -13,25 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from models.array import Array, Mask
+from analytic.elastic.whole_link import WholeLink
+from models.array import Array
 
 
 @dataclass(frozen=True)
-class LegendrePolynomials:
+class LegendrePolynomials(WholeLink):
     """``across`` polynomials of degrees 2, 3, ... and ``along`` ones of degrees 1, 2, ...
     (`Shapes`)."""
-
-    length_m: float
-    across: int
-    along: int = 0
-
-    @property
-    def slopes(self) -> Mask:
-        return np.zeros(self.across + self.along, dtype=bool)
-
-    @property
-    def breaks(self) -> Array:
-        return np.array([0.0, self.length_m])
 
     @property
     def nodes(self) -> int:
