@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from pydantic import model_validator
+from typing import Annotated
 
-from models.table_fields import NonNegative, Positive, Table
+from pydantic import Field, model_validator
+
+from models.table_fields import LARGEST, NonNegative, Positive, Table
 
 SECTION = "width_m and height_m, or area_m2 and second_moment_m4"
+Section = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1 / LARGEST**2, le=LARGEST)]
+"""What goes with squares of lengths, and their squares: that of a thin strip is under 1e-15."""
 
 
 class ElasticTable(Table):
@@ -17,9 +21,9 @@ class ElasticTable(Table):
     width_m: Positive | None = None
     height_m: Positive | None = None
     """Of a rectangle, in the plane of the motion."""
-    area_m2: Positive | None = None
-    second_moment_m4: Positive | None = None
-    flexural_n_m2: Positive | None = None
+    area_m2: Section | None = None
+    second_moment_m4: Section | None = None
+    flexural_n_m2: Section | None = None
     axial_n: Positive | None = None
     density_kg_m3: Positive | None = None
     damping_s: NonNegative = 0.0

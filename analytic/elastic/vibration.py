@@ -31,9 +31,10 @@ BLOCK = 16
 SHORTEST = 1.0 / 16.0
 """A window, over those that were asked for, below which none is halved to meet the equations."""
 MOST_ROUNDS, MOST_TANGENTS = 40, 6
-CLOSE = 1e-13
-"""What a round may change accelerations by, over the largest; where rounding leaves more, of links
-that hardly bend, what it may move them by, over the longest link."""
+CLOSE, NEARLY = 1e-13, 1e-9
+"""What a round may change accelerations by, over the largest. Where rounding leaves more, of what
+is stiff or hardly bends: what it may move coefficients by, over the longest link, or nearly over
+what they are and move by in a window."""
 SLOW = 0.3
 """What a round may leave of the one before it until the derivatives are taken anew."""
 
@@ -145,6 +146,12 @@ class _Block:
         places = z + np.concatenate([np.zeros_like(moved[:1]), np.cumsum(moved, axis=0)])
         return _Block(places, every, seconds)
 
+    def reach(self, h: Array) -> float:
+        """The largest of the coefficients, and of what rates and accelerations add in a window."""
+        longest = float(h.max())
+        each = (self.z, longest * self.rates, longest**2 * self.seconds)
+        return max(float(np.abs(own).max()) for own in each)
+
     def nodes(self, h: Array) -> tuple[Array, Array]:
         """Coefficients and rates at the nodes, (W, NODES, m)."""
         step = h[:, None, None]
@@ -179,12 +186,12 @@ class _Block:
             at = block.nodes(h)
             size = float(np.abs(step).max()) / (float(np.abs(block.seconds).max()) or 1.0)
             moved = float(h.max()) ** 2 * float(np.abs(step).max())
-            small = size < 1e-9 or moved < CLOSE * form.assembly.scene.longest_m
+            small = moved < max(CLOSE * form.assembly.scene.longest_m, NEARLY * block.reach(h))
             if size <= CLOSE or (small and size >= 0.5 * last):
                 return block
-            if not np.isfinite(size) or (tangents == MOST_TANGENTS and size > last):
+            if not np.isfinite(size) or (tangents >= MOST_TANGENTS and size > last):
                 return None
-            if size > SLOW * last and size > 1e-9:
+            if size > SLOW * last and not small:
                 sweep = None
             last = size
         return None

@@ -54,6 +54,12 @@ def test_a_section_says_stiffness_and_mass() -> None:
     assert other.elastic["coupler"].axial_n == math.inf
 
 
+def test_a_strip_of_a_tenth_of_a_millimetre_is_one() -> None:
+    strip = "area_m2 = 1e-7\nsecond_moment_m4 = 8.3333e-17\n"  # 1 by 0.1 mm
+    scene = parse_scene(f"{GOOD}[elastic.coupler]\nmodulus_pa = 2e11\n{strip}", "test")
+    assert scene.elastic["coupler"].flexural_n_m2 == pytest.approx(1.66666e-5)
+
+
 @pytest.mark.parametrize("name", shipped("elastic"))
 def test_a_shipped_scene_is_the_same_after_a_round_trip(name: str) -> None:
     scene = load_scene(name)

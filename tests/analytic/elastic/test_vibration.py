@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp  # type: ignore[import-untyped]
 
-from analytic.elastic.discretisation import Modes, Polynomials, Segments
+from analytic.elastic import vibration
+from analytic.elastic.discretisation import Elements, Modes, Polynomials, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.reduced import ReducedForm
+from analytic.elastic.tangent import SlopesOverWindows, tangent
 from analytic.elastic.vibration import vibrate
 from analytic.free.gauss import gauss
 from models.elastic import Shape
@@ -131,3 +134,20 @@ def test_a_window_that_is_too_long_is_halved() -> None:
     middle = np.array([0.5 * form.period_s])
     assert len(long.edges_s) > 3
     assert long.at(middle)[0][0, 0] == pytest.approx(short.at(middle)[0][0, 0], rel=1e-3)
+
+
+def test_what_is_stiff_is_met_as_well_as_rounding_lets_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Elements whose highest frequencies are a thousand times the first: what rounding leaves of
+    the accelerations may be large, next to them."""
+    taken = []
+
+    def counted(*own: object) -> SlopesOverWindows:
+        taken.append(own)
+        return tangent(*own)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(vibration, "tangent", counted)
+    motion = DrivenElasticMotion(fourbar(), 0.2, Elements(8), "quasi-static", stiffened=True)
+    blocks = len(motion.history.z) / vibration.BLOCK
+    assert len(taken) <= 2 * math.ceil(blocks)
