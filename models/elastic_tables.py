@@ -19,6 +19,10 @@ SAME = 1e-9
 SLENDER = 10.0
 """Lengths over the height of the section, below which a beam shears and turns as it bends."""
 
+MOST_DAMPED = 1e3
+"""Times the damping from which on the first mode of a link no longer swings: with more the link is
+a rigid one, and how it creeps takes turns without end to be seen."""
+
 
 def elastic_of(table: SceneTable) -> dict[str, ElasticLink]:
     """The elastic links of a scene whose tables have no fault."""
@@ -70,6 +74,15 @@ def faults_of_beams(scene: Scene) -> Iterator[str]:
             yield (
                 f"elastic.{name}: it is {line.length_m / own.height_m:.3g} heights of its section "
                 f"long; from {SLENDER:g} on a beam bends as it does here, without shear"
+            )
+        first = own.bending_rad_s if own.bends else own.axial_rad_s
+        critical_s = 2.0 / first(line.length_m, line.density_kg_m) if link.mass_kg else math.inf
+        if own.damping_s > MOST_DAMPED * critical_s:
+            yield (
+                f"elastic.{name}: found damping_s = {own.damping_s:g}; from {critical_s:.3g} on "
+                f"its first mode no longer swings, and with more than {MOST_DAMPED:g} times that "
+                f"it is a rigid link; use {MOST_DAMPED * critical_s:.3g} or less, or leave the "
+                "table out"
             )
     yield from _faults_of_loads(scene)
     if scene.elastic and scene.friction:

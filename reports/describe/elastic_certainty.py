@@ -70,16 +70,18 @@ def certainty(motion: ElasticHistory) -> list[str]:
 
 def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
     """By the next finer description; of elements, and of what is let go, which take long, by one of
-    fewer shapes, whose error is the larger one."""
-    if not isinstance(motion, ReleasedElasticMotion) and not isinstance(motion.by, Elements):
-        found = Differences.of(own, motion.finer.at(time_s))
-        return (
-            f"As the next finer description has it, deflections are off by about "
-            f"{error_text(found.deflection)} of the largest, angles by "
-            f"{error_text(found.angle_rad)} rad, the torque by {error_text(found.torque)} of its "
-            "largest."
-        )
+    fewer shapes, whose error is the larger one, if there are any fewer."""
     fewer = coarser(motion.by)
+    slow = isinstance(motion, ReleasedElasticMotion) or isinstance(motion.by, Elements)
+    if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
+        found = Differences.of(own, motion.finer.at(time_s))
+        told = [
+            f"deflections are off by about {error_text(found.deflection)} of the largest",
+            f"angles by {error_text(found.angle_rad)} rad",
+        ]
+        if own.forces is not None and own.forces.torque.any():
+            told.append(f"the torque by {error_text(found.torque)} of its largest")
+        return f"As the next finer description has it, {', '.join(told)}."
     found = Differences.of(replace(motion, by=fewer).at(time_s), own)
     return (
         f"By {described(motion.scene, fewer)} deflections are off this by "

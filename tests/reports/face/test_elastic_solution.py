@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,19 @@ def test_a_straight_start_rings(capsys: pytest.CaptureFixture[str]) -> None:
     assert np.max(np.abs(middle)) > 1.2e-3
     print(solution)
     assert "Starts straight: it rings" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [(NAME, {"elements": 1, "shape": "straight"}), ("fourbar-elastic-pulse", {"modes": 1})],
+)
+def test_the_coarsest_of_all_descriptions_is_not_held_to_itself(
+    name: str, asked: dict[str, object]
+) -> None:
+    (told,) = crankcheck.solve(name, [0.0, 0.02], **asked).certainty  # type: ignore[arg-type]
+    found = re.search(r"next finer description.*deflections are off by about (\S+) of", told)
+    assert found, told
+    assert float(found[1]) > 1e-3
 
 
 @pytest.mark.parametrize(
