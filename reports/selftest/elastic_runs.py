@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare.elastic.elastic_truth import ElasticTruth, elastic_truth
+from reports.compare.elastic.elastic_truth import ChainTruth, chain_truth
 from reports.judge.cell import Cell
 from reports.selftest.fault import PROFILE, Items
 from sim.engine import Run
@@ -44,10 +44,10 @@ def elastic_cell(name: str, engine: str, finer: float = 1.0) -> Cell:
     return Cell(scene, engine, PROFILE, dt_s, steps, converge=False, segments=own.segments)
 
 
-def truth_of_chain(given: Scene) -> ElasticTruth:
+def truth_of_chain(given: Scene) -> ChainTruth:
     """That of the elastic scene whose segments an engine is ``given``."""
     scene = _once(given.name)
-    return elastic_truth(scene, ELASTIC_RUNS[given.name].segments, "plain", 1.0)
+    return chain_truth(scene, ELASTIC_RUNS[given.name].segments, 1.0)
 
 
 @lru_cache(maxsize=3)

@@ -14,14 +14,14 @@ from models.array import Array
 from models.motion import Motion
 from models.scene import Scene
 from models.segmented import SegmentedScene
-from reports.compare.elastic.elastic_truth import ElasticTruth
+from reports.compare.elastic.elastic_truth import ChainTruth
 from reports.judge.cell import CellRunner
 from reports.selftest.elastic_runs import sound_run, truth_of_chain
 from reports.selftest.fault import Plant
 from reports.selftest.logs import WHEN, moved
 from sim.engine import Run
 
-NodeChange = Callable[[ElasticTruth, Motion, float], Motion]
+NodeChange = Callable[[ChainTruth, Motion, float], Motion]
 
 
 def in_chain_log(change: NodeChange) -> Plant:
@@ -43,7 +43,7 @@ def in_chain_log(change: NodeChange) -> Plant:
 def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
     """All nodes, as far from the line between the pins as the change has it."""
 
-    def changed(truth: ElasticTruth, motion: Motion, size: float) -> Motion:
+    def changed(truth: ChainTruth, motion: Motion, size: float) -> Motion:
         name = next(iter(truth.scene.elastic))
         nodes = truth.chain.nodes(name)
         first, across = _line(motion, nodes)
@@ -55,7 +55,7 @@ def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
     return changed
 
 
-def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
+def at_next_node(truth: ChainTruth, motion: Motion, _: float) -> Motion:
     """The middle is logged where the node before it is, of which it has the deflection."""
     name = next(iter(truth.scene.elastic))
     nodes = truth.chain.nodes(name)
@@ -68,7 +68,7 @@ def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
     return _moved(motion, nodes[middle], (near - off)[:, None] * across)
 
 
-def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
+def at_quarter(truth: ChainTruth, motion: Motion, share: float) -> Motion:
     """The first node, away from the middle, is elsewhere by a share of the deflection there, once
     the start has been looked at."""
     name = next(iter(truth.scene.elastic))
@@ -82,7 +82,7 @@ def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
 def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
     """Links, points and the middle of another theory, in the engine's place."""
 
-    def changed(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
+    def changed(truth: ChainTruth, motion: Motion, _: float) -> Motion:
         scene = truth.scene
         theory = DrivenElasticMotion(scene, 1.0, by, truth.theory.shape, stiffened)
         return _given_back(truth.chain, motion, theory.at(motion.time_s))
@@ -90,7 +90,7 @@ def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
     return changed
 
 
-def of_exact_chain(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
+def of_exact_chain(truth: ChainTruth, motion: Motion, _: float) -> Motion:
     """The exact chain, in the engine's place."""
     return _given_back(truth.chain, motion, truth.exact_at(motion.time_s))
 
