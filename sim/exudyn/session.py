@@ -25,7 +25,7 @@ from sim.exudyn.loads import apply_loads, follows_rates
 from sim.exudyn.present import Present
 from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import checked, of_drive
-from sim.exudyn.solver import constraints, held, initialized, multipliers, simulation
+from sim.exudyn.solver import held, initialized, multipliers, per_drive, simulation
 from sim.exudyn.springs import Springs
 from sim.exudyn.step_multipliers import Multipliers
 from sim.exudyn.system import build
@@ -112,7 +112,7 @@ class ExudynSession:
         own, rates = exu.ConfigurationType.Initial, self._system.systemData
         law = self._scene.driver.law
         _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
-        ratio = self._per_crank()
+        ratio = per_drive(self._solver, self._system)
         if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
             told = course.speed(None, 0.0, None, 0.0)
             rates.SetODE2Coordinates_t(
@@ -124,13 +124,6 @@ class ExudynSession:
         self._asked.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
         self._solver.InitializeSolver(self._system, self._asked)
         return first
-
-    def _per_crank(self) -> Array:
-        """The rates of all coordinates over that of the crank; the drive is the last constraint."""
-        held_by = constraints(self._solver, self._system)
-        asked = np.zeros(len(held_by))
-        asked[-1] = 1.0
-        return np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
 
     def facts(self) -> Facts:
         """The system as exudyn holds it now; its bodies have their centres at their nodes."""

@@ -11,6 +11,9 @@ from sim.engine import Settings, SettingValue
 from sim.exudyn.library import exu, quiet
 from sim.exudyn.settings import BY_NEED, MOST_DENSE
 
+FREE = 1e-9
+"""A singular value of the constraints, over the largest, of a motion that they do not hold."""
+
 
 def simulation(
     settings: Settings, dt_s: float, *, of_rates: bool = False, rounding_n: float = 0.0
@@ -79,6 +82,25 @@ def constraints(solver: Any, system: Any) -> Array:
     solver.SetSystemJacobian(np.zeros((size, size)))
     solver.ComputeJacobianAE(system)
     return np.array(solver.GetSystemJacobian())[count:, :count]
+
+
+def per_drive(solver: Any, system: Any) -> Array:
+    """The accelerations of all coordinates over that which the drive asks for, the last of the
+    constraints; afterwards the solver has to be initialized again.
+
+    Where links bend the constraints leave some free, which follow by their inertia.
+    """
+    held_by = constraints(solver, system)
+    asked = np.zeros(len(held_by))
+    asked[-1] = 1.0
+    moved = np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
+    _, sizes, ways = np.linalg.svd(held_by)
+    free = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
+    if len(free):
+        solver.ComputeMassMatrix(system)
+        heavy = free @ np.array(solver.GetSystemMassMatrix())
+        moved -= free.T @ np.linalg.lstsq(heavy @ free.T, heavy @ moved, rcond=None)[0]
+    return moved
 
 
 def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
