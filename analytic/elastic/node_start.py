@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.elastic.beam import Beam, ElasticBody
+from analytic.elastic.cubic_nodes import CubicNodes, cubic_nodes, strain_places
 from analytic.elastic.discretisation import REFERENCE
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.multibody.as_motion import as_motion
+from models.array import Array
 from models.beamed import BeamedScene
 from models.elastic import Shape
 from models.elastic_line import line_of
@@ -33,31 +35,40 @@ def node_start(own: BeamedScene, start: Shape) -> State:
     for name in own.scene.elastic:
         body, at = assembly.elastic[name]
         assert isinstance(body, Beam)
-        line = line_of(own.scene, name)
-        x = np.linspace(0.0, line.length_m, own.count + 1)
-        nodes = ElasticBody(body.link, line, body.shapes).body(
-            [(line.at(each), line.lean_rad) for each in x], (0.0, 0.0)
-        )
         q, rates, push = (each[:, at] for each in (instant.now.q, instant.now.rates, seconds))
-        marks = nodes.mark(q, rates)
-        place = marks.place[0]
-        drift = (marks.gradient @ rates[:, None, :, None])[0, :, :, 0]
-        gained = (marks.gradient @ push[:, None, :, None])[0, :, :, 0] + marks.drift[0]
-        line_angle = q[0, 2] + line.lean_rad
-        slope = place[:, 2] - line_angle
-        lean = np.sqrt(1.0 - slope**2)
-        place[:, 2] = line_angle + np.arcsin(slope)
-        drift[:, 2] = rates[0, 2] + (drift[:, 2] - rates[0, 2]) / lean
-        for told, points, levels in zip(turning, moving, (place, drift, gained), strict=True):
-            told.update(zip(own.bodies(name), map(float, levels[:, 2]), strict=True))
-            pairs = ((float(a), float(b)) for a, b in levels[:, :2])
+        nodes, gained = _nodes(own, body, q, rates, push)
+        levels = (nodes.place, nodes.drift, gained)
+        for told, points, level in zip(turning, moving, levels, strict=True):
+            told.update(zip(own.bodies(name), map(float, level[:, 2]), strict=True))
+            pairs = ((float(a), float(b)) for a, b in level[:, :2])
             points.update(zip(own.nodes(name), pairs, strict=True))
-        for kind, level in zip(strains, (q, rates), strict=True):
-            values = map(float, body.strains(level, x)[0])
-            kind.update(zip(own.bodies(name), values, strict=True))
+        for kind, values in zip(strains, (nodes.strain, nodes.strain_rate), strict=True):
+            kind.update(zip(own.bodies(name), map(float, values), strict=True))
     theta, omega, alpha = turning
     position, velocity, acceleration = moving
     return State(
         state.time_s, theta, omega, alpha, position, velocity, acceleration,
         state.displacement, state.speed, *strains,
     )  # fmt: skip
+
+
+def _nodes(
+    own: BeamedScene, body: Beam, q: Array, rates: Array, push: Array
+) -> tuple[CubicNodes, Array]:
+    """The nodes of a link at coordinates, rates and second derivatives (1, n), and their
+    accelerations (n + 1, 3)."""
+    line = line_of(own.scene, body.link.link)
+    x = np.linspace(0.0, line.length_m, own.count + 1)
+    marked = [(line.at(each), line.lean_rad) for each in x]
+    marks = ElasticBody(body.link, line, body.shapes).body(marked, (0.0, 0.0)).mark(q, rates)
+    place = marks.place[0]
+    drift = (marks.gradient @ rates[:, None, :, None])[0, :, :, 0]
+    gained = (marks.gradient @ push[:, None, :, None])[0, :, :, 0] + marks.drift[0]
+    line_angle = q[0, 2] + line.lean_rad
+    slope = place[:, 2] - line_angle
+    place[:, 2] = line_angle + np.arcsin(slope)
+    drift[:, 2] = rates[0, 2] + (drift[:, 2] - rates[0, 2]) / np.sqrt(1.0 - slope**2)
+    element_m = line.length_m / own.count
+    within = strain_places(element_m, own.count)
+    strain, rate = (body.strains(each, within.ravel()).reshape(within.shape) for each in (q, rates))
+    return cubic_nodes(place, drift, strain, rate, element_m), gained

@@ -65,12 +65,16 @@ def given_as(scene: Scene, study: Study) -> list[GivenAs]:
         return [GivenAs()]
     counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
     return [
-        GivenAs(
-            count, springs, f", {count} segments" + f", {springs} springs" * (springs != "plain")
-        )
+        GivenAs(count, springs, _words(count, springs))
         for springs in dict.fromkeys(study.springs or SPRINGS[:1])
         for count in dict.fromkeys(counts)
     ]
+
+
+def _words(count: int, springs: Springs) -> str:
+    if springs == "beam":
+        return f", beam of {count} elements"
+    return f", {count} segments" + f", {springs} springs" * (springs != "plain")
 
 
 def given_of(scene: Scene, segments: int | None, springs: str | None) -> GivenAs:
