@@ -56,7 +56,7 @@ def test_the_last_element_pushes_its_pin_less(strain: float) -> None:
 
     assert pushed(unit) > 5e-7
     assert pushed(own) < 0.4 * pushed(unit)
-    assert own.mean() == pytest.approx(strain, abs=1e-9)
+    assert own.mean() == pytest.approx(strain, abs=5e-9)
 
 
 def test_the_pins_stay_and_nodes_hardly_move() -> None:
