@@ -187,7 +187,7 @@ def _joined(parts: Sequence[Mapping[str, BodyMotion]]) -> dict[str, BodyMotion]:
 @dataclass(frozen=True)
 class State:
     """A mechanism at one instant: links by name [rad, rad/s, rad/s^2], points [m, m/s, m/s^2],
-    sliders [m, m/s]."""
+    sliders [m, m/s]; of the nodes of beams that stretch, by which share, and its rate [1/s]."""
 
     time_s: float
     theta: Mapping[str, float]
@@ -198,6 +198,8 @@ class State:
     acceleration: Mapping[str, Point]
     displacement: Mapping[str, float]
     speed: Mapping[str, float]
+    strain: Mapping[str, float] = field(default_factory=dict)
+    strain_rate: Mapping[str, float] = field(default_factory=dict)
 
 
 def _pair(row: Array) -> Point:

@@ -19,6 +19,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from models.beams import Beam
 from models.elastic import ElasticLink
 from models.fixed import FixedMapping
 from models.friction import CoulombFriction, Friction
@@ -92,7 +93,8 @@ class Scene:
     is silent. ``tolerance`` overrides default tolerances by quantity. ``gravity_m_s2`` is zero
     unless the scene has it; ``loads`` act from outside, ``friction`` in joints of two bodies,
     ``springs`` between bodies. ``start`` says more of the start of free motion than the driver.
-    ``elastic`` are the links that bend or stretch, by name; the others are rigid.
+    ``elastic`` are the links that bend or stretch, by name; the others are rigid. ``beams`` are
+    what such a link is where an engine is given nodes for it (`models.beamed`).
     """
 
     name: str
@@ -110,11 +112,12 @@ class Scene:
     springs: Mapping[str, Spring] = field(default_factory=dict)
     start: Start = field(default_factory=Start)
     elastic: Mapping[str, ElasticLink] = field(default_factory=dict)
+    beams: Mapping[str, Beam] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in (
             "ground", "links", "sliders", "branch", "tolerance", "loads", "friction", "springs",
-            "elastic",
+            "elastic", "beams",
         ):  # fmt: skip
             object.__setattr__(self, name, FixedMapping(getattr(self, name)))
 

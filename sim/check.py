@@ -29,13 +29,15 @@ def refuse_other_model(
 ) -> None:
     """Raise EngineError, naming everything that differs, unless the engine holds the scene.
 
-    Compared are mass, inertia, gravity, springs, position and angle of every body, loop gaps, and
-    the velocities at the instant that the engine's own belong to. A prescribed crank need not have
-    a mass, nor a body that cannot turn an inertia; a free one has both, and nothing beside.
+    Compared are mass, inertia, gravity, springs, beams, position and angle of every body, loop
+    gaps, and the velocities at the instant that the engine's own belong to. A prescribed crank need
+    not have a mass, nor a body that cannot turn an inertia; a free one has both, and nothing
+    beside.
     """
     faults = [
         *_matter(scene, facts, drive),
         *_springs(scene, facts),
+        *_beams(scene, facts),
         *_state(scene, state, facts, dt_s, drive),
         *_gaps(scene, facts, open_m),
     ]
@@ -57,6 +59,11 @@ def refuse_unknown_forces(scene: Scene, engine: Engine, *, with_forces: bool) ->
         raise EngineError(
             f"{scene.name}: {engine.name} is given no springs ({names}); take them out to run it, "
             "or use the reference alone"
+        )
+    if scene.beams and not engine.applies_beams:
+        raise EngineError(
+            f"{scene.name}: {engine.name} has no beams ({', '.join(scene.beams)}); give it rigid "
+            "segments with springs between them (--springs plain)"
         )
     if isinstance(scene.driver.law, Controlled):
         raise EngineError(
@@ -116,6 +123,26 @@ def _springs(scene: Scene, facts: Facts) -> Iterator[str]:
     for name in facts.springs:
         if name not in scene.springs:
             yield f"springs.{name} is none of the scene"
+
+
+def _beams(scene: Scene, facts: Facts) -> Iterator[str]:
+    """Differences of beams, by the first element that has one."""
+    for name, beam in scene.beams.items():
+        elements = facts.beams.get(name, ())
+        if len(elements) != beam.elements:
+            yield f"{name} has {len(elements)} elements, not {beam.elements}"
+        for what, wanted in (
+            ("length_m", beam.element_m),
+            ("density_kg_m", beam.density_kg_m),
+            ("flexural_n_m2", beam.flexural_n_m2),
+            ("axial_n", beam.axial_n),
+            ("damping_s", beam.damping_s),
+        ):
+            for i, element in enumerate(elements, start=1):
+                own = getattr(element, what)
+                if not abs(own - wanted) <= SAME * abs(wanted):
+                    yield f"element {i} of {name} has {what} {own:g}, not {wanted:g}"
+                    break
 
 
 def _state(scene: Scene, state: State, facts: Facts, dt_s: float, drive: Drive) -> Iterator[str]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol
 
 from models.array import Array
+from models.beams import Beam
 from models.forces import Forces
 from models.motion import Motion, State
 from models.scene import Point, Scene
@@ -90,7 +91,7 @@ class Facts:
     quantities belong: a velocity logged with the positions of time t belongs to
     t + velocity_shift * dt. ``springs`` are those of the scene by name, as far as the engine is
     given them: rate [N/m or N m/rad], damping [N s/m or N m s] and the length or angle at which
-    they are slack [m or rad].
+    they are slack [m or rad]. ``beams`` are those of the scene, element by element.
     """
 
     version: str
@@ -103,6 +104,7 @@ class Facts:
     velocity_shift: float
     acceleration_shift: float
     springs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    beams: Mapping[str, tuple[Beam, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -168,7 +170,8 @@ class Engine:
     the speed. An engine that does not say has all of them so. Where ``forces_of`` is something, its
     sessions are `ForceSession`s; without ``applies_loads`` scenes with loads are unsupported,
     without ``applies_constant_friction`` those with friction that is constant, without
-    ``applies_springs`` those with springs; with it `Facts.springs` tells of each.
+    ``applies_springs`` those with springs; with it `Facts.springs` tells of each. Without
+    ``applies_beams`` it is given elastic links as segments alone; with it `Facts.beams` tells.
     """
 
     name: str
@@ -185,6 +188,7 @@ class Engine:
     applies_loads: bool = False
     applies_constant_friction: bool = False
     applies_springs: bool = False
+    applies_beams: bool = False
 
 
 @dataclass(frozen=True)

@@ -209,6 +209,10 @@ class Beam:
     def deflections(self, q: Array, x: Array) -> Array:
         return np.asarray(q[:, self._bent] @ self.shapes.deflections(x, 0).T)
 
+    def strains(self, q: Array, x: Array) -> Array:
+        """By which share it is longer at places x (X,) [m], (T, X)."""
+        return np.asarray(q[:, self._drawn] @ self.shapes.extensions(x, 1).T)
+
     def extension(self, q: Array) -> Array:
         end = self._places(np.array([self.shapes.length_m]), np.zeros(1))
         return np.asarray(self._spread(end, q).along[:, 0] - self._start_x - end.x)

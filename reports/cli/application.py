@@ -72,7 +72,10 @@ SegmentCount = Annotated[
 ]
 SpringKind = Annotated[
     str | None,
-    typer.Option("--springs", help="Between segments: plain (default) or corrected for the sag."),
+    typer.Option(
+        "--springs",
+        help="Between segments: plain (default), corrected for the sag; beam: an engine's own.",
+    ),
 ]
 Jobs = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one per processor.")]
 """Options that several commands have."""

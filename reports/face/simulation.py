@@ -147,7 +147,8 @@ def run(
         Log the reactions and the driving torque as well, in ``motion.forces``.
     segments, springs : int or None, str or None
         What elastic links are given to the engine as: so many rigid segments each (16), with
-        springs between them that are ``plain``, or ``corrected`` for the sag of the beam.
+        springs between them that are ``plain``, or ``corrected`` for the sag of the beam; or, with
+        ``beam``, as many elements of a beam of the engine's own.
 
     Returns
     -------

@@ -24,9 +24,9 @@ from sim.registry import engine
 from sim.run import run, setup
 from sim.settings import profile_of, resolved
 
-Springs = Literal["plain", "corrected"]
+Springs = Literal["plain", "corrected", "beam"]
 """Between segments: those of the beam's stiffness over a segment, or those that give the chain the
-sag of the beam."""
+sag of the beam; or none, where the engine has beams of its own, as many elements long."""
 SEGMENTS = 16
 """Of an elastic link, unless another number is asked for."""
 MOST_LOGGED = 720
@@ -96,9 +96,9 @@ class Cell:
         """The scene that an engine is given: of elastic links, the segments."""
         if not self.scene.elastic:
             return self.scene
-        from models.segmented import SegmentedScene  # where links bend alone
+        from reports.compare.elastic.cut import cut  # where links bend alone
 
-        return SegmentedScene(self.scene, self.segments, self.springs == "corrected").rigid
+        return cut(self.scene, self.segments, self.springs).given
 
     @property
     def every(self) -> int:

@@ -14,7 +14,7 @@ from reports.compare.completeness import incomplete
 from reports.compare.errors import Error, Errors, largest
 from reports.compare.force_rows import force_rows
 from reports.judge.three_steps import AT_ROUNDING, Convergence, convergence
-from reports.judge.tolerance import limits
+from reports.judge.tolerance import beyond_engine, limits
 from reports.judge.too_good import too_good
 from reports.quantities import named
 from sim.engine import Placing, Run
@@ -98,6 +98,7 @@ def followed(
         if placing == "integrated"
         else (),
         cancels=errors.free is not None,
+        known=beyond_engine(worst.quantity, errors),
     )
     if force is None:
         return Followed(of_places)

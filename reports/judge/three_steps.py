@@ -64,11 +64,13 @@ def convergence(
     over: Sequence[str] = (),
     copied: Sequence[str] = (),
     cancels: bool = False,
+    known: float = 0.0,
 ) -> Convergence:
     """Read three errors at dt, dt/2, dt/4 (see the module); ``rounding`` is what needs no step.
 
     Where errors of several kinds may cancel at one of the steps, as those of a phase, a floor is
-    one only where the last halving leaves most of the error.
+    one only where the last halving leaves most of the error. An error up to ``known`` is no
+    engine's: the truth itself, or what it is compared with.
 
     Raises
     ------
@@ -78,7 +80,9 @@ def convergence(
     if len(dt_s) != 3 or len(error) != 3:
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
-    trend, order, floor = _read(first, second, third, rounding)
+    trend, order, floor = _read(first, second, third, max(rounding, known))
+    if trend in ("levels off", "does not shrink") and floor <= known:
+        trend, floor = "shrinks", math.nan
     if cancels and trend == "levels off" and third <= STAYS * second:
         trend, floor = "shrinks", math.nan
     told = (tuple(texts) for texts in (faults, over, copied))

@@ -142,8 +142,9 @@ def _swung(step: float, elastic: ElasticFacts) -> float:
     return (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
 
 
-def _left(name: str, errors: Errors) -> float:
-    """What the exact chain of segments is off the beam by, and the beam itself, of a quantity."""
+def beyond_engine(name: str, errors: Errors) -> float:
+    """What the exact chain of segments, or what elements, are off the beam by, and the beam itself,
+    of a quantity."""
     elastic = errors.elastic
     if elastic is None or name == "segments":
         return 0.0
@@ -187,7 +188,9 @@ def limits(
         elif name in scene.tolerance:
             chosen[name] = Limit(scene.tolerance[name], "scene")
         else:
-            chosen[name] = Limit(default(tolerance, errors) + _left(name, errors), "default")
+            chosen[name] = Limit(
+                default(tolerance, errors) + beyond_engine(name, errors), "default"
+            )
     return chosen
 
 

@@ -17,7 +17,7 @@ from reports.plan.steps import STEPS_PER_TURN
 if TYPE_CHECKING:
     from reports.plan.study import Study
 
-SPRINGS: tuple[Springs, ...] = ("plain", "corrected")
+SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
 MOST_SEGMENTS = 64
 """Their exact chain takes minutes, and a turn 100 000 steps."""
 STEADY = 1.5
@@ -30,7 +30,9 @@ PART = 360
 def chosen_springs(text: str, option: str = "--springs") -> Springs:
     """The springs of that name. Raises CrankcheckError for any other."""
     if text not in SPRINGS:
-        raise CrankcheckError(f"{option} {shown(text)}: unknown; use {' or '.join(SPRINGS)}")
+        *most, last = SPRINGS
+        words = f"{', '.join(most)} or {last}"
+        raise CrankcheckError(f"{option} {shown(text)}: unknown; use {words}")
     return text
 
 
@@ -63,12 +65,16 @@ def given_as(scene: Scene, study: Study) -> list[GivenAs]:
         return [GivenAs()]
     counts = [chosen_segments(count, "segments") for count in study.segments or [SEGMENTS]]
     return [
-        GivenAs(
-            count, springs, f", {count} segments" + f", {springs} springs" * (springs != "plain")
-        )
+        GivenAs(count, springs, _words(count, springs))
         for springs in dict.fromkeys(study.springs or SPRINGS[:1])
         for count in dict.fromkeys(counts)
     ]
+
+
+def _words(count: int, springs: Springs) -> str:
+    if springs == "beam":
+        return f", beam of {count} elements"
+    return f", {count} segments" + f", {springs} springs" * (springs != "plain")
 
 
 def given_of(scene: Scene, segments: int | None, springs: str | None) -> GivenAs:
@@ -149,10 +155,13 @@ def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
 
 
 def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
-    """Steps in a turn that explicit methods hold so many segments with, at least the usual."""
+    """Steps in a turn that explicit methods hold so many segments with, at least the usual, which
+    is what the implicit ones of engines that have beams are given."""
     from analytic.elastic.discretisation import Segments
     from analytic.elastic.stiffness import fastest_rad_s
 
+    if springs == "beam":
+        return float(STEPS_PER_TURN)
     fastest = fastest_rad_s(scene, Segments(segments, springs == "corrected"))
     needed = scene.driver.law.period_s * fastest / STEADY
     return max(STEPS_PER_TURN, float(PART * math.ceil(needed / PART)))

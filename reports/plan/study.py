@@ -8,7 +8,7 @@
     forces = false                     # reactions and torque too, of engines that report them
 
     segments = [4, 8, 16, 32]          # of each elastic link; 16 if left out
-    springs = ["plain", "corrected"]   # between them; plain if left out
+    springs = ["plain", "corrected"]   # between them, or "beam"; plain if left out
 
     # or, of mechanisms that are let go, in place of steps_per_turn and turns:
     free = true
@@ -98,7 +98,7 @@ class Study(BaseModel):
     dt_s: list[float] = Field(default_factory=list)
     duration_s: float | None = None
     segments: list[StrictInt] = Field(default_factory=list)
-    springs: list[Literal["plain", "corrected"]] = Field(default_factory=list)
+    springs: list[Literal["plain", "corrected", "beam"]] = Field(default_factory=list)
 
     @property
     def steps(self) -> list[float]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from models.errors import CrankcheckError, suggestion
 from reports.selftest import (
+    beams,
     clock,
     dynamics,
     elastic,
@@ -38,6 +39,7 @@ FAULTS: dict[str, Fault] = {
         stepping,
         record,
         elastic,
+        beams,
     )
     for fault in module.FAULTS
 }
@@ -58,6 +60,7 @@ GROUPS = {
     "segments": "elastic links, as another chain",
     "vibration": "elastic links, spoilt in the engine",
     "deflection": "elastic links, wrong in the log",
+    "beam": "elastic links, as an engine's own beam",
 }
 
 
@@ -83,6 +86,7 @@ def chosen_faults(
                 f"--fault {name}: it can be planted in {able} only; "
                 f"found --engine {', '.join(sorted(chosen))}"
             )
-    every = [name for name, fault in FAULTS.items() if fault.kind == kind]
+    kinds = (kind, "beam") if kind == "elastic" else (kind,)
+    every = [name for name, fault in FAULTS.items() if fault.kind in kinds]
     order = dict.fromkeys(names or every)
     return [FAULTS[name] for name in order if any(map(FAULTS[name].possible, chosen))]

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare.elastic.elastic_truth import ElasticTruth, elastic_truth
-from reports.judge.cell import Cell
-from reports.selftest.fault import PROFILE, Items
+from reports.compare.elastic.elastic_truth import (
+    ChainTruth,
+    ElasticTruth,
+    chain_truth,
+    elastic_truth,
+)
+from reports.judge.cell import Cell, Springs
+from reports.selftest.fault import PROFILE, Items, RunKind
 from sim.engine import Run
 from sim.run import run
 
@@ -18,15 +24,30 @@ BENT = "fourbar-elastic"
 
 @dataclass(frozen=True)
 class ElasticRun:
-    """Segments of each elastic link, and steps of the one turn."""
+    """Segments of each elastic link with ``springs``, or elements of a beam, and steps of the one
+    turn."""
 
     segments: int
     steps: int
+    springs: Springs = "plain"
+
+    @property
+    def words(self) -> str:
+        pieces = "elements of a beam" if self.springs == "beam" else "segments"
+        return f"{self.segments} {pieces}, {self.steps} steps a turn, 1 turn"
 
 
 ELASTIC_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(4, 2880)}
 """By scene: few segments, whose exact chain is soon found, and steps so short that the limit of
 what an engine may be off by (0.2 % of the largest deflection) is well below a hundredth."""
+
+
+BEAM_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(8, 2880, "beam")}
+"""By scene, of engines that have beams of their own: elements that are within the truth's own
+doubt."""
+
+
+BENDING: Mapping[RunKind, Mapping[str, ElasticRun]] = {"elastic": ELASTIC_RUNS, "beam": BEAM_RUNS}
 
 
 @cache
@@ -36,22 +57,39 @@ def _once(name: str) -> Scene:
     return load_scene(name)
 
 
-def elastic_cell(name: str, engine: str, finer: float = 1.0) -> Cell:
+def elastic_cell(
+    name: str, engine: str, finer: float = 1.0, runs: Mapping[str, ElasticRun] = ELASTIC_RUNS
+) -> Cell:
     """One turn of that scene; ``finer`` times as many steps."""
-    scene, own = _once(name), ELASTIC_RUNS[name]
+    scene, own = _once(name), runs[name]
     steps = round(own.steps * finer)
-    dt_s = scene.driver.law.period_s / steps
-    return Cell(scene, engine, PROFILE, dt_s, steps, converge=False, segments=own.segments)
+    dt_s, given = scene.driver.law.period_s / steps, own.segments
+    cell = Cell(scene, engine, PROFILE, dt_s, steps, converge=False, segments=given)
+    return replace(cell, springs=own.springs)
 
 
-def truth_of_chain(given: Scene) -> ElasticTruth:
+def truth_of_chain(given: Scene) -> ChainTruth:
     """That of the elastic scene whose segments an engine is ``given``."""
     scene = _once(given.name)
-    return elastic_truth(scene, ELASTIC_RUNS[given.name].segments, "plain", 1.0)
+    return chain_truth(scene, ELASTIC_RUNS[given.name].segments, 1.0)
+
+
+def truth_of_given(given: Scene) -> ElasticTruth:
+    """That of the elastic scene whose segments, or beams, an engine is ``given``."""
+    return _truth(given.name, (BEAM_RUNS if given.beams else ELASTIC_RUNS)[given.name])
+
+
+def _truth(scene: str, own: ElasticRun) -> ElasticTruth:
+    return elastic_truth(_once(scene), own.segments, own.springs, 1.0)
+
+
+def sound_run(given: Scene, name: str, profile: str, options: Items) -> Run:
+    """The run of what an engine is given without any fault, the same for all sizes."""
+    return _sound_run(given.name, bool(given.beams), name, profile, options)
 
 
 @lru_cache(maxsize=3)
-def sound_run(scene: str, name: str, profile: str, options: Items) -> Run:
-    """The run of the segments of that scene without any fault, the same for all sizes."""
-    truth = truth_of_chain(_once(scene))
+def _sound_run(scene: str, beams: bool, name: str, profile: str, options: Items) -> Run:
+    runs = BEAM_RUNS if beams else ELASTIC_RUNS
+    truth = _truth(scene, runs[scene])
     return run(truth.given, truth.start, name, profile, **dict(options))

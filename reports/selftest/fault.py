@@ -47,10 +47,11 @@ FaultGroup = Literal[
     "segments",
     "vibration",
     "deflection",
+    "beam",
 ]
-RunKind = Literal["motion", "forces", "free", "elastic"]
+RunKind = Literal["motion", "forces", "free", "elastic", "beam"]
 """What the runs are that faults are planted in: driven ones, the same with their forces, of a
-mechanism that was let go, or of one whose links bend."""
+mechanism that was let go, or of one whose links bend, as segments or as an engine's own beam."""
 INSIDE = ("engine", "stepping", "vibration")
 """The groups of what goes wrong inside an engine."""
 KINDS: Mapping[str, RunKind] = {
@@ -61,6 +62,7 @@ KINDS: Mapping[str, RunKind] = {
     "segments": "elastic",
     "vibration": "elastic",
     "deflection": "elastic",
+    "beam": "beam",
 }
 """By group, where it is not motion."""
 

@@ -11,12 +11,12 @@ import numpy as np
 from analytic.elastic.discretisation import REFERENCE, Discretisation
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from models.array import Array
+from models.cut_links import CutScene
 from models.motion import Motion
 from models.scene import Scene
-from models.segmented import SegmentedScene
 from reports.compare.elastic.elastic_truth import ElasticTruth
 from reports.judge.cell import CellRunner
-from reports.selftest.elastic_runs import sound_run, truth_of_chain
+from reports.selftest.elastic_runs import sound_run, truth_of_given
 from reports.selftest.fault import Plant
 from reports.selftest.logs import WHEN, moved
 from sim.engine import Run
@@ -30,10 +30,10 @@ def in_chain_log(change: NodeChange) -> Plant:
     def plant(size: float) -> CellRunner:
         def runner(scene: Scene, _: object, name: str, profile: str, **options: Any) -> Run:
             asked = {key: value for key, value in options.items() if key != "settings"}
-            done = sound_run(scene.name, name, profile, tuple(sorted(asked.items())))
+            done = sound_run(scene, name, profile, tuple(sorted(asked.items())))
             if not size:
                 return done
-            return replace(done, motion=change(truth_of_chain(scene), moved(done), size))
+            return replace(done, motion=change(truth_of_given(scene), moved(done), size))
 
         return runner
 
@@ -45,7 +45,7 @@ def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
 
     def changed(truth: ElasticTruth, motion: Motion, size: float) -> Motion:
         name = next(iter(truth.scene.elastic))
-        nodes = truth.chain.nodes(name)
+        nodes = truth.cut.nodes(name)
         first, across = _line(motion, nodes)
         for node in nodes[1:-1]:
             off = ((motion.points[node].position - first) * across).sum(axis=1)
@@ -58,7 +58,7 @@ def bent_by(change: Callable[[Array, float], Array]) -> NodeChange:
 def at_next_node(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
     """The middle is logged where the node before it is, of which it has the deflection."""
     name = next(iter(truth.scene.elastic))
-    nodes = truth.chain.nodes(name)
+    nodes = truth.cut.nodes(name)
     first, across = _line(motion, nodes)
     middle = len(nodes) // 2
     off, near = (
@@ -72,7 +72,7 @@ def at_quarter(truth: ElasticTruth, motion: Motion, share: float) -> Motion:
     """The first node, away from the middle, is elsewhere by a share of the deflection there, once
     the start has been looked at."""
     name = next(iter(truth.scene.elastic))
-    nodes = truth.chain.nodes(name)
+    nodes = truth.cut.nodes(name)
     first, across = _line(motion, nodes)
     off = ((motion.points[nodes[1]].position - first) * across).sum(axis=1)
     off[:WHEN] = 0.0
@@ -85,17 +85,19 @@ def of_beam(*, stiffened: bool, by: Discretisation = REFERENCE) -> NodeChange:
     def changed(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
         scene = truth.scene
         theory = DrivenElasticMotion(scene, 1.0, by, truth.theory.shape, stiffened)
-        return _given_back(truth.chain, motion, theory.at(motion.time_s))
+        return _given_back(truth.cut, motion, theory.at(motion.time_s))
 
     return changed
 
 
 def of_exact_chain(truth: ElasticTruth, motion: Motion, _: float) -> Motion:
     """The exact chain, in the engine's place."""
-    return _given_back(truth.chain, motion, truth.exact_at(motion.time_s))
+    exact = truth.exact_at(motion.time_s)
+    assert exact is not None
+    return _given_back(truth.cut, motion, exact)
 
 
-def _given_back(chain: SegmentedScene, own: Motion, other: Motion) -> Motion:
+def _given_back(chain: CutScene, own: Motion, other: Motion) -> Motion:
     """The log with the links, the points and the deflections of another motion."""
     links = {**own.links, **{n: each for n, each in other.links.items() if n in own.links}}
     motion = replace(own, links=links, points={**own.points, **other.points})

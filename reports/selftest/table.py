@@ -13,7 +13,7 @@ from reports.judge.cell import Checked
 from reports.judge.rules import RULES
 from reports.output.columns import plain_table
 from reports.selftest.all_faults import GROUPS
-from reports.selftest.elastic_runs import ELASTIC_RUNS
+from reports.selftest.elastic_runs import BENDING
 from reports.selftest.fault import PROFILE, Fault
 from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.trial import STEPS, FaultTrial, Passed, Verdict, passes
@@ -190,11 +190,13 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
         if scene in scenes
     ]
     bent = [
-        f"{scene} in {own.segments} segments, {own.steps} steps a turn, 1 turn"
-        for scene, own in ELASTIC_RUNS.items()
+        f"{scene} in {own.words}"
+        for kind, runs in BENDING.items()
+        if kind in kinds
+        for scene, own in runs.items()
         if scene in scenes
     ]
-    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free", "elastic"} else []
+    turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free", *BENDING} else []
     return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else []), *bent])
 
 

@@ -18,7 +18,7 @@ from models.scene import Scene
 from reports.judge.cell import Cell, Checked, check, examined
 from reports.judge.rules.rule import Finding
 from reports.selftest.all_faults import FAULTS
-from reports.selftest.elastic_runs import BENT, elastic_cell
+from reports.selftest.elastic_runs import BENDING, BENT, elastic_cell
 from reports.selftest.fault import FOURBAR, PROFILE, Fault, RunKind
 from reports.selftest.free_runs import FREE_RUNS, SWING
 from reports.selftest.unseen import UNSEEN, Unseen
@@ -201,8 +201,8 @@ def _cell(
     scene: Scene, engine: str, steps: int, *, converge: bool, kind: RunKind = "motion"
 ) -> Cell:
     """A turn of so many steps; of what is let go, the run that `FREE_RUNS` says, as much finer."""
-    if kind == "elastic":
-        return elastic_cell(scene.name, engine, steps / STEPS)
+    if kind in BENDING:
+        return elastic_cell(scene.name, engine, steps / STEPS, BENDING[kind])
     if kind == "free":
         dt_s, of_run = FREE_RUNS[scene.name]
         dt_s, steps = dt_s * STEPS / steps, of_run * steps // STEPS

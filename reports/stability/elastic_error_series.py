@@ -6,7 +6,7 @@ import numpy as np
 
 from models.array import Array
 from models.motion import Motion, State
-from reports.compare.elastic.elastic_truth import ElasticTruth, elastic_truth
+from reports.compare.elastic.elastic_truth import ChainTruth, chain_truth
 from reports.compare.series import length
 from reports.stability.case import Trial
 from reports.stability.error_series import ErrorSeries, lacking, nearest, widest
@@ -64,5 +64,5 @@ def elastic_motion(trial: Trial, time_s: Array) -> Motion:
     return _truth(trial).at(time_s)
 
 
-def _truth(trial: Trial) -> ElasticTruth:
-    return elastic_truth(trial.scene, trial.segments, "plain", trial.scene.driver.law.period_s)
+def _truth(trial: Trial) -> ChainTruth:
+    return chain_truth(trial.scene, trial.segments, trial.scene.driver.law.period_s)

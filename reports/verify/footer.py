@@ -66,7 +66,10 @@ def _elastic_words(driven: Sequence[Checked]) -> list[str]:
     """What the numbers of elastic links are, as what these were given, and where the truth ends."""
     bent = [one for one in driven if one.cell.scene.elastic]
     given = dict.fromkeys(
-        f"{one.cell.segments} segments, {one.cell.springs} springs" for one in bent
+        f"{one.cell.segments} elements of a beam"
+        if one.cell.springs == "beam"
+        else f"{one.cell.segments} segments, {one.cell.springs} springs"
+        for one in bent
     )
     ends = dict.fromkeys(
         f"{one.cell.scene.name}, {one.cell.engine}: {found.text}."

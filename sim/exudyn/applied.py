@@ -15,7 +15,7 @@ from models.errors import CrankcheckError
 from models.joints import block_name, joints, riding_body
 from models.scene import GROUND, Point, Scene
 from sim.exudyn.library import items
-from sim.exudyn.system import Index, PlaneSystem
+from sim.exudyn.plane_system import Index, PlaneSystem
 
 Size = Callable[[Any, float], float]
 """A size [N or N m], of the system and of the time on exudyn's clock."""

@@ -1,26 +1,37 @@
-"""Poses of the links' own frames, from the coordinates that exudyn has of their centres of mass."""
+"""Poses of the links' own frames, from the coordinates that exudyn has of their nodes: those of
+centres of mass, or places and tangents of beams."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from models.array import Array
 from models.scene import Point
 from sim.engine import BodyPose
-from sim.exudyn.system import PlaneSystem
+from sim.exudyn.plane_system import PlaneSystem
 
 LEVELS = ("Coordinates", "Coordinates_t", "Coordinates_tt")
-WIDTH = 3
-"""Coordinates of a body: x, y, angle."""
 
 
-def body_poses(made: PlaneSystem, levels: Array) -> dict[str, BodyPose]:
-    """Poses by body, of samples of the three levels of each body in turn."""
+def widths(made: PlaneSystem) -> list[int]:
+    """How many coordinates each node has, in turn: x, y, angle, or x, y and the tangent's."""
+    return [4 if name in made.looked else 3 for name in made.node]
+
+
+def body_poses(made: PlaneSystem, levels: Sequence[Array]) -> dict[str, BodyPose]:
+    """Poses by body, of samples (T, width) of the three levels of each node in turn."""
     poses = {}
     for row, (name, node) in enumerate(made.node.items()):
-        place, rate, push = (levels[:, len(LEVELS) * row + k] for k in range(len(LEVELS)))
-        reference = made.system.GetNode(node)["referenceCoordinates"]
-        poses[name] = _pose(place + reference, rate, push, made.centre[name])
+        moved, rate, push = (levels[len(LEVELS) * row + k] for k in range(len(LEVELS)))
+        place = moved + made.system.GetNode(node)["referenceCoordinates"]
+        if name in made.looked:
+            poses[name] = _tangent_pose(place, rate, push, made.looked[name])
+            if len(place):
+                made.looked[name] = float(poses[name].theta[-1])
+        else:
+            poses[name] = _pose(place, rate, push, made.centre[name])
     return poses
 
 
@@ -37,4 +48,21 @@ def _pose(place: Array, rate: Array, push: Array, centre: Point) -> BodyPose:
         omega=omega,
         origin_acceleration=push[:, :2] - alpha[:, None] * across + omega[:, None] ** 2 * arm,
         alpha=alpha,
+    )
+
+
+def _tangent_pose(place: Array, rate: Array, push: Array, near_rad: float) -> BodyPose:
+    """A frame along the tangent of a beam; its first angle is that within half a turn of
+    ``near_rad``, and the others go on from there."""
+    (x, y), (u, v), (a, b) = (each[:, 2:].T for each in (place, rate, push))
+    far = x**2 + y**2
+    theta = np.unwrap(np.concatenate([[near_rad], np.arctan2(y, x)]))[1:]
+    omega = (x * v - y * u) / far
+    return BodyPose(
+        origin=place[:, :2],
+        theta=theta,
+        velocity=rate[:, :2],
+        omega=omega,
+        origin_acceleration=push[:, :2],
+        alpha=(x * b - y * a) / far - 2.0 * omega * (x * u + y * v) / far,
     )

@@ -13,8 +13,8 @@ from models.scene import Scene
 from sim.engine import Drive, Poses, Settings
 from sim.exudyn.crank import CrankCourse
 from sim.exudyn.library import items
+from sim.exudyn.plane_system import Index, PlaneSystem
 from sim.exudyn.step_multipliers import Multipliers
-from sim.exudyn.system import Index, PlaneSystem
 
 
 class CrankDrive:

@@ -13,8 +13,8 @@ from models.joints import joined_at
 from models.scene import GROUND, Point, Scene
 from sim.engine import Drive
 from sim.exudyn.applied import Applied, Size
+from sim.exudyn.plane_system import PlaneSystem
 from sim.exudyn.present import Present
-from sim.exudyn.system import PlaneSystem
 
 STILL = 1e-9
 """Over the largest speed of the driver."""

@@ -10,7 +10,7 @@ from models.motion import State
 from models.poses import frames
 from models.scene import GROUND, Point, Scene
 from sim.exudyn.library import exu
-from sim.exudyn.system import ANGLE, Index, PlaneSystem
+from sim.exudyn.plane_system import ANGLE, Index, PlaneSystem
 
 KIND = exu.OutputVariableType
 

@@ -18,8 +18,8 @@ from models.joints import Prism, block_name, joined_at, joints, riding_body
 from models.scene import Scene
 from sim.engine import Poses
 from sim.exudyn.blocks import BlockLoads, unit
+from sim.exudyn.plane_system import PlaneSystem
 from sim.exudyn.step_multipliers import Multipliers
-from sim.exudyn.system import PlaneSystem
 
 
 def reactions(

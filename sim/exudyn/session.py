@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +15,8 @@ from models.motion import State
 from models.scene import Scene
 from sim.engine import Drive, Facts, Log, Poses, Settings
 from sim.exudyn.applied import Applied
-from sim.exudyn.body_coordinates import LEVELS, WIDTH, body_poses
+from sim.exudyn.beams import held_beams, node_masses, rounding_n
+from sim.exudyn.body_coordinates import LEVELS, body_poses, widths
 from sim.exudyn.crank import CrankCourse
 from sim.exudyn.crank_drive import CrankDrive
 from sim.exudyn.friction import apply_friction
@@ -23,10 +25,10 @@ from sim.exudyn.loads import apply_loads, follows_rates
 from sim.exudyn.present import Present
 from sim.exudyn.reactions import reactions
 from sim.exudyn.settings import checked, of_drive
-from sim.exudyn.solver import constraints, held, initialized, multipliers, simulation
+from sim.exudyn.solver import held, initialized, multipliers, per_drive, simulation
 from sim.exudyn.springs import Springs
 from sim.exudyn.step_multipliers import Multipliers
-from sim.exudyn.system import build, masses
+from sim.exudyn.system import build
 
 LEAST_DT_S = 1e-9
 """exudyn takes an end of a run that is 1e-10 s away for reached."""
@@ -56,7 +58,12 @@ class ExudynSession:
             self._crank = CrankDrive(scene, self._model, settings, drive, state.time_s, dt_s)
             self._sensors = self._sense()
             self._system.Assemble()
-            self._asked = simulation(settings, dt_s, of_rates=follows_rates(scene, drive))
+            self._asked = simulation(
+                settings,
+                dt_s,
+                of_rates=follows_rates(scene, drive),
+                rounding_n=rounding_n(scene, state),
+            )
             self._solver = self._initialized()
             course = self._crank.course
             first = None if course is None else self._set_off(course)
@@ -105,7 +112,7 @@ class ExudynSession:
         own, rates = exu.ConfigurationType.Initial, self._system.systemData
         law = self._scene.driver.law
         _, omega, alpha = (float(x) for x in law.at(np.array(self._start_s)))
-        ratio = self._per_crank()
+        ratio = per_drive(self._solver, self._system)
         if self._asked.timeIntegration.generalizedAlpha.useIndex2Constraints:
             told = course.speed(None, 0.0, None, 0.0)
             rates.SetODE2Coordinates_t(
@@ -118,29 +125,24 @@ class ExudynSession:
         self._solver.InitializeSolver(self._system, self._asked)
         return first
 
-    def _per_crank(self) -> Array:
-        """The rates of all coordinates over that of the crank; the drive is the last constraint."""
-        held_by = constraints(self._solver, self._system)
-        asked = np.zeros(len(held_by))
-        asked[-1] = 1.0
-        return np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
-
     def facts(self) -> Facts:
         """The system as exudyn holds it now; its bodies have their centres at their nodes."""
-        held_masses = masses(self._model)
+        held_masses = self._model.masses()
+        nodes = node_masses(self._scene, self._model)
         loads = [self._system.GetLoad(load)["loadVector"] for load in self._model.weight.values()]
         gravity = loads[0] if loads else (0.0, 0.0)
         return Facts(
             version=VERSION,
-            mass_kg={name: mass for name, (mass, _) in held_masses.items()},
+            mass_kg={name: mass for name, (mass, _) in held_masses.items()} | nodes,
             inertia_kg_m2={name: inertia for name, (_, inertia) in held_masses.items()},
             centre_m=dict(self._model.centre),
             gravity_m_s2=(float(gravity[0]), float(gravity[1])),
             start=self.read(),
-            settings=dict(self._settings) | held(self._asked, self._solver),
+            settings=dict(self._settings) | held(self._asked, self._solver, self._settings),
             velocity_shift=0.0,
             acceleration_shift=0.0,
             springs=self._springs.held(),
+            beams=held_beams(self._scene, self._model),
         )
 
     def step(self, steps: int) -> None:
@@ -161,10 +163,10 @@ class ExudynSession:
         # Of a step that was cut the last part ends at the sample.
         rows = np.searchsorted(clock, (at + 1e-6) * self._dt, side="right") - 1
         there = np.abs(clock[rows] - at * self._dt) < 1e-3 * self._dt
-        levels = np.stack([each[rows, 1:] for each in kept], axis=1)
-        good = there & np.isfinite(levels).all(axis=(1, 2))
+        levels = [each[rows, 1:] for each in kept]
+        good = np.logical_and.reduce([there, *(np.isfinite(own).all(axis=1) for own in levels)])
         count = len(at) if good.all() else int(np.argmin(good))
-        poses = self._shown(levels[:count], at[:count])
+        poses = self._shown([own[:count] for own in levels], at[:count])
         diverged = bool(stopped) or count < len(at)
         warnings = tuple(dict.fromkeys(self._heard))
         return Log(poses, (count - 1) * every, diverged, warnings, wall, stopped)
@@ -187,12 +189,13 @@ class ExudynSession:
     def read(self) -> Poses:
         """The current state."""
         state = self._system.systemData
-        levels = [np.array(getattr(state, f"GetODE2{level}")()) for level in LEVELS]
-        bodies = np.stack(levels).reshape(len(LEVELS), -1, WIDTH).swapaxes(0, 1)
-        return self._shown(bodies.reshape(1, -1, WIDTH), np.array([float(self._done)]))
+        ends = np.cumsum(widths(self._model))[:-1]
+        levels = [np.split(np.array(getattr(state, f"GetODE2{level}")()), ends) for level in LEVELS]
+        of_nodes = [own[None] for node in zip(*levels, strict=True) for own in node]
+        return self._shown(of_nodes, np.array([float(self._done)]))
 
-    def _shown(self, levels: Array, at: Array) -> Poses:
-        """Poses of samples, after so many steps, of the three levels of each body in turn."""
+    def _shown(self, levels: Sequence[Array], at: Array) -> Poses:
+        """Poses of samples, after so many steps, of the three levels of each node in turn."""
         return Poses(self._start_s + self._dt * at, body_poses(self._model, levels))
 
     def _advance(self, steps: int, *, log: bool) -> str:

@@ -11,13 +11,19 @@ from sim.engine import Settings, SettingValue
 from sim.exudyn.library import exu, quiet
 from sim.exudyn.settings import BY_NEED, MOST_DENSE
 
+FREE = 1e-9
+"""A singular value of the constraints, over the largest, of a motion that they do not hold."""
 
-def simulation(settings: Settings, dt_s: float, *, of_rates: bool = False) -> Any:
+
+def simulation(
+    settings: Settings, dt_s: float, *, of_rates: bool = False, rounding_n: float = 0.0
+) -> Any:
     """exudyn's settings of a simulation that writes no files and prints nothing of its own.
 
     Its sensors keep every step, and no step is longer than ``dt_s``. With loads ``of_rates``
     Newton's method takes into account how these change in a step: without, it does not converge
-    where a motor is steep.
+    where a motor is steep. A residual below what rounding leaves of the forces of beams is never
+    found: where it is asked for, steps fail and are cut, and each cut excites what vibrates.
     """
     asked = exu.SimulationSettings()
     asked.solution.file.write = False
@@ -33,7 +39,8 @@ def simulation(settings: Settings, dt_s: float, *, of_rates: bool = False) -> An
     stepping.generalizedAlpha.spectralRadius = float(settings["spectral_radius"])
     newton = stepping.newton
     newton.relativeTolerance = float(settings["relative_tolerance"])
-    newton.absoluteTolerance = float(settings["absolute_tolerance"])
+    least = float(settings["beam_rounding"]) * rounding_n
+    newton.absoluteTolerance = max(float(settings["absolute_tolerance"]), least)
     newton.maxIterations = int(settings["iterations"])
     newton.useModifiedNewton = settings["jacobian"] != "each-iteration"
     newton.modifiedNewtonJacUpdatePerStep = settings["jacobian"] == "each-step"
@@ -77,6 +84,25 @@ def constraints(solver: Any, system: Any) -> Array:
     return np.array(solver.GetSystemJacobian())[count:, :count]
 
 
+def per_drive(solver: Any, system: Any) -> Array:
+    """The accelerations of all coordinates over that which the drive asks for, the last of the
+    constraints; afterwards the solver has to be initialized again.
+
+    Where links bend the constraints leave some free, which follow by their inertia.
+    """
+    held_by = constraints(solver, system)
+    asked = np.zeros(len(held_by))
+    asked[-1] = 1.0
+    moved = np.asarray(np.linalg.lstsq(held_by, asked, rcond=None)[0])
+    _, sizes, ways = np.linalg.svd(held_by)
+    free = ways[np.count_nonzero(sizes > FREE * sizes[0]) :]
+    if len(free):
+        solver.ComputeMassMatrix(system)
+        heavy = free @ np.array(solver.GetSystemMassMatrix())
+        moved -= free.T @ np.linalg.lstsq(heavy @ free.T, heavy @ moved, rcond=None)[0]
+    return moved
+
+
 def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
     """Those of the constraints that go with accelerations, as the system stands; afterwards the
     solver has to be initialized again."""
@@ -88,11 +114,11 @@ def multipliers(solver: Any, system: Any, accelerations: Array) -> Array:
     return np.asarray(np.linalg.lstsq(held_by.T, left, rcond=None)[0])
 
 
-def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
+def held(asked: Any, solver: Any, settings: Settings) -> dict[str, SettingValue]:
     """The settings by our names, as the solver and what it is given hold them.
 
     What ``linear_solver`` came to is ``linear_solver_used``; ``loads_jacobian_used`` is there where
-    loads go by speeds.
+    loads go by speeds, ``absolute_tolerance_used`` where it is that of beams.
     """
     newton, linear = solver.newton, asked.linearSolver
     trapezoidal = asked.timeIntegration.generalizedAlpha.useIndex2Constraints
@@ -109,6 +135,8 @@ def held(asked: Any, solver: Any) -> dict[str, SettingValue]:
         "linear_solver_used": str(linear.solverType.name),
         "ignore_singular": "enable" if linear.ignoreSingularJacobian else "disable",
     }
+    if settings["beam_rounding"] and newton.absoluteTolerance > settings["absolute_tolerance"]:
+        told["absolute_tolerance_used"] = told.pop("absolute_tolerance")
     if asked.timeIntegration.computeLoadsJacobian:
         told["loads_jacobian_used"] = "enable"
     return told

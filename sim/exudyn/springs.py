@@ -15,7 +15,7 @@ from models.scene import Scene
 from models.spring_ends import line_ends, whole_turns
 from models.springs import LineSpring, PinSpring, SlideSpring
 from sim.exudyn.library import items
-from sim.exudyn.system import Index, PlaneSystem
+from sim.exudyn.plane_system import Index, PlaneSystem
 
 Held = tuple[float, float, float]
 """Rate, damping, and the length or angle at which it is slack."""

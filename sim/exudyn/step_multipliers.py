@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from models.array import Array
-from sim.exudyn.system import Index
+from sim.exudyn.plane_system import Index
 
 
 class Multipliers:

@@ -3,82 +3,20 @@
 The node of a body stands at its centre of mass; where that lies in the link's own frame is kept.
 All bodies have three coordinates, the driven crank too: what drives it is one constraint more. A
 pin of k bodies is k - 1 hinges. What runs on a line is a prismatic joint whose second marker, on
-the guide, lies on the line; a massless block is one that leaves the angle free.
+the guide, lies on the line; a massless block is one that leaves the angle free. The nodes of beams
+have a tangent in place of an angle.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
-
 from models.errors import EngineError
-from models.joints import (
-    Prism,
-    Slot,
-    bodies,
-    joints,
-    less,
-    local_point,
-    riding_body,
-    sliding_angle,
-    turned,
-)
+from models.joints import Prism, Slot, bodies, joints, riding_body, sliding_angle, turned
 from models.motion import State
 from models.poses import centre_of, frames, mass_of
-from models.scene import GROUND, Point, Scene
+from models.scene import GROUND, Scene
+from sim.exudyn.beams import add_elements, add_node
 from sim.exudyn.library import exu, items
-
-ANGLE = 2
-"""The coordinate of a node that is its angle."""
-Index = Any
-"""exudyn's own numbers of nodes, objects, markers and loads."""
-
-
-@dataclass(frozen=True)
-class PlaneSystem:
-    """A system that is not assembled yet: of the bodies by name, in the order they were added.
-
-    ``centre`` is where the node of a body lies in the frame of its link [m]. ``hinge`` has, by pin,
-    the joints of its first body with each of the others, ``prismatic`` the joint of each slider;
-    ``weight`` is the load of each body's gravity. A system lives as long as its ``container``.
-    """
-
-    container: Any
-    system: Any
-    ground: Index
-    body: dict[str, Index] = field(default_factory=dict)
-    node: dict[str, Index] = field(default_factory=dict)
-    centre: dict[str, Point] = field(default_factory=dict)
-    hinge: dict[str, dict[tuple[str, str], Index]] = field(default_factory=dict)
-    prismatic: dict[str, Index] = field(default_factory=dict)
-    weight: dict[str, Index] = field(default_factory=dict)
-
-    def marker(self, scene: Scene, name: str, point: str) -> Index:
-        """A new marker at a point of a body or of the ground."""
-        return self.marker_at(name, local_point(scene, name, point))
-
-    def marker_at(self, name: str, place: Point) -> Index:
-        """A new marker at a place in the frame of a body or of the ground [m]."""
-        body = self.ground if name == GROUND else self.body[name]
-        x, y = less(place, self.centre.get(name, (0.0, 0.0)))
-        return self.system.AddMarker(
-            items.MarkerBodyRigid(bodyNumber=body, localPosition=[x, y, 0.0])
-        )
-
-    def crank_markers(self, link: str) -> list[Index]:
-        """New markers of an angle of the ground and of that of a body."""
-        return [self.angle_marker(GROUND), self.angle_marker(link)]
-
-    def angle_marker(self, name: str) -> Index:
-        """A new marker of the angle of a body or of the ground, which both count from the start."""
-        if name == GROUND:
-            node, coordinate = self.system.AddNode(items.NodePointGround()), 0
-        else:
-            node, coordinate = self.node[name], ANGLE
-        return self.system.AddMarker(
-            items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate)
-        )
+from sim.exudyn.plane_system import PlaneSystem
 
 
 def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
@@ -96,7 +34,11 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
     ties = joints(scene)
     held = {prism.body for prism in ties.prisms}
     where = frames(scene, state)
+    nodes = {node for beam in scene.beams.values() for node in beam.nodes}
     for name in bodies(scene):
+        if name in nodes:
+            add_node(made, name, where[name], state)
+            continue
         mass, inertia = mass_of(scene, name)
         if not (prescribed and name == scene.driver.link):
             _refuse_massless(name, mass, inertia, turns=name not in held)
@@ -112,7 +54,9 @@ def build(scene: Scene, state: State, *, prescribed: bool) -> PlaneSystem:
         made.body[name] = system.AddObject(
             items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=made.node[name])
         )
-        _weigh(scene, made, name)
+        made.weigh(scene, name, made.body[name])
+    for beam in scene.beams.values():
+        add_elements(scene, made, beam)
     _join(scene, made)
     return made
 
@@ -123,15 +67,6 @@ def _refuse_massless(name: str, mass: float, inertia: float, *, turns: bool) -> 
         raise EngineError(
             f"{name}: mass_kg {mass:g}, inertia_kg_m2 {inertia:g}; exudyn moves no body without "
             "both, give them"
-        )
-
-
-def _weigh(scene: Scene, made: PlaneSystem, name: str) -> None:
-    """Add gravity to a body."""
-    if any(scene.gravity_m_s2):
-        marker = made.system.AddMarker(items.MarkerBodyMass(bodyNumber=made.body[name]))
-        made.weight[name] = made.system.AddLoad(
-            items.LoadMassProportional(markerNumber=marker, loadVector=[*scene.gravity_m_s2, 0.0])
         )
 
 
@@ -170,9 +105,3 @@ def _join(scene: Scene, made: PlaneSystem) -> None:
 def _kept_angle(slide: Prism | Slot) -> float:
     """The angle that a sliding body keeps to its guide [rad]; any for a point on a line."""
     return sliding_angle(slide.slider) if isinstance(slide, Prism) else 0.0
-
-
-def masses(made: PlaneSystem) -> Mapping[str, tuple[float, float]]:
-    """Mass [kg] and inertia about the centre of mass [kg m^2] of the bodies, as exudyn has them."""
-    held = {name: made.system.GetObject(body) for name, body in made.body.items()}
-    return {name: (float(o["mass"]), float(o["inertia"])) for name, o in held.items()}

@@ -22,6 +22,7 @@ SAYS = (
     "applies_loads",
     "applies_constant_friction",
     "applies_springs",
+    "applies_beams",
 )
 """What is yes or no."""
 CALLED = ("version", "check", "open", "holds", "placing", "in_seconds")

@@ -17,7 +17,7 @@ from reports.output.provenance import provenance
 from reports.output.write import check_outputs, write
 from reports.plan.chosen import chosen_engines
 from reports.selftest.all_faults import chosen_faults
-from reports.selftest.elastic_runs import ELASTIC_RUNS
+from reports.selftest.elastic_runs import BENDING
 from reports.selftest.fault import PROFILE, RunKind
 from reports.selftest.free_runs import FREE_RUNS
 from reports.selftest.table import place_row, show
@@ -99,10 +99,12 @@ def _write(
 def _settings(verdicts: Sequence[Verdict]) -> dict[str, object]:
     """How long the runs are, and at which step; free ones by their scene."""
     kinds = {one.fault.kind for one in verdicts}
-    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free", "elastic"} else {}
+    turn = {"steps_per_turn": STEPS, "turns": 1} if kinds - {"free", *BENDING} else {}
     runs = {scene: {"dt_s": dt_s, "steps": steps} for scene, (dt_s, steps) in FREE_RUNS.items()}
-    bent = {scene: vars(own) for scene, own in ELASTIC_RUNS.items()}
-    own = {"free": runs, "elastic": bent}
+    own: dict[RunKind, object] = {"free": runs}
+    own |= {
+        kind: {scene: vars(each) for scene, each in bent.items()} for kind, bent in BENDING.items()
+    }
     return {"profile": PROFILE, **turn, **{kind: own[kind] for kind in own if kind in kinds}}
 
 

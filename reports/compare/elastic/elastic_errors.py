@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from models.motion import Motion
-from reports.compare.elastic.beam_theory import LEAST
 from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.elastic.elastic_facts import ElasticFacts
 from reports.compare.error_rows import instants_of, whole_row
@@ -49,17 +49,15 @@ def _theory_rows(beside: ElasticBeside, other: Motion, kind: ErrorKind) -> Itera
 def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     """What is known beside the errors."""
     truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
-    share = 1.0 if truth.is_exact else (LEAST / truth.chain.count) ** 2
-    apart = _apart_by_name(beside, truth.few.at(theory.looks_s), theory.looked)
     return ElasticFacts(
-        segments=truth.chain.count,
-        springs="corrected" if truth.chain.corrected else "plain",
+        segments=truth.cut.count,
+        springs=truth.springs,
         ratio=theory.lowest_rad_s / beside.scene.driver.law.peak_speed_rad_s,
         cycles=theory.cycles_per_s * float(time_s[-1] - time_s[0]),
         slender=beside.scene.longest_m / theory.largest_m,
         doubt=theory.doubt_m / theory.largest_m,
         linear=theory.linear_m / theory.largest_m,
-        apart={name: share * size for name, size in apart.items()},
+        apart=truth.apart(partial(_apart_by_name, beside)),
         estimated=not truth.is_exact,
     )
 

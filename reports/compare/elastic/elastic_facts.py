@@ -8,14 +8,15 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class ElasticFacts:
-    """``segments`` were given for each link, with springs of a kind; ``ratio`` is their lowest
-    frequency over the driver's speed, and ``cycles`` how often they swing at it over the run, 0
-    where the motion is periodic. ``slender`` is the longest link over the largest deflection.
+    """``segments`` were given for each link, with springs of a kind, or as many elements where that
+    is "beam"; ``ratio`` is their lowest frequency over the driver's speed, and ``cycles`` how often
+    they swing at it over the run, 0 where the motion is periodic. ``slender`` is the longest link
+    over the largest deflection.
 
     As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
     what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
     chain is from the beam, as a pure number by quantity; where the motion is not periodic it is
-    ``estimated`` from the chain of a few segments.
+    ``estimated`` from the chain of a few segments, and of elements from what they lock by.
     """
 
     segments: int
@@ -27,6 +28,11 @@ class ElasticFacts:
     linear: float
     apart: Mapping[str, float] = field(default_factory=dict)
     estimated: bool = False
+
+    @property
+    def pieces(self) -> str:
+        """How many there are of what, in words."""
+        return f"{self.segments} {'elements' if self.springs == 'beam' else 'segments'}"
 
     @property
     def chain(self) -> float:

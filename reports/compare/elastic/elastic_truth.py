@@ -2,41 +2,49 @@
 
 An engine of rigid bodies is given each elastic link as a chain of segments. Its error is of two
 parts, which different things mend: the exact chain beside the beam (more segments), and the engine
-beside the exact chain (another step, other settings). Both truths have no engine in them.
+beside the exact chain (another step, other settings). Both truths have no engine in them. One that
+has beams of its own may be given these: there is the beam alone to hold it to.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from analytic.elastic.discretisation import Segments
+from analytic.elastic.node_start import node_start
 from analytic.elastic.segment_start import segment_start
 from analytic.elastic.stiffness import fastest_rad_s
 from analytic.kinematics import solve
 from models.array import Array
+from models.beamed import BeamedScene
 from models.controlled import Controlled
+from models.cut_links import CutScene
 from models.errors import CrankcheckError, EngineError
 from models.motion import Motion, State
 from models.scene import Same, Scene
 from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
+from reports.compare.elastic.cut import cut
 from reports.compare.elastic.elastic_beside import ElasticBeside
 from reports.compare.elastic.exact_chain import ExactChain
 from reports.compare.elastic.folded_run import folded_run
 from sim.engine import Run
 
+Apart = dict[str, float]
 STEADY = 1.5
 """Of the step times the fastest frequency of the chain: explicit methods come apart from 2 on, or
 from 2.8."""
 
 
 def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
-    """The truth of a scene that is run until then [s], its elastic links in so many segments.
+    """The truth of a scene that is run until then [s], its elastic links in so many segments, or
+    elements of a beam.
 
-    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches;
+    Raises EngineError where there are no such: fewer than two, segments of a link that stretches;
     and of a scene that engines are not held to.
     """
     if why := unheld(scene):
@@ -44,6 +52,13 @@ def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> Ela
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
     return _truth(Same(scene), count, springs, until_s)
+
+
+def chain_truth(scene: Scene, count: int, until_s: float) -> ChainTruth:
+    """As `elastic_truth`, of so many segments with plain springs."""
+    truth = elastic_truth(scene, count, "plain", until_s)
+    assert isinstance(truth, ChainTruth)
+    return truth
 
 
 def unheld(scene: Scene) -> str:
@@ -64,11 +79,12 @@ def unheld(scene: Scene) -> str:
 @lru_cache(maxsize=4)
 def _truth(same: Same, count: int, springs: str, until_s: float) -> ElasticTruth:
     try:
-        chain = SegmentedScene(same.scene, count, springs == "corrected")
-        assert chain.rigid  # made now, to be refused now
+        pieces = cut(same.scene, count, springs)
+        assert pieces.given  # made now, to be refused now
     except CrankcheckError as error:
         raise EngineError(str(error)) from None
-    return ElasticTruth(same.scene, chain=chain, theory=_theory(same, until_s))
+    kind = ChainTruth if isinstance(pieces, SegmentedScene) else ElasticTruth
+    return kind(same.scene, cut=pieces, theory=_theory(same, until_s))
 
 
 @lru_cache(maxsize=2)
@@ -79,47 +95,41 @@ def _theory(same: Same, until_s: float) -> BeamTheory:
 
 @dataclass(frozen=True)
 class ElasticTruth(Truth):
-    """The stiffened beam of ``theory`` as the reference; ``chain`` is what an engine is given."""
+    """The stiffened beam of ``theory`` as the reference; an engine is given the scene as ``cut``:
+    beams of its own, unless it is a `ChainTruth`."""
 
-    chain: SegmentedScene = field(kw_only=True)
+    cut: CutScene = field(kw_only=True)
     theory: BeamTheory = field(kw_only=True)
-    _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
 
-    @cached_property
-    def exact(self) -> ExactChain:
-        """The chain that is given, without an engine."""
-        return self.theory.chain(self.chain.count, corrected=self.chain.corrected)
+    @property
+    def springs(self) -> str:
+        """What is between the pieces."""
+        return "beam"
 
     @property
     def given(self) -> Scene:
-        return self.chain.rigid
+        return self.cut.given
 
     @property
     def is_exact(self) -> bool:
-        """Whether the exact chain is soon found: its periodic motion is, while it takes minutes to
-        integrate one of many segments."""
-        return self.theory.is_periodic or self.chain.count <= LEAST
+        """Whether what is given is soon found without an engine."""
+        return False
 
-    @cached_property
-    def few(self) -> ExactChain:
-        """The chain that is given, or one of few segments in its place."""
-        if self.is_exact:
-            return self.exact
-        return self.theory.chain(LEAST, corrected=self.chain.corrected)
+    def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
+        """How far what is given is from the beam, as a pure number by quantity, ``by_name`` of two
+        motions; an estimate of what elements lock by, where it is not exact."""
+        largest = self.theory.largest_m
+        return {"deflection": max(one.locked(largest) for one in self.given.beams.values())}
 
     @cached_property
     def start(self) -> State:
-        """That of the chain."""
-        return segment_start(self.chain, self.theory.shape, self.exact.motion)
+        """That of the nodes of the beam."""
+        assert isinstance(self.cut, BeamedScene)
+        return node_start(self.cut, self.theory.shape)
 
     def look(self) -> None:
         """Find the start of the beam. Raises CrankcheckError where there is none."""
         assert self.theory.beam.first
-
-    @cached_property
-    def fastest_rad_s(self) -> float:
-        """The highest angular frequency of the chain."""
-        return fastest_rad_s(self.scene, Segments(self.chain.count, self.chain.corrected))
 
     def _solved(self, time_s: Array) -> Motion:
         rigid = solve(self.scene, time_s, links=(), points=(), sliders=(), bound=False)
@@ -129,8 +139,72 @@ class ElasticTruth(Truth):
     def with_forces_at(self, time_s: Array) -> Motion:
         return self.at(time_s)
 
+    def exact_at(self, time_s: Array) -> Motion | None:
+        """The exact chain at times (T,) [s]; None of a beam."""
+        return None
+
+    def logged(self, run: Run) -> Run:
+        """A run of what was given as one of the scene."""
+        return folded_run(self.cut, run)
+
+    def beside(self, run: Run) -> Beside | None:
+        """The run, with its elastic links as such, beside the beam; None where it logged
+        nothing."""
+        motion = run.motion
+        if motion is None or not motion.time_s.size:
+            return None
+        return ElasticBeside(self, run, motion, elastic=self)
+
+
+@dataclass(frozen=True)
+class ChainTruth(ElasticTruth):
+    """As `ElasticTruth` of an engine that is given chains of segments, whose exact motion is known
+    as well."""
+
+    _chains: dict[bytes, Motion] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def chain(self) -> SegmentedScene:
+        """What an engine is given."""
+        assert isinstance(self.cut, SegmentedScene)
+        return self.cut
+
+    @property
+    def springs(self) -> str:
+        return "corrected" if self.chain.corrected else "plain"
+
+    @cached_property
+    def exact(self) -> ExactChain:
+        """The chain that is given, without an engine."""
+        return self.theory.chain(self.chain.count, corrected=self.chain.corrected)
+
+    @property
+    def is_exact(self) -> bool:
+        """Its periodic motion is soon found, while it takes minutes to integrate one of many
+        segments."""
+        return self.theory.is_periodic or self.chain.count <= LEAST
+
+    def apart(self, by_name: Callable[[Motion, Motion], Apart]) -> Apart:
+        """Of the chain that is given, or estimated from one of few segments in its place."""
+        few, share = self.exact, 1.0
+        if not self.is_exact:
+            few = self.theory.chain(LEAST, corrected=self.chain.corrected)
+            share = (LEAST / self.cut.count) ** 2
+        found = by_name(few.at(self.theory.looks_s), self.theory.looked)
+        return {name: share * size for name, size in found.items()}
+
+    @cached_property
+    def start(self) -> State:
+        """That of the chain."""
+        return segment_start(self.chain, self.theory.shape, self.exact.motion)
+
+    @cached_property
+    def fastest_rad_s(self) -> float:
+        """The highest angular frequency of the chain."""
+        return fastest_rad_s(self.scene, Segments(self.chain.count, self.chain.corrected))
+
     def exact_at(self, time_s: Array) -> Motion:
-        """The exact chain; of the last instants that were asked for it is kept."""
+        """Of the last instants that were asked for it is kept."""
         instants = time_s.tobytes()
         if instants not in self._chains:
             motion = self.exact.at(time_s)
@@ -139,8 +213,8 @@ class ElasticTruth(Truth):
         return self._chains[instants]
 
     def logged(self, run: Run) -> Run:
-        """A run of the chain as one of the scene; one that came apart says which step would do."""
-        done = folded_run(self.chain, run)
+        """One that came apart says which step would do."""
+        done = super().logged(run)
         stiff = run.dt_s * self.fastest_rad_s
         if done.status != "diverged" or stiff <= STEADY:
             return done
@@ -151,11 +225,3 @@ class ElasticTruth(Truth):
             f"{self.fastest_rad_s:.4g} rad/s, times the step {stiff:.2g}, and explicit steps hold "
             f"up to about {STEADY}: take {needed} steps a turn, or fewer segments",
         )
-
-    def beside(self, run: Run) -> Beside | None:
-        """The run, with its elastic links as such, beside the beam; None where it logged
-        nothing."""
-        motion = run.motion
-        if motion is None or not motion.time_s.size:
-            return None
-        return ElasticBeside(self, run, motion, elastic=self)

@@ -1,4 +1,4 @@
-"""A run of a chain of segments as one of the scene whose elastic links they are."""
+"""A run of the pieces of elastic links as one of the scene whose links they are."""
 
 from __future__ import annotations
 
@@ -6,28 +6,28 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from models.array import Array
+from models.cut_links import CutScene
 from models.forces import Forces
-from models.segmented import SegmentedScene
 from sim.engine import Run
 
 
-def folded_run(chain: SegmentedScene, run: Run) -> Run:
-    """Links, points and pins of the scene; the pins between segments are told by the deflection,
+def folded_run(cut: CutScene, run: Run) -> Run:
+    """Links, points and pins of the scene; the pins between pieces are told by the deflection,
     which is off where they come apart."""
     motion = run.motion
     if motion is None:
         return run
-    inner = {node for name in chain.scene.elastic for node in chain.nodes(name)[1:-1]}
-    folded = chain.folded(motion)
+    inner = {node for name in cut.scene.elastic for node in cut.nodes(name)[1:-1]}
+    folded = cut.folded(motion)
     if folded.forces is not None:
-        folded = replace(folded, forces=_without(folded.forces, inner, _links(chain)))
+        folded = replace(folded, forces=_without(folded.forces, inner, _links(cut)))
     gaps = {name: gap for name, gap in run.gaps.items() if name not in inner}
     return replace(run, motion=folded, gaps=gaps)
 
 
-def _links(chain: SegmentedScene) -> dict[str, str]:
+def _links(cut: CutScene) -> dict[str, str]:
     """The elastic link by segment."""
-    return {part: name for name in chain.scene.elastic for part in chain.segments(name)}
+    return {part: name for name in cut.scene.elastic for part in cut.bodies(name)}
 
 
 def _without(forces: Forces, inner: set[str], links: Mapping[str, str]) -> Forces:

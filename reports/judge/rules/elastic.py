@@ -29,13 +29,14 @@ class TruthEnds:
             return None
         elastic, own = errors.elastic, engine_share(errors)
         parts = (
-            f"of the largest deflection the engine leaves {own:.1e}, {elastic.segments} segments "
+            f"of the largest deflection the engine leaves {own:.1e}, {elastic.pieces} "
             f"{elastic.chain:.1e}{' (estimated)' if elastic.estimated else ''}, the beam's own "
             f"doubt is {elastic.doubt:.1e}, and the linear theory is off by {elastic.linear:.1e}"
         )
         if own > max(elastic.chain, elastic.doubt):
             return Finding(self.id, "pass", f"the engine is what is off: {parts}", own)
-        ends = "the segments end" if elastic.chain > elastic.doubt else "the truth ends"
+        ends = f"the {elastic.pieces.split()[1]} end"
+        ends = ends if elastic.chain > elastic.doubt else "the truth ends"
         level: Level = "advice" if elastic.doubt > UNSURE else "pass"
         return Finding(self.id, level, f"{ends} before the engine does: {parts}", own)
 

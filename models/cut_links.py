@@ -1,0 +1,179 @@
+"""A scene whose elastic links are cut into bodies: what engines are given, and its motion back.
+
+::
+
+    A o-----@-----@-----@ ... -----o B        n pieces, n - 1 nodes between them and one at each pin
+
+The bodies are the pieces (`models.segmented`) or the nodes (`models.beamed`).
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from models.array import Array
+from models.beams import Beam
+from models.elastic_line import Line, line_of
+from models.errors import CrankcheckError
+from models.loads import Load
+from models.motion import ElasticMotion, LinkMotion, Motion
+from models.scene import Link, Point, Scene
+from models.springs import PinSpring, Spring
+from models.start import Start
+
+
+@dataclass(frozen=True)
+class CutScene(ABC):
+    """``scene`` with its elastic links in ``count`` pieces each. Raises CrankcheckError for fewer
+    than two, and where the scene has a name that these need."""
+
+    scene: Scene
+    count: int
+
+    def __post_init__(self) -> None:
+        if self.count < 2:
+            raise CrankcheckError(
+                f"{self.scene.name}: found {self.count} segments; a link bends with 2 or more"
+            )
+        made = {name for link in self.scene.elastic for name in self.bodies(link)}
+        nodes = {node for link in self.scene.elastic for node in self.nodes(link)[1:-1]}
+        twice = (made & {*self.scene.links}) | (nodes & {*self._named})
+        if twice:
+            raise CrankcheckError(
+                f"{self.scene.name}: the segments of its elastic links need the name "
+                f"{min(twice)}, which the scene has; give that another one"
+            )
+
+    @abstractmethod
+    def bodies(self, link: str) -> tuple[str, ...]:
+        """The names of the bodies that an elastic link is cut into, from its first pin on; the
+        first of them counts its turns."""
+
+    @abstractmethod
+    def _links(self, link: Link, line: Line) -> dict[str, Link]:
+        """These bodies."""
+
+    @abstractmethod
+    def _carried(self, line: Line, place: Point) -> tuple[int, Point]:
+        """Which of the bodies carries a place of the link, and where it is in that one's frame."""
+
+    def _springs(self, link: str) -> Mapping[str, Spring]:
+        """Those between these bodies."""
+        return {}
+
+    def _beam(self, link: str) -> Beam | None:
+        """The beam that joins them."""
+        return None
+
+    def nodes(self, link: str) -> tuple[str, ...]:
+        """The points between and at the ends of its pieces."""
+        first, last = line_of(self.scene, link).pins
+        return (first, *(f"{link}-{i}-{i + 1}" for i in range(1, self.count)), last)
+
+    @cached_property
+    def given(self) -> Scene:
+        """The scene that an engine is given."""
+        links: dict[str, Link] = {}
+        springs = {name: self._held(spring) for name, spring in self.scene.springs.items()}
+        for name, link in self.scene.links.items():
+            if name in self.scene.elastic:
+                links |= self._links(link, line_of(self.scene, name))
+                springs |= self._springs(name)
+            else:
+                links[name] = link
+        loads = {name: self._put(load) for name, load in self.scene.loads.items()}
+        beams = {name: beam for name in self.scene.elastic if (beam := self._beam(name))}
+        return replace(
+            self.scene,
+            links=links,
+            springs=springs,
+            loads=loads,
+            beams=beams,
+            elastic={},
+            start=Start(),
+        )
+
+    def _carrier(self, link: str, point: str) -> str:
+        """The body that carries a named point of an elastic link."""
+        place = self.scene.links[link].points[point]
+        return self.bodies(link)[self._carried(line_of(self.scene, link), place)[0]]
+
+    def _put(self, load: Load) -> Load:
+        """A load on the body that has its point."""
+        if load.body not in self.scene.elastic or load.point is None:
+            return load
+        lean = line_of(self.scene, load.body).lean_rad if load.frame == "body" else 0.0
+        return replace(
+            load,
+            body=self._carrier(load.body, load.point),
+            direction_rad=load.direction_rad - lean,
+        )
+
+    def _held(self, spring: Spring) -> Spring:
+        """A spring in a pin between the bodies that meet there."""
+        if not isinstance(spring, PinSpring):
+            return spring
+        bodies, ahead = [], []
+        for body in spring.bodies:
+            elastic = body in self.scene.elastic
+            bodies.append(self._carrier(body, spring.point) if elastic else body)
+            ahead.append(line_of(self.scene, body).lean_rad if elastic else 0.0)
+        free = spring.free + ahead[1] - ahead[0]
+        return replace(spring, bodies=(bodies[0], bodies[1]), free=free)
+
+    def folded(self, motion: Motion) -> Motion:
+        """A motion of the bodies as one of the scene with its elastic links."""
+        points = {name: motion.points[name] for name in self._named}
+        links = {name: own for name, own in motion.links.items() if name in self.scene.links}
+        elastic = {}
+        for name in self.scene.elastic:
+            links[name] = self._line_motion(motion, name)
+            elastic[name] = self._shape(motion, name)
+        in_order = {name: links[name] for name in self.scene.links}
+        return replace(motion, links=in_order, points=points, elastic=elastic)
+
+    @property
+    def _named(self) -> tuple[str, ...]:
+        """The points of the scene itself."""
+        own = {point: None for link in self.scene.links.values() for point in link.points}
+        own |= dict.fromkeys(self.scene.ground)
+        own |= {slider.point: None for slider in self.scene.sliders.values()}
+        return tuple(own)
+
+    def _line_motion(self, motion: Motion, link: str) -> LinkMotion:
+        """The line between the two pins of an elastic link, as that of a rigid one."""
+        line = line_of(self.scene, link)
+        a, b = (motion.points[pin] for pin in line.pins)
+        way, drift, push = (
+            getattr(b, key) - getattr(a, key) for key in ("position", "velocity", "acceleration")
+        )
+        far = np.hypot(way[:, 0], way[:, 1])
+        along = way / far[:, None]
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        omega = (across * drift).sum(axis=1) / far
+        alpha = ((across * push).sum(axis=1) - 2.0 * omega * (along * drift).sum(axis=1)) / far
+        theta = np.arctan2(way[:, 1], way[:, 0]) - line.lean_rad
+        near = motion.links[self.bodies(link)[0]].theta - line.lean_rad
+        theta = theta + math.tau * np.round((near - theta) / math.tau)
+        return LinkMotion(theta, omega, alpha)
+
+    def _shape(self, motion: Motion, link: str) -> ElasticMotion:
+        """How it is bent, and how far its pins are apart."""
+        first, last = (motion.points[pin].position for pin in line_of(self.scene, link).pins)
+        way = last - first
+        far = np.hypot(way[:, 0], way[:, 1])
+        across = np.stack([-way[:, 1], way[:, 0]], axis=1) / far[:, None]
+        middle = ((self._middle(motion, link) - first) * across).sum(axis=1)
+        return ElasticMotion(middle, far - line_of(self.scene, link).length_m)
+
+    def _middle(self, motion: Motion, link: str) -> Array:
+        """The middle of an elastic link (T, 2) [m]: a node, or between two."""
+        nodes = self.nodes(link)
+        low, high = nodes[self.count // 2], nodes[(self.count + 1) // 2]
+        return 0.5 * (motion.points[low].position + motion.points[high].position)

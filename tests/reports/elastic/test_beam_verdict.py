@@ -1,0 +1,108 @@
+"""Engines that are given beams: what is compared, what is not there, and who has none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from analytic.elastic.any_speed import at_speed
+from analytic.elastic.natural import lowest_rad_s
+from models.files import load_scene
+from models.scene import Scene
+from reports.judge.cell import Cell, Checked, check
+from reports.judge.rows import cell_row
+from reports.plan.elastic import held_steps
+
+STEPS = 1440
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return load_scene("fourbar-elastic")
+
+
+def cell(scene: Scene, elements: int = 8, engine: str = "exudyn", **changes: object) -> Cell:
+    """A turn."""
+    dt_s = scene.driver.law.period_s / STEPS
+    asked = Cell(scene, engine, "tuned", dt_s, STEPS, converge=False)
+    return replace(asked, segments=elements, springs="beam", **changes)  # type: ignore[arg-type]
+
+
+def off(checked: Checked, quantity: str = "deflection") -> float:
+    assert checked.status == "ok", checked.reason
+    assert checked.errors is not None
+    worst = checked.errors.worst(quantity)
+    assert worst is not None
+    return worst.pure
+
+
+@pytest.fixture(scope="module")
+def checked(scene: Scene) -> Checked:
+    return check(cell(scene, with_forces=True))
+
+
+def test_eight_elements_are_within_a_thousandth_of_the_beam(checked: Checked) -> None:
+    assert checked.verdict == "within", [finding.text for finding in checked.failures]
+    assert off(checked) < 1e-4
+    assert max(off(checked, "reaction"), off(checked, "torque")) < 1e-4
+
+
+def test_nothing_is_compared_with_a_chain_of_segments(checked: Checked) -> None:
+    assert checked.errors is not None
+    assert checked.errors.worst("segments") is None
+    assert {row.kind for row in checked.errors.rows} == {"total", "start"} | {
+        row.kind for row in checked.errors.rows if row.kind != "chain"
+    }
+    row = cell_row(checked)
+    assert (row["segments"], row["springs"]) == (8.0, "beam")
+    said = [finding.text for finding in checked.findings if finding.rule == "CC134"]
+    assert "8 elements" in said[0]
+
+
+def test_a_beam_near_its_frequency_is_as_far_off_as_the_theory_of_small_slopes(
+    scene: Scene,
+) -> None:
+    """Bent by a half of a per cent of its length: slopes of 0.017, whose square is left out."""
+    found = check(cell(at_speed(scene, lowest_rad_s(scene) / 5.5)))
+    assert found.errors is not None
+    assert found.errors.elastic is not None
+    assert found.errors.elastic.doubt == pytest.approx(2.1e-4, rel=0.1)
+    assert off(found) < 2.0 * found.errors.elastic.doubt
+
+
+def test_elements_come_to_the_beam_with_more_than_their_fourth_power(scene: Scene) -> None:
+    few, more = (off(check(cell(scene, count))) for count in (2, 4))
+    assert few > 16.0 * more
+    found = check(cell(scene, 2))
+    assert found.errors is not None
+    assert found.errors.elastic is not None
+    assert found.errors.elastic.chain == pytest.approx(few, rel=0.3)  # what they lock by
+
+
+def test_a_link_that_stretches_is_a_beam(scene: Scene) -> None:
+    own = scene.elastic["coupler"]
+    soft = replace(scene, elastic={"coupler": replace(own, axial_n=8e4)})
+    found = check(cell(soft))
+    assert found.verdict == "within", [finding.text for finding in found.failures]
+    stiff = check(cell(scene))
+    assert off(found, "extension") < 3e-8 < 0.2 * off(stiff, "extension")
+    assert found.errors is not None
+
+
+def test_damping_of_a_beam_is_that_of_the_scene(scene: Scene) -> None:
+    own = scene.elastic["coupler"]
+    found = check(cell(replace(scene, elastic={"coupler": replace(own, damping_s=1e-3)})))
+    assert found.verdict == "within"
+    assert off(found) < 1e-4
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pymunk"])
+def test_an_engine_without_beams_says_so(scene: Scene, engine: str) -> None:
+    found = check(cell(scene, engine=engine))
+    assert found.verdict == "unsupported"
+    assert f"{engine} has no beams (coupler)" in found.reason
+
+
+def test_a_beam_needs_no_short_step(scene: Scene) -> None:
+    assert held_steps(scene, 16, "beam") == 720 < held_steps(scene, 16, "plain")
