@@ -19,7 +19,6 @@ segments that grows as n^2, and with the mass at its end over that of a segment.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
@@ -28,8 +27,8 @@ import pymunk
 from models.array import Array
 from models.errors import EngineError
 from models.scene import Scene
-from models.springs import PinSpring
 from sim.engine import Settings
+from sim.pymunk.chain_springs import chain_springs
 from sim.pymunk.space import SpaceModel
 
 HALVINGS = 3.0
@@ -52,7 +51,7 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
     """
     asked = int(settings["iterations"])
     # A bias that mends little of an error in a step comes apart with no number of them.
-    if float(settings["error_bias"]) > 0.0 or not is_chain(scene):
+    if float(settings["error_bias"]) > 0.0 or not chain_springs(scene):
         return asked
     needed = chain_iterations(model)
     if needed > max(asked, MOST):
@@ -62,12 +61,6 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
             "them; take fewer segments, another engine, or set so many iterations yourself"
         )
     return max(asked, needed)
-
-
-def is_chain(scene: Scene) -> bool:
-    """Whether a link has springs in two pins, as segments of an elastic link have."""
-    springs = [spring for spring in scene.springs.values() if isinstance(spring, PinSpring)]
-    return max(Counter(body for one in springs for body in one.bodies).values(), default=0) > 1
 
 
 def chain_iterations(model: SpaceModel) -> int:

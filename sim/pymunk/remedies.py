@@ -5,7 +5,8 @@ from __future__ import annotations
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.pymunk.convergence import is_chain, iterations
+from sim.pymunk.chain_springs import chain_springs
+from sim.pymunk.convergence import iterations
 from sim.pymunk.space import build
 from sim.remedies import Remedies
 
@@ -17,7 +18,7 @@ TIMES = (2, 5)
 
 def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
     """More iterations than there were."""
-    if is_chain(scene):
+    if chain_springs(scene):
         held = iterations(scene, settings, build(scene, state))
         return [{"iterations": times * held} for times in TIMES]
     return [{"iterations": count} for count in ITERATIONS if count > int(settings["iterations"])]

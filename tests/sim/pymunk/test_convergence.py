@@ -17,7 +17,7 @@ from models.scene import Scene
 from models.segmented import SegmentedScene
 from sim.engine import Run
 from sim.pymunk import convergence
-from sim.pymunk.convergence import HALVINGS, chain_iterations, is_chain, iterations, left_over
+from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
 from sim.pymunk.space import SpaceModel, build
 from sim.remedies import remedies
 from sim.run import run
@@ -140,12 +140,6 @@ def test_a_chain_that_needs_too_many_is_unsupported_with_the_number(
     assert done.status == "unsupported"
     assert "need" in done.reason
     assert ran("fourbar-elastic", iterations=100).status == "ok"
-
-
-def test_springs_alone_make_no_chain() -> None:
-    assert is_chain(chain_of("fourbar-elastic")[0])
-    assert not is_chain(load_scene("slider-crank-spring"))
-    assert not is_chain(load_scene("squeezer"))
 
 
 def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
