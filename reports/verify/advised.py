@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from models.scene import Same
-from reports.compare.beside import truth_of
 from reports.judge.cell import Cell, Checked, check
 from reports.judge.rules import FORCES, PLACES, RATES, TUNABLE, judge
 from sim.engine import Settings
@@ -29,7 +27,7 @@ def advised(cell: Cell) -> Checked:
         return checked
     adapter = engine(cell.engine)
     settings = resolved(profile_of(adapter, cell.profile), cell.settings)
-    choices = remedies(cell.engine, cell.scene, truth_of(Same(cell.scene)).start, settings)
+    choices = remedies(cell.engine, cell.given, cell.truth.start, settings)
     if not choices:
         return checked
     checked = replace(checked, remedy=_remedy(checked, choices))

@@ -7,6 +7,7 @@ from models.joints import Slot, block_name, joints
 from models.motion import State
 from models.scene import GROUND, Scene
 from sim.engine import Drive
+from sim.pymunk.chain_springs import ChainSprings, chain_springs
 from sim.pymunk.load_steps import LoadSteps
 from sim.pymunk.pushes import NONE, Pushes
 from sim.pymunk.slider_friction import SliderFriction
@@ -35,9 +36,11 @@ class Acting:
         slots = {block_name(slide.slider): slide for slide in slides if isinstance(slide, Slot)}
         self._model, self._dt, self._tracks = model, dt_s, tracks
         self._loads = LoadSteps(scene, model, slots, tracks, dt_s, drive)
-        self._springs = SpringSteps(scene, model, tracks, dt_s)
+        chained = () if model.springs else chain_springs(scene)
+        self._chain = ChainSprings(model, chained, dt_s) if chained else None
+        self._springs = SpringSteps(scene, model, tracks, dt_s, but=chained)
         self._friction = SliderFriction(scene, model, tracks, drive)
-        self._any = bool(scene.loads or self._springs or self._friction)
+        self._others = bool(scene.loads or self._springs or self._friction)
         self._bodies = (GROUND, *model.bodies)
         self._blocks = tuple(slot.slider.name for slot in slots.values())
         self.on_blocks = dict.fromkeys(self._blocks, NONE)
@@ -46,12 +49,13 @@ class Acting:
         """The friction of each slider's guide on what slides in the last step [N]."""
 
     def __bool__(self) -> bool:
-        return self._any
+        return self._others or self._chain is not None
 
     def springs(self) -> dict[str, tuple[float, float, float]]:
         """The springs that act, by name: rate, damping and the length at which each is slack."""
         own = {name: spring.numbers for name, spring in self._model.springs.items()}
-        return own | self._springs.numbers
+        chain = self._chain.numbers if self._chain else {}
+        return own | chain | self._springs.numbers
 
     def look_ahead(self, times: Array) -> None:
         """Work out what is known before the next steps, which end at these times [s]."""
@@ -59,6 +63,10 @@ class Acting:
 
     def apply(self, step: int) -> None:
         """Have all act in the step of that number since the look ahead, from 0 on."""
+        if self._chain and not self._others:
+            self._chain.push()
+            return
+        chain = self._chain.by_body() if self._chain else {}
         frames = frames_at_end(self._model, self._dt)
         for track in self._tracks.values():
             track.follow(frames)
@@ -69,7 +77,7 @@ class Acting:
         self.on_blocks = pushes.on_blocks
         for name, body in self._model.bodies.items():
             fx, fy, moment = pushes.on_bodies[name]
-            body.force, body.torque = (fx, fy), moment
+            body.force, body.torque = (fx, fy), moment + chain.get(name, 0.0)
 
     def pulled(self) -> Pushes:
         """What the space's own springs did in the step that was made, and with it all that acted on

@@ -17,12 +17,14 @@ from sim import drive as drives
 from sim.engine import Drive, Engine, Facts, Log, Poses, Settings
 from sim.pymunk.acting import Acting
 from sim.pymunk.body_rows import FIELDS, WIDTH, finite, pose, rows_of
+from sim.pymunk.convergence import iterations
 from sim.pymunk.reactions import BEFORE, Reactions
 from sim.pymunk.settings import (
     AS_SHIPPED,
     TUNED,
     checked,
     exact_lines,
+    held_iterations,
     in_seconds,
     springs_as_forces,
 )
@@ -54,7 +56,7 @@ class PymunkSession:
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
-        self._space.iterations = int(settings["iterations"])
+        self._space.iterations = iterations(scene, settings, self._model)
         self._space.damping = float(settings["damping"])
         for constraint in self._space.constraints:
             constraint.error_bias = float(settings["error_bias"])
@@ -87,7 +89,7 @@ class PymunkSession:
             settings=dict(self._settings)
             | {
                 "timestep_s": self._dt,
-                "iterations": int(space.iterations),
+                **held_iterations(self._settings, int(space.iterations)),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
             },

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.engine import Profile, Setting, Settings
+from sim.engine import Profile, Setting, Settings, SettingValue
 from sim.settings import check_choices, check_ranges
 
 AS_SHIPPED = Profile(
@@ -29,7 +29,8 @@ TUNED = Profile(
             150,
             "error_bias matters only as far as the iteration converges: with 100 the heavy ram of "
             "scene shaper breaks away at steps below 1/5000 turn, with 130 it holds; 14 of the 18 "
-            "shipped scenes need 20 at most (`crankcheck tune`), for a quarter of the cost",
+            "shipped scenes need 20 at most (`crankcheck tune`), a quarter of the cost; a chain "
+            "of segments is given what it needs, iterations_of_segments",
         ),
         "error_bias": Setting(0.0, "remove the whole joint error in one step: errors fall as dt^2"),
         "damping": Setting(1.0, "none"),
@@ -62,6 +63,13 @@ def checked(settings: Settings) -> None:
     """Refuse values that Chipmunk does not take. Raises SettingError."""
     check_choices(settings, {"lines": ("groove", "exact"), "springs": ("native", "forces")})
     check_ranges(settings, RANGES)
+
+
+def held_iterations(settings: Settings, found: int) -> dict[str, SettingValue]:
+    """The iterations that a space was ``found`` with, as settings: those asked for, and beside them
+    those that a chain of segments was given (`sim.pymunk.convergence`)."""
+    asked = int(settings["iterations"])
+    return {"iterations": asked, **({"iterations_of_segments": found} if found > asked else {})}
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:

@@ -5,28 +5,33 @@ the step.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from models.joints import Prism, Slot, joints, less, riding_body, turned
 from models.scene import Point, Scene
 from models.spring_ends import line_ends, whole_turns
-from models.springs import LineSpring, PinSpring, SlideSpring
+from models.springs import LineSpring, PinSpring, SlideSpring, Spring
 from sim.pymunk.pushes import Pushes
 from sim.pymunk.space import SpaceModel
 from sim.pymunk.step_end import Course, Frames, SliderCourse, anchor_of, frames_at_end
 
 
 class SpringSteps:
-    """The springs of a scene that its space has not of its own."""
+    """The springs of a scene that its space has not of its own, ``but`` those of a chain."""
 
     def __init__(
-        self, scene: Scene, model: SpaceModel, tracks: Mapping[str, SliderCourse], dt_s: float
+        self,
+        scene: Scene,
+        model: SpaceModel,
+        tracks: Mapping[str, SliderCourse],
+        dt_s: float,
+        but: Collection[Spring] = (),
     ) -> None:
         start = frames_at_end(model, 0.0)
         self._steps: list[_OnLine | _InPin | _OnSlide] = []
         slides = {slide.slider.name: slide for slide in joints(scene).slides}
         for name, spring in scene.springs.items():
-            if name in model.springs:
+            if name in model.springs or spring in but:
                 continue
             if isinstance(spring, LineSpring):
                 self._steps.append(_OnLine(scene, model, spring, start, dt_s))

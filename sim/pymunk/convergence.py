@@ -1,0 +1,129 @@
+"""How many iterations the joints of a chain of light segments ask for in each step.
+
+Chipmunk goes over the joints one after the other and gives each the impulse that would mend it
+alone: the method of Gauss and Seidel for the errors e of their speeds,
+
+    A = J M^-1 J^T = L + U        e <- -L^-1 U e        L with the blocks of each joint
+
+so each iteration leaves a share rho of the slowest error, the spectral radius of L^-1 U, and k of
+them g = rho^k. A step begins with the impulses of the last one, in which the whole error of the
+places was mended too (`error_bias` 0). Errors w of the speeds and c of the places then follow
+
+    c' = c + w dt        w' = -(1 - g) c' / dt + g (2 w - w'')        w'' of the step before
+
+whose powers z of a step meet (1 - g) z^3 + g (z - 1)^3 = 0: they die off where g < 1/2 and grow
+where it is larger, whatever the step is. So k has to be at least ln 2 / -ln rho. For a chain of n
+segments that grows as n^2, and with the mass at its end over that of a segment.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pymunk
+
+from models.array import Array
+from models.errors import EngineError
+from models.scene import Scene
+from sim.engine import Settings
+from sim.pymunk.chain_springs import chain_springs
+from sim.pymunk.space import SpaceModel
+
+HALVINGS = 3.0
+"""How often an error is halved in a step, at least, in the position of the start. One is what holds
+there. Half as many again are needed elsewhere in a turn (six-bar: 1.44), and half as many again for
+smooth accelerations; more gain nothing."""
+MOST = 30_000
+"""Iterations that nobody asked for: a step takes milliseconds with them."""
+REDUNDANT = 1e-12
+"""What an iteration may take of an error at most that no impulse can change."""
+
+
+def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
+    """Those of the settings, or more where the chain of a scene needs them.
+
+    Raises
+    ------
+    EngineError
+        More than `MOST` are needed, and fewer asked for.
+    """
+    asked = int(settings["iterations"])
+    # A bias that mends little of an error in a step comes apart with no number of them.
+    if float(settings["error_bias"]) > 0.0 or not chain_springs(scene):
+        return asked
+    needed = chain_iterations(model)
+    if needed > max(asked, MOST):
+        raise EngineError(
+            f"{scene.name}: the joints of its segments need {needed} iterations in each step of "
+            f"pymunk, and {MOST} are done at most: what hangs on the segments is too heavy for "
+            "them; take fewer segments, another engine, or set so many iterations yourself"
+        )
+    return max(asked, needed)
+
+
+def chain_iterations(model: SpaceModel) -> int:
+    """The iterations with which the joints of a space hold, judged where it stands."""
+    return math.ceil(HALVINGS * math.log(2.0) / -math.log(left_over(model)))
+
+
+def left_over(model: SpaceModel) -> float:
+    """rho: the share of the slowest error of its joints that an iteration leaves."""
+    made = [model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()]
+    column = {body: 3 * k for k, body in enumerate(model.bodies.values())}
+    blocks = [_rows(joint, column) for joint in made if joint is not None]
+    weight = np.concatenate([_inverse_masses(body) for body in model.bodies.values()])
+    rows = np.concatenate(blocks)
+    answers = (rows * weight) @ rows.T
+    of = np.repeat(np.arange(len(blocks)), [len(block) for block in blocks])
+    lower = np.where(of[:, None] >= of, answers, 0.0)
+    shares = np.abs(1.0 - np.linalg.eigvals(np.linalg.solve(lower, answers)))
+    return float(shares[shares < 1.0 - REDUNDANT].max(initial=REDUNDANT))
+
+
+def _inverse_masses(body: pymunk.Body) -> Array:
+    """Of a body that moves along x, along y, and turns; 0 where nothing moves it."""
+    if body.body_type != pymunk.Body.DYNAMIC:
+        return np.zeros(3)
+    return 1.0 / np.array([body.mass, body.mass, body.moment])
+
+
+def _rows(joint: pymunk.Constraint, column: Mapping[pymunk.Body, int]) -> Array:
+    """The speeds of a joint over those of all bodies, (1 or 2, 3 bodies)."""
+    ways = _ways(joint)
+    rows = np.zeros((len(ways), 3 * len(column)))
+    for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
+        if body not in column:
+            continue
+        at = column[body]
+        if not ways.any():  # a gear or a motor: angles alone
+            rows[0, at + 2] = sign
+            continue
+        arm = _place(joint, body) - body.position
+        rows[:, at : at + 2] = sign * ways
+        rows[:, at + 2] = sign * (arm.x * ways[:, 1] - arm.y * ways[:, 0])
+    return rows
+
+
+def _ways(joint: pymunk.Constraint) -> Array:
+    """The directions in which a joint holds its two places together; none of angles."""
+    if isinstance(joint, pymunk.PivotJoint):
+        return np.eye(2)
+    if isinstance(joint, pymunk.GrooveJoint):
+        along = (joint.groove_b - joint.groove_a).rotated(joint.a.angle).normalized()
+        return np.array([along.perpendicular()])
+    if isinstance(joint, pymunk.PinJoint):
+        first, second = (
+            joint.a.local_to_world(joint.anchor_a),
+            joint.b.local_to_world(joint.anchor_b),
+        )
+        return np.array([(second - first).normalized()])
+    return np.zeros((1, 2))
+
+
+def _place(joint: pymunk.Constraint, body: pymunk.Body) -> pymunk.Vec2d:
+    """Where in the plane a joint acts on a body; on what has a groove, at the point in it."""
+    if body is joint.b or isinstance(joint, pymunk.GrooveJoint):
+        return joint.b.local_to_world(joint.anchor_b)
+    return joint.a.local_to_world(joint.anchor_a)
