@@ -56,6 +56,9 @@ def trace(truth: Truth, run: Run) -> Trace:
         series[f"theta.{name}"] = link.theta
     for name, point in beside.motion.points.items():
         series[f"x.{name}"], series[f"y.{name}"] = point.position.T
+    for name, own in beside.motion.elastic.items():
+        series[f"deflection.{name}"] = own.middle
+        series[f"deflection_error.{name}"] = own.middle - beside.reference.elastic[name].middle
     if isinstance(beside, FreeBeside):
         series |= free_series(beside)
     return {name: np.ascontiguousarray(each) for name, each in series.items()}

@@ -51,13 +51,15 @@ class Apart:
 class ElasticCourse:
     """Both motions at the same instants, with their forces; ``bent`` is how far each elastic link
     is from the line between its pins [m], (T, K), at `SHARES` of its length. ``words`` say how the
-    links are described, and how they start."""
+    links are described, and how they start. ``uncontrolled`` is the motion without the gains of a
+    controller, where it was asked for."""
 
     scene: Scene
     motion: Motion
     rigid: Motion
     bent: Mapping[str, Array]
     words: str
+    uncontrolled: Motion | None = None
 
     @property
     def time_s(self) -> Array:
@@ -113,6 +115,17 @@ def elastic_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
     words += ["shortening left out"] * (not motion.stiffened)
     own, rigid = sampled(motion, time_s), _with_rigid_links(motion, time_s)
     return ElasticCourse(scene, own, rigid, bent(motion, time_s, SHARES), ", ".join(words))
+
+
+def drawn_course(motion: ElasticHistory, time_s: Array) -> ElasticCourse:
+    """As `elastic_course`, with what is drawn alone: a driver that is controlled without its gains,
+    under the torque that rigid links would need. Raises CrankcheckError as that."""
+    course, driver = elastic_course(motion, time_s), motion.scene.driver
+    if not isinstance(motion, ReleasedElasticMotion) or not isinstance(driver.law, Controlled):
+        return course
+    law = replace(driver.law, kp_n_m_rad=0.0, kd_n_m_s=0.0)
+    without = replace(motion, scene=replace(motion.scene, driver=replace(driver, law=law)))
+    return replace(course, uncontrolled=sampled(without, time_s))
 
 
 def _with_rigid_links(motion: ElasticHistory, time_s: Array) -> Motion:

@@ -9,6 +9,7 @@ from rich.console import Console
 
 from models.scene import Scene
 from reports.compare.errors import Error, ErrorKind, Errors, largest
+from reports.describe.held_to import held_to
 from reports.output.columns import plain_table
 from reports.output.numbers import short
 from reports.quantities import QUANTITIES
@@ -39,11 +40,8 @@ def show_errors(console: Console, scene: Scene, source: str, errors: Errors) -> 
             f"{math.degrees(worst.driver_at_maximum_rad):.1f}",
         )
     console.print(table, "")
-    console.print(
-        "Errors against the closed form; L longest link, w driver's peak speed.",
-        style="dim",
-        highlight=False,
-    )
+    said = held_to(free=errors.free is not None, elastic=errors.elastic is not None)
+    console.print(said, style="dim", highlight=False)
     for note in errors.notes:
         console.print(note, style="yellow", highlight=False, markup=False)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from analytic.elastic.sampled import ElasticHistory
 from analytic.free.free_motion import FreeMotion
 from models.scene import Scene
-from reports.describe.elastic_course import closely_sampled, elastic_course
+from reports.describe.elastic_course import closely_sampled, drawn_course
 from reports.figures.elastic.writing import drawn_elastic_figures
 from reports.figures.forces.writing import drawn_figures
 from reports.figures.free.writing import drawn_free_figures
@@ -26,7 +26,7 @@ def page_of(scene: Scene, *, with_forces: bool) -> str:
 
 def elastic_page_of(motion: ElasticHistory) -> str:
     """The page of a motion with elastic links as HTML. Raises CrankcheckError as `elastic_page`."""
-    course = elastic_course(motion, closely_sampled(motion.scene, motion.until_s))
+    course = drawn_course(motion, closely_sampled(motion.scene, motion.until_s))
     return elastic_page(
         motion,
         course,

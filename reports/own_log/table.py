@@ -12,6 +12,7 @@ from rich.text import Text
 
 from models.errors import cut, few, harmless
 from reports.causes.cause import Cause
+from reports.describe.held_to import held_to
 from reports.judge.rules import RULES
 from reports.output.columns import hanging, plain_table
 from reports.output.numbers import count, error_text, short
@@ -22,10 +23,6 @@ WIDE = 90
 """Columns of a terminal that show when an error is largest."""
 ROOM = 1000
 """Characters of a cause."""
-LET_GO = (
-    "Let go: largest errors at the same time over the sensitivity, by how much a small change of "
-    "the start has grown; geometry at the log's own angle; L longest link, w driver's peak speed."
-)
 FEW = 12
 """Names that are listed of what is not judged."""
 
@@ -227,14 +224,11 @@ def footer(judged: JudgedLog, facts: Mapping[str, str]) -> list[str]:
         "fitted": "a driver fitted to the log",
         "logged": "the logged angle of the driver (geometry alone)",
     }
-    moved = f"moved by {drives[judged.drive]}; L longest link, w driver's peak speed."
-    said = f"Largest errors against the closed form {moved}"
-    if judged.scene.is_free:
-        said = LET_GO
+    scene, moved = judged.scene, f" moved by {drives[judged.drive]}"
     time_s = judged.log.time_s
     step = f"step {judged.step_s:g} s" if judged.step_s else "no step known"
     return [
-        said,
+        held_to(free=scene.is_free, elastic=bool(scene.elastic), moved=moved),
         f"t = {time_s[0]:.6g} to {time_s[-1]:.6g} s, {step}; limits from "
         f"{', '.join(dict.fromkeys(row.limit.origin for row in log_rows(judged)))}.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),

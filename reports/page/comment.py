@@ -11,13 +11,14 @@ from reports.output.markdown import code, fitted, folded, plain, table
 from reports.output.numbers import count, listed, short
 from reports.page.sections.verdict import level, verdict
 from reports.results.cost import MEANS, Costs
-from reports.results.lines import Line, called, named
+from reports.results.lines import Line, called, named, turn_of
 from reports.results.looks import label
 from reports.results.origin import made, settings_of, study, versions
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 from reports.results.table import noise_line, short_target
 from reports.store.reader import Stored
+from sim.engine import Drive
 from sim.snippets import snippet_writer
 
 ROOM = {
@@ -111,6 +112,8 @@ def _recommended(report: Report) -> str:
     words = (
         f"The cheapest that keep the error of place [rad, or of the longest link] on {scenes} "
         "within a target; times are geometric means."
+        + " Where links bend, it is that of the deflection, over the largest."
+        * bool(report.elastic_lines)
     )
     remarks = dict.fromkeys(_remark(one) for one in report.recommendations)
     kept, left = fitted([f"- {plain(text)}" for text in remarks if text], ROOM["set"] // 2)
@@ -147,17 +150,17 @@ def _remark(one: Recommendation) -> str:
 
 def _snippets(report: Report) -> Iterator[str]:
     """Text to be copied, each behind a click; once where it is for several targets."""
-    groups: dict[tuple[str, str, str, float], list[Recommendation]] = {}
+    groups: dict[tuple[str, str, Drive, float], list[Recommendation]] = {}
     for one in report.recommendations:
         if not one.reason:
             best = one.best
             same = (best.engine, best.variant, best.drive, best.steps_per_turn)
             groups.setdefault(same, []).append(one)
     texts = []
-    for (engine, variant, _, steps), group in groups.items():
+    for (engine, variant, drive, steps), group in groups.items():
         tightest = min(group, key=lambda one: one.target)
         targets = listed([short_target(one.target) for one in group])
-        title = f"{engine} {variant}, {steps:g} steps per turn (error up to {targets})"
+        title = f"{engine} {variant}, {steps:g} steps per {turn_of(drive)} (error up to {targets})"
         if text := tightest.snippet():
             texts.append(folded(title, code(text, snippet_writer(engine).language)))
     kept, left = fitted(texts, ROOM["snippets"])

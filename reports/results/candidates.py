@@ -20,9 +20,10 @@ NOT_RUN = "not run"
 class Candidate:
     """Settings that may be recommended, with what was measured of them.
 
-    ``errors`` are place errors by scene [pure] of the runs that ended well, ``faults`` say why a
-    scene has none. ``us_per_step`` and ``s_per_turn`` are geometric means over the scenes, in
-    which each counts the same however slow it is; NaN where a scene was not timed.
+    ``errors`` are place errors by scene [pure] of the runs that ended well, or those of deflections
+    where links ``bend``; ``faults`` say why a scene has none. ``us_per_step`` and ``s_per_turn``
+    are geometric means over the scenes, in which each counts the same however slow it is; NaN where
+    a scene was not timed.
     """
 
     engine: str
@@ -35,6 +36,7 @@ class Candidate:
     faults: Mapping[str, str] = field(repr=False)
     us_per_step: float
     s_per_turn: float
+    bends: bool = False
 
     @property
     def scenes(self) -> int:
@@ -128,6 +130,7 @@ def _each_step(group: Mapping[str, Line], scenes: Sequence[str]) -> list[Candida
                 faults={scene: fault for scene, fault in faults.items() if fault},
                 us_per_step=mean(float(row["us_per_step"]) for row in complete),
                 s_per_turn=mean(float(row["s_per_turn"]) for row in complete),
+                bends=first.bends,
             )
         )
     return every

@@ -48,6 +48,11 @@ class Line:
         return called(self.variant, self.drive)
 
     @property
+    def bends(self) -> bool:
+        """Whether links bend, and its error is that of the deflection, over the largest."""
+        return has_bent(self.cells)
+
+    @property
     def lasts_s(self) -> float:
         """How long each run is [s]."""
         return self.period_s * float(self.cells.iloc[0]["turns"])
@@ -57,6 +62,11 @@ class Line:
         """The period of the driver [s]; a second of what is let go."""
         first = self.cells.iloc[0]
         return float(first["dt_s"] * first["steps_per_turn"])
+
+
+def has_bent(cells: pd.DataFrame) -> bool:
+    """Whether there is a cell whose links bend."""
+    return "segments" in cells and bool(cells["segments"].notna().any())
 
 
 Named = tuple[str, str, Drive]
@@ -155,7 +165,7 @@ def _line(rows: pd.DataFrame, quantity: str) -> Line:
         fit=fit,
         words=words(
             fit,
-            _unit(quantity),
+            "/ D" if quantity == "place_pure" and has_bent(rows) else _unit(quantity),
             float(first["dt_s"] * first["steps_per_turn"]),
             turn_of(cast(Drive, str(first["drive"]))),
         ),

@@ -14,7 +14,7 @@ from models.released import let_go
 from models.scene import Scene
 from reports.results.candidates import Candidate, candidates
 from reports.results.cost import Costs, costs_of, noise
-from reports.results.lines import Line, Named, lines, named
+from reports.results.lines import Line, Named, has_bent, lines, named
 from reports.results.looks import Look, looks
 from reports.results.recommend import TARGETS, Recommendation, recommendations
 from reports.results.settings_text import settings_told
@@ -90,19 +90,28 @@ class Report:
 
     @cached_property
     def driven(self) -> Report | None:
-        """What was driven alone, which has turns; None where everything was let go."""
-        free = self.stored.cells["drive"] == "free"
-        if not free.any():
+        """What was driven alone and has rigid links: turns, and errors of place; None where
+        everything was let go or bends."""
+        cells = self.stored.cells
+        other = cells["drive"] == "free"
+        if has_bent(cells):
+            other |= cells["segments"].notna()
+        if not other.any():
             return self
-        if free.all():
+        if other.all():
             return None
-        cells = self.stored.cells[~free].reset_index(drop=True)
-        return DrivenReport(replace(self.stored, cells=cells), whole=self)
+        own = cells[~other].reset_index(drop=True)
+        return DrivenReport(replace(self.stored, cells=own), whole=self)
 
     @cached_property
     def free_lines(self) -> tuple[Line, ...]:
         """The lines that were let go."""
         return tuple(line for line in self.lines if line.drive == "free")
+
+    @cached_property
+    def elastic_lines(self) -> tuple[Line, ...]:
+        """The lines whose links bend."""
+        return tuple(line for line in self.lines if line.bends)
 
     def look(self, line: Line) -> Look:
         """How a line is drawn."""

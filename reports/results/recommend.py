@@ -17,6 +17,14 @@ from sim.snippets import PERIOD_S, snippet
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6)
 """Errors of place [rad, or of the longest link]."""
+ELASTIC_TARGETS = (1e-1, 1e-2, 1e-3)
+"""Errors of deflections, of the largest: nearer to the beam comes no chain that is run."""
+SEGMENTS = (
+    "Each elastic link is so many rigid segments, with a spring of rate EI n / l in every pin "
+    "between them. Whatever the speed, the step times their highest frequency stays below 1.5."
+)
+KINDS = ((False, False), (False, True), (True, False), (True, True))
+"""Whether links bend, and whether it was let go: errors of each are told apart."""
 
 
 @dataclass(frozen=True)
@@ -41,27 +49,38 @@ class Recommendation:
     reason: str = ""
 
     def snippet(self, period_s: float = PERIOD_S) -> str:
-        """Text to copy and paste, headed by what it promises; empty where there is none: it says
-        how a step goes with the speed of a driver, which what is let go has not."""
+        """Text to copy and paste, headed by what it promises; empty where there is none. Of what
+        is let go, whose steps are counted over a second, it has no period."""
         best = self.best
-        if self.reason or best.drive == "free" or best.engine not in offering("snippet"):
+        if self.reason or best.engine not in offering("snippet"):
             return ""
         scenes = "the scene" if best.scenes == 1 else f"each of {best.scenes} scenes"
         head = (
-            f"{best.engine} {', '.join(best.versions)}, {best.variant}: place within "
-            f"{self.target:g} (rad, or of the longest link) on {scenes}; at worst "
-            f"{short(best.worst_error)}, on {best.worst_scene}.",
+            f"{best.engine} {', '.join(best.versions)}, {best.variant}: {_promise(best)} within "
+            f"{self.target:g} on {scenes}; at worst {short(best.worst_error)}, on "
+            f"{best.worst_scene}.",
+            *([SEGMENTS] if best.bends else []),
             *([f"Caution: {self.caution}."] if self.caution else []),
         )
+        period_s = 1.0 if best.drive == "free" else period_s
         return snippet(
             best.engine, best.settings, best.steps_per_turn, period_s, drive=best.drive, head=head
         )
 
 
+def _promise(best: Candidate) -> str:
+    """What the error of a candidate is of, and its unit."""
+    if best.bends:
+        return "deflection (of the largest)"
+    over = " over the sensitivity" if best.drive == "free" else ""
+    return f"place{over} (rad, or of the longest link)"
+
+
 def recommendations(
     stored: Stored, targets: Sequence[float] = TARGETS
 ) -> tuple[Recommendation, ...]:
-    """One for each engine and target, of what was driven, and of what was let go.
+    """One for each engine and target, of what was driven, of what was let go, and of both with
+    elastic links, which have targets of their own.
 
     Of all settings and measured steps whose error is at most the target on every scene of the
     store, those with the least time per turn (geometric mean over the scenes) are chosen; of
@@ -70,9 +89,11 @@ def recommendations(
     """
     within = noise(stored)
     every = lines(stored)
-    free = tuple(line for line in every if line.drive == "free")
-    driven = tuple(line for line in every if line.drive != "free")
-    return (*_of_lines(driven, targets, within), *_of_lines(free, targets, within))
+    chosen: list[Recommendation] = []
+    for bends, free in KINDS:
+        own = [line for line in every if (line.bends, line.drive == "free") == (bends, free)]
+        chosen += _of_lines(own, ELASTIC_TARGETS if bends else targets, within)
+    return tuple(chosen)
 
 
 def _of_lines(

@@ -25,20 +25,23 @@ def recommendation_table(
     recommendations: Sequence[Recommendation], width: int = WIDE
 ) -> RenderableType:
     """The cheapest settings for each target and engine, with what is to be said of them below: a
-    table of what was driven, and one of what was let go."""
-    free = [one for one in recommendations if one.best.drive == "free"]
-    driven = [one for one in recommendations if one.best.drive != "free"]
-    if free and driven:
-        return Group(_table(driven, width), "", _table(free, width))
-    return _table(recommendations, width)
+    table each of what was driven, of what was let go, and of elastic links."""
+    kinds = dict.fromkeys((one.best.bends, one.best.drive == "free") for one in recommendations)
+    tables: list[RenderableType] = []
+    for kind in kinds:
+        own = [one for one in recommendations if (one.best.bends, one.best.drive == "free") == kind]
+        tables += ["", _table(own, width)]
+    return Group(*tables[1:]) if tables else _table(recommendations, width)
 
 
 def _table(recommendations: Sequence[Recommendation], width: int) -> RenderableType:
-    """What was driven, or what was let go."""
+    """What was driven, or what was let go, with rigid links or elastic ones."""
     wide = width >= WIDE
-    table = plain_table("cheapest settings that keep every scene within a target")
+    bends = any(one.best.bends for one in recommendations)
+    what = "deflection within a target of the beam's" if bends else "scene within a target"
+    table = plain_table(f"cheapest settings that keep every {what}")
     turn = turn_of(recommendations[0].best.drive) if recommendations else "turn"
-    table.add_column("target\nrad", no_wrap=True, justify="right")
+    table.add_column("target\n/ D" if bends else "target\nrad", no_wrap=True, justify="right")
     table.add_column("engine", no_wrap=True)
     table.add_column("settings", overflow="fold", min_width=10)
     for head in (f"steps\na {turn}", "us per\nstep", f"ms per\n{turn}", "worst\nerror"):

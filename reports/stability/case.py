@@ -13,7 +13,7 @@ from models.motion import State
 from models.scene import Scene
 from models.segmented import SegmentedScene
 from models.window_chain import Chain
-from reports.stability.matrix import CaseFacts, Outcome
+from reports.stability.matrix import PLACE, CaseFacts, Outcome
 from sim.engine import Drive, SettingValue
 
 WITHIN = 1e-2
@@ -25,6 +25,16 @@ BEYOND = 10.0
 Scale = Literal["log", "linear", "whole"]
 Judge = Literal["follow", "limit", "chain", "let-go", "toggle", "bend"]
 """What runs are held to, see `reports.stability.grading`."""
+ERRORS: Mapping[Judge, str] = {
+    "follow": PLACE,
+    "limit": "the crank at its limit, rad",
+    "chain": "the first pin of a free chain, over a rod, and of its energy, over what is exchanged",
+    "let-go": "what is let go, at the same time over the sensitivity, at the run's own angle, and "
+    "of the energy",
+    "toggle": "what a throw is short of being over, rad",
+    "bend": "the deflection, over the largest",
+}
+"""What the errors of each are of, as pure numbers."""
 FREE_JUDGES: tuple[Judge, ...] = ("let-go", "toggle")
 """The judges of cases of free motion, which are run when asked for."""
 
@@ -131,4 +141,5 @@ class Case(CaseFacts):
 
     def facts(self) -> CaseFacts:
         """What a reader needs."""
-        return CaseFacts(**{each.name: getattr(self, each.name) for each in fields(CaseFacts)})
+        own = {each.name: getattr(self, each.name) for each in fields(CaseFacts)}
+        return CaseFacts(**own | {"error_of": ERRORS[self.judge]})

@@ -60,8 +60,8 @@ def elastic_start(trial: Trial) -> State:
 
 
 def elastic_motion(trial: Trial, time_s: Array) -> Motion:
-    """The beam, to be drawn."""
-    return _truth(trial).at(time_s)
+    """The exact chain with all of its nodes, to be drawn."""
+    return _truth(trial).exact.motion.at(time_s)
 
 
 def _truth(trial: Trial) -> ChainTruth:

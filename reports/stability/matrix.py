@@ -29,6 +29,7 @@ Outcome = Literal[
 ]
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 FORMAT = 1
+PLACE = "place, rad or over the longest link"
 FILE = "stability.json"
 MOST_BYTES = 200_000_000
 """The whole catalogue takes a hundredth of it."""
@@ -54,7 +55,8 @@ class CaseFacts:
 
     ``values`` are those of the parameter, from easy to hard; ``labels`` says them in a few
     characters, as `label` does if not given. ``good`` are the outcomes of an engine that holds;
-    ``within`` is the class: the error, as a pure number, that counts as held.
+    ``within`` is the class: the error, as a pure number, that counts as held; ``error_of`` says
+    what that is an error of.
     """
 
     name: str
@@ -69,6 +71,7 @@ class CaseFacts:
     labels: tuple[str, ...] = ()
     good: tuple[Outcome, ...]
     within: float
+    error_of: str = PLACE
 
     def __post_init__(self) -> None:
         if not self.labels:

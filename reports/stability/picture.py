@@ -25,7 +25,7 @@ def picture(
     case: Case, trial: Trial, graded: Graded, run: Run, truth: Callable[[Trial, Array], Motion]
 ) -> Picture | None:
     """The picture of a graded run; None where there is no truth to be drawn there."""
-    scene = trial.scene
+    scene = trial.given  # with the segments of elastic links, which show how these bend
     assert run.motion is not None
     kept = _around(run.motion.time_s, graded.at_s, scene.driver.law.period_s)
     if kept.size < 2:

@@ -114,6 +114,7 @@ def _legend(matrix: Matrix) -> str:
         for outcome, meaning in MEANINGS.items()
         if outcome in outcomes and LETTERS[outcome]
     )
+    errors = dict.fromkeys(case.error_of for case in matrix.cases)
     within = {case.within: case.group for case in matrix.cases}
     usual = f"{WITHIN:g}"
     classes = ", ".join([usual, *(f"{w:g} ({g})" for w, g in within.items() if w != WITHIN)])
@@ -123,11 +124,8 @@ def _legend(matrix: Matrix) -> str:
         else ""
     )
     return (
-        "Numbers: the worst error of place (rad, or over the longest link; of a limit that of the "
-        "crank, of a free chain that of its first pin and of its energy; let go, that at the same "
-        "time over the sensitivity, that at the run's own angle, and the drift of the energy; of a "
-        "throw the angle that it is short of being over; of elastic links that of the "
-        "deflection, over the largest); easy to hard from left to right; held is "
+        f"Numbers: the worst error of {'; of '.join(errors)}; easy to hard from left to right; "
+        "held is "
         f"what stays within {classes}. {letters}.\n{forces}"
         "Each alone: crankcheck stability CASE --engine ENGINE --profile PROFILE --at VALUE"
     )
@@ -143,7 +141,7 @@ def show_run(console: Console, case: CaseFacts, run: Graded) -> None:
         degrees = math.degrees(run.at_driver_rad)
         console.print(f"  at t = {run.at_s:.6g} s, driver {degrees:.4g} deg", highlight=False)
     for name, number in (
-        ("error of place, rad or over the longest link", run.error),
+        (f"error of {case.error_of}", run.error),
         ("widest open joint, over the longest link", run.gap),
         ("error of the crank, rad", run.drive),
         ("error of forces, over the largest", run.force),

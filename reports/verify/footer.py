@@ -7,25 +7,24 @@ from collections.abc import Mapping, Sequence
 from rich.markup import escape
 
 from reports.compare.errors import largest
+from reports.describe.held_to import held_to
 from reports.judge.cell import Checked
 from reports.judge.rules.elastic import TruthEnds
 
-DRIVEN_SAID = (
-    "Largest errors against the closed form at the commanded time; L longest link, w driver's peak "
-    "speed."
-)
-FREE_SAID = (
+DRIVEN = held_to(free=False, elastic=False, moved=" at the commanded time")
+FREE = (
     "Let go: errors at the same time over G, by how much a small change of the start has grown; "
     "geometry at the run's own angle; drift of energy over the largest kinetic energy T. Classes: "
     "fine is a thousandth of the limit of the phase; 1e-1 and 1e-3 of the error as it is, and to "
     "when 1e-3 holds."
 )
-ELASTIC_SAID = (
-    "Elastic links: largest errors of the deflection over its largest, D; engine against the exact "
-    "chain of as many segments, engine against the beam with foreshortening, chain against the "
-    "beam; what the beam may be off by, and the linear theory, which is judged by nothing."
+ELASTIC = (
+    "Elastic links: largest errors against the solved motion of the beam with foreshortening at "
+    "the commanded time, of deflections over the largest, D, of places over the longest link, L; "
+    "engine: against the exact chain of as many segments instead; chain: that against the beam; "
+    "what the beam may be off by, and the linear theory, which is judged by nothing."
 )
-FORCES_SAID = (
+FORCES = (
     "Forces against kinetostatics at the instants that they act at; F largest reaction, M largest "
     "torque over the run."
 )
@@ -36,9 +35,9 @@ def footer(checked: Sequence[Checked], facts: Mapping[str, str]) -> str:
     free = [one for one in checked if one.cell.drive == "free"]
     driven = [one for one in checked if one.cell.drive != "free"]
     lines = [
-        *([DRIVEN_SAID] if driven else ()),
+        *([DRIVEN] if any(not one.cell.scene.elastic for one in driven) else ()),
         *_elastic_words(driven),
-        *(FORCES_SAID for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
+        *(FORCES for _ in checked[:1] if any(one.cell.with_forces for one in checked)),
         *(_free_words(free) if free else ()),
         *_notes(checked),
         *(_driven_steps(driven) if driven else ()),
@@ -78,7 +77,7 @@ def _elastic_words(driven: Sequence[Checked]) -> list[str]:
         for found in one.findings
         if found.rule == TruthEnds.id
     )
-    return [*([f"{ELASTIC_SAID} Given as {'; '.join(given)}."] if bent else ()), *ends]
+    return [*([f"{ELASTIC} Given as {'; '.join(given)}."] if bent else ()), *ends]
 
 
 def _free_words(free: Sequence[Checked]) -> list[str]:
@@ -87,7 +86,7 @@ def _free_words(free: Sequence[Checked]) -> list[str]:
     lasts = sorted({round(one.cell.dt_s * one.cell.steps, 9) for one in free})
     growth = sorted(one.errors.free.sensitivity for one in free if one.errors and one.errors.free)
     return [
-        FREE_SAID,
+        FREE,
         f"dt {_span(dts)} s over {_span(lasts)} s"
         + (f"; G up to {_span(growth)}" if growth else "")
         + "; - not reported.",

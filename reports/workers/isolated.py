@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import pickle
 import signal
 import subprocess
@@ -14,6 +15,7 @@ from typing import IO, Generic, TypeVar, cast
 
 from models.errors import CrankcheckError
 from reports.workers.child import main, receive, send
+from reports.workers.one_thread import one_thread
 from sim.own_engine.known import spellings
 
 Result = TypeVar("Result")
@@ -115,12 +117,15 @@ class Isolated(Generic[Result]):
     def _started(self, function: Callable[..., Result]) -> subprocess.Popen[bytes] | Lost:
         """A new child that has imported what ``function`` needs, in a session of its own: Ctrl-C at
         the terminal is not for it. Lost where it did not come so far."""
+        variables = dict(os.environ)
+        one_thread(variables)
         child = self._child = subprocess.Popen(
             # The packages of this process, whatever stands in the folder that it works in.
             [sys.executable, "-P", "-c", START, str(int(1e9 * self.limits.memory_gb)), *sys.path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            env=variables,
             start_new_session=True,
         )
         if self.closed:  # meanwhile

@@ -16,7 +16,7 @@ DRIVES: Mapping[Drive, str] = {
     "servo": "Drive: a damper between the ground and the angle of the crank's node, {gain:g} speed "
     "(sum over all bodies of mass L^2 + inertia), L the longest link, and a torque of damper times "
     "speed.",
-    "free": "",
+    "free": "Drive: none. All start with the places, velocities and accelerations of the start.",
 }
 """How the crank of the measured runs was driven."""
 
@@ -35,7 +35,7 @@ def exudyn_snippet(
     lines = [
         *comment(head, WIDTH),
         "stepping = simulationSettings.timeIntegration",
-        *_steps(stepping),
+        *_steps(stepping, drive),
         f"stepping.solverType = exu.DynamicSolverType.{complete['integrator']}",
     ]
     damped = complete["integrator"] == "GeneralizedAlpha"
@@ -48,7 +48,7 @@ def exudyn_snippet(
     return "\n".join([*lines, *comment([driven], WIDTH)]) + "\n"
 
 
-def _steps(stepping: Stepping) -> list[str]:
+def _steps(stepping: Stepping, drive: Drive) -> list[str]:
     """The length of a step, and how it goes with the speed and with frames."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     told = [
@@ -61,6 +61,8 @@ def _steps(stepping: Stepping) -> list[str]:
             f"A frame of {frame} has numberOfSteps = {number}. A crank at {speed} has {per_turn} "
             "of these steps in a turn; a faster one needs more of them in a frame, in proportion."
         ]
+    if drive == "free":  # no speed of the crank says how long it may be
+        told = []
     return [
         *comment(told, WIDTH),
         f"dt = {stepping.dt_s!r}",

@@ -15,6 +15,8 @@ INSET = "  "
 LOOP_CLASS = "crankcheck-loop"
 """The default class of the connects that close the mechanism, and of nothing else."""
 WIDTH = 96
+FREE = ["Drive: none. All hinges start with the angles and speeds of the start."]
+"""What starts the runs that were let go."""
 
 
 def mujoco_snippet(
@@ -38,7 +40,7 @@ def mujoco_snippet(
         *_comment(
             [
                 "Step and integrator are the whole model's: all that it holds is stepped so.",
-                _how_to_scale(complete, stepping),
+                _how_to_scale(complete, stepping, drive),
                 *_absolute(complete),
                 *_coarse(defaults, dt_s),
             ]
@@ -86,11 +88,13 @@ def _timeconst(complete: Settings, dt_s: float) -> float:
     return steps * dt_s if steps else float(complete["solref_timeconst_s"])
 
 
-def _how_to_scale(complete: Settings, stepping: Stepping) -> str:
-    """What to write for another crank speed."""
+def _how_to_scale(complete: Settings, stepping: Stepping, drive: Drive) -> str:
+    """What to write for another crank speed, or another step of what nothing drives."""
     per_turn, speed = f"{stepping.steps_per_turn:g}", f"{stepping.speed_rad_s:.6g} rad/s"
     steps = float(complete["solref_timeconst_steps"])
     stiff = f", and solref = {steps:g} timestep." if steps else "."
+    if drive == "free":  # no speed of the crank says how long it may be
+        return f"Let go: timestep = {stepping.dt_s:g} s{stiff}"
     if not stepping.substeps:
         return (
             f"{per_turn} steps a turn of a crank at {speed}. At another speed: timestep = 2 pi / "
@@ -127,7 +131,7 @@ def _coarse(defaults: Settings, dt_s: float) -> list[str]:
 
 def _measured(complete: Settings, defaults: Settings, drive: Drive) -> list[str]:
     """What the measured runs had besides: settings for a model of nothing else, and the drive."""
-    driven = {"prescribed": _flywheel(complete), "servo": _servo(complete), "free": []}[drive]
+    driven = {"prescribed": _flywheel(complete), "servo": _servo(complete), "free": FREE}[drive]
     return [*_alone(complete, defaults, drive), *driven]
 
 

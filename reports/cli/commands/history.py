@@ -26,7 +26,7 @@ from reports.output.write import check_folder, refuse_link, write
 from reports.plan.chosen import left_out_note
 from reports.plan.free import free_names
 from reports.results.changes.reading import scene_digests
-from reports.verify.footer import DRIVEN_SAID, FREE_SAID
+from reports.verify.footer import DRIVEN, FREE
 from reports.workers.programs import run_child
 from sim.registry import ENGINES, engine
 
@@ -176,7 +176,7 @@ def _footer(
     names = " ".join(result.version for result in measured) or "none"
     facts = provenance({request.engine: names})
     lines = [
-        FREE_SAID if first.drive == "free" else DRIVEN_SAID,
+        FREE if first.drive == "free" else DRIVEN,
         f"{step}, {long}; settings are those of this crankcheck's profiles in every version.",
         ", ".join(f"{name} {value}" for name, value in facts.items()),
     ]

@@ -12,7 +12,7 @@ from reports.cli.commands.solve import PAGE, instants_of, refuse_times
 from reports.cli.commands.solve_free import free_instants, refuse_turns
 from reports.cli.showing import SolveRequest
 from reports.describe.elastic_certainty import certainty
-from reports.describe.elastic_course import closely_sampled, elastic_course
+from reports.describe.elastic_course import closely_sampled, drawn_course, elastic_course
 from reports.describe.elastic_motion import elastic_frame, energy_columns
 from reports.face.elastic_choice import ElasticChoice
 from reports.face.elastic_text import show_elastic
@@ -71,7 +71,7 @@ def _written(motion: ElasticHistory, time_s: Array, request: SolveRequest) -> li
     if request.figures is not None:
         from reports.figures.elastic.writing import written_elastic_figures
 
-        course = elastic_course(motion, closely_sampled(scene, motion.until_s))
+        course = drawn_course(motion, closely_sampled(scene, motion.until_s))
         told.append(written_elastic_figures(course, request.figures))
     if output is not None and output.suffix.lower() == PAGE:
         from reports.face.scene_report import elastic_page_of

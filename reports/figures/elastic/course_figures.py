@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from matplotlib.figure import Figure
 
 from reports.describe.elastic_course import ElasticCourse
-from reports.figures.elastic import angles, deflection, extension, positions, torque
+from reports.figures.elastic import angles, control, deflection, extension, positions, torque
 from reports.figures.saving import FORMATS
 
 COURSE_FIGURES: Mapping[str, Callable[[ElasticCourse], Figure | None]] = {
@@ -17,8 +17,10 @@ COURSE_FIGURES: Mapping[str, Callable[[ElasticCourse], Figure | None]] = {
     "torque": torque.draw,
     "angles": angles.draw,
     "positions": positions.draw,
+    "control": control.draw,
 }
-"""Each gives None where there is nothing to draw: what is let go has no drive."""
+"""Each gives None where there is nothing to draw: what is let go has no drive, few are
+controlled."""
 
 
 def elastic_figure_files() -> list[str]:

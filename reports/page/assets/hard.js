@@ -74,7 +74,7 @@
     const at = run.at_s === null ? "" : `${Number(run.at_s.toPrecision(4))} s`;
     const crank = run.at_deg === null ? "" : `, crank at ${run.at_deg.toFixed(1)}°`;
     return [
-      ["worst error of place", `${short(run.error)} (held below ${short(known?.within ?? null)})`],
+      [`worst error of ${known?.error_of ?? "place"}`, `${short(run.error)} (held below ${short(known?.within ?? null)})`],
       ["widest gap of a pin", short(run.gap)],
       ...(run.drive === null ? [] : [["error of the crank", short(run.drive)]]), // nothing drives it
       ["distance from singular, 0 to 1", run.sine >= 0.01 ? run.sine.toFixed(2) : short(run.sine)],

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from reports.page.sections.convergence import build as convergence
+from reports.page.sections.elastic import build as elastic
 from reports.page.sections.fairness import build as fairness
 from reports.page.sections.free import build as free
 from reports.page.sections.hard import build as hard
@@ -26,7 +27,7 @@ Build = Callable[[PageReport], Section | None]
 
 
 def _of_driven(build: Callable[[Report], Section | None]) -> Build:
-    """A section that speaks of turns: of what was driven alone."""
+    """A section that speaks of turns and places: of what was driven alone, with rigid links."""
     return lambda report: None if report.driven is None else build(report.driven)
 
 
@@ -35,6 +36,7 @@ SECTIONS: dict[str, Build] = {
     "recommendation": _of_driven(recommendation),
     "precision": _of_driven(precision),
     "free": free,
+    "elastic": elastic,
     "convergence": _of_driven(convergence),
     "reading_forces": _of_driven(reading_forces),
     "motion": _of_driven(motion),

@@ -8,7 +8,7 @@ from reports.page.sections.convergence import drawn
 from reports.page.sections.free_courses import FreeCourses, sizes_of
 from reports.page.sections.section import Section
 from reports.page.thinning import BUDGET, steps_held
-from reports.results.lines import Line, lines
+from reports.results.lines import Line, lines, turn_of
 from reports.results.overview import Report
 from reports.results.recommend import Recommendation
 from reports.results.table import short_target
@@ -18,7 +18,10 @@ SHOWN = (
     *("horizon_1e-1_s", "horizon_1e-3_s", "precision", "sensitivity", "dt_s", "verdict", "status"),
 )
 """The columns of the table."""
-SCRIPTS = ("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js")
+SCRIPTS = (
+    *("legend.js", "charts.js", "mechanism.js", "stage.js", "free_courses.js", "free.js"),
+    "copying.js",
+)
 FREE_DRIVE = ", free drive"
 """What a variant is called by where others were driven: here all were let go."""
 ERRORS = {
@@ -49,7 +52,7 @@ def build(report: Report, room: int = BUDGET) -> Section | None:
             "rows": [row for line in lines for row in _rows(report, line)],
             "scenes": [_words(name, report.scenes[name]) for name in names],
             "errors": {name: ERRORS[name][0] for name in fits},
-            "costs": [_cost(one) for one in report.recommendations if one.best.drive == "free"],
+            "costs": [cost_row(one) for one in report.recommendations if _is_rigid_free(one)],
             "thinned": held < max(len(line.cells) for line in lines),
             "held": held,
         },
@@ -78,20 +81,29 @@ def _rows(report: Report, line: Line) -> list[dict[str, object]]:
     ]
 
 
-def _cost(one: Recommendation) -> dict[str, object]:
-    """The cheapest settings of an engine that keep a target on every scene, as a row."""
+def cost_row(one: Recommendation, period_s: float = 1.0) -> dict[str, object]:
+    """The cheapest settings of an engine that keep a target on every scene, as a row, with their
+    text to be copied for a driver of that period."""
     best = one.best
     return {
+        "one": one,
+        "called": best.variant,
+        "snippet": one.snippet(period_s),
         "target": short_target(one.target),
         "name": f"{best.engine} {best.variant}",
         "reason": one.reason.replace(FREE_DRIVE, ""),
         "caution": one.caution.replace(FREE_DRIVE, ""),
         "dt_s": 1.0 / best.steps_per_turn,
+        "steps": f"{best.steps_per_turn:g} a {turn_of(best.drive)}",
         "us_per_step": best.us_per_step,
         "ms": 1e3 * best.s_per_turn,
         "error": best.worst_error,
         "scene": best.worst_scene,
     }
+
+
+def _is_rigid_free(one: Recommendation) -> bool:
+    return one.best.drive == "free" and not one.best.bends
 
 
 def _horizon(time_s: float | None) -> str:

@@ -31,6 +31,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
     shown = [number for number, _ in drawn]
     chart = heat(matrix, frozenset(shown))
     cases = {case.name: case for case in matrix.cases}
+    errors = list(dict.fromkeys(case.error_of for case in matrix.cases))
     meanings = {str(name): words for name, words in MEANINGS.items()}
     return Section(
         anchor="hard",
@@ -45,6 +46,7 @@ def hard(matrix: Matrix, room: int = ROOM) -> Section:
                 (sign(name), kind(name), name, meanings.get(name, "not known to this page"), number)
                 for name, number in outcomes_seen(matrix).items()
             ],
+            "shaded": errors[0] if len(errors) == 1 else "what each case says",
             "shades": [f"below {error_text(SHADES[0], 1)}", *map(_from, SHADES)],
             "failures": _failures(matrix, shown),
             "left_out": count(len(matrix.pictures) - len(drawn), "moving picture"),
@@ -138,6 +140,7 @@ def _case(case: CaseFacts) -> dict[str, object]:
         "parameter": case.parameter,
         "unit": case.unit,
         "within": case.within,
+        "error_of": case.error_of,
         "good": ", ".join(case.good),
     }
 

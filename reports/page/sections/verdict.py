@@ -66,11 +66,29 @@ def build(report: Report) -> Section:
                 for engine, version in report.engines.items()
             ],
             "rows": rows,
-            "free": report.driven is not report,
-            "all_free": report.driven is None,
+            "held_to": _held_to(report),
             "steps": sorted({f"{s:g}" for s in report.cells["steps_per_turn"]}, key=float),
         },
     )
+
+
+def _held_to(report: Report) -> list[str]:
+    """What errors are, for each kind of cell that there is."""
+    said = {
+        "driven": "An error is the largest of a whole run against the closed form: of a link angle "
+        "in radians, of a slider's displacement or a point's place in lengths of the longest link, "
+        "whichever is worst.",
+        "elastic": "Where links bend, the error is that of their deflection against the solved "
+        "motion of the beam, as a share of the largest deflection.",
+        "free": "What was let go is held to the integrated motion at the same time, its errors "
+        "over the sensitivity G of that motion.",
+    }
+    there = {
+        "driven": report.driven is not None,
+        "elastic": bool(report.elastic_lines),
+        "free": any(not line.bends for line in report.free_lines),
+    }
+    return [text for name, text in said.items() if there[name]]
 
 
 def level(gated: pd.DataFrame) -> str:
@@ -107,7 +125,9 @@ def sentence(engine: str, rows: Sequence[VerdictRow], chosen: Sequence[Recommend
 
 def _held(row: VerdictRow) -> str:
     """Whether an engine holds with settings that are judged."""
-    text = f"With {row.look.variant} settings it is within tolerance in {_share(row)}"
+    name = row.look.variant
+    manner = f"As {name}," if "," in name else f"With {name} settings"
+    text = f"{manner} it is within tolerance in {_share(row)}"
     if row.failed:
         text += f", and {count(row.failed, 'run')} of them did not end well"
     if row.orders:

@@ -72,3 +72,12 @@ def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None
 )
 def test_what_makes_no_sense_is_refused(words: list[str], said: str) -> None:
     assert said in crankcheck(*words, code=2)
+
+
+def test_errors_say_what_they_are_held_to() -> None:
+    asked = ["--profile", "tuned", "--jobs", "1", "--no-convergence"]
+    told = crankcheck("verify", "elastic", *STEPS, *asked)
+    assert "against the solved motion of the beam with foreshortening" in told
+    assert "closed form" not in told
+    asked += ["--engine", "mujoco", "--duration", "0.1"]
+    assert "closed form" not in crankcheck("verify", "fourbar-swing", *asked)

@@ -14,6 +14,7 @@ import pytest
 from reports.page.build import page
 from reports.page.sections import SECTIONS
 from reports.page.sections.section import PageReport
+from reports.results.recommend import recommendations
 from reports.store.manifest import Manifest
 from reports.store.reader import Stored, read_store
 from tests.reports.page.conftest import Opened
@@ -118,3 +119,22 @@ def test_a_free_run_is_drawn_and_every_choice_has_curves(open_page: Open, path: 
     assert "0.417 s" in seen.locator("#free-angle").inner_text()
     assert opened.said == []
     assert opened.asked == [path.as_uri()] or all(x.startswith("file") for x in opened.asked)
+
+
+def test_settings_of_free_motion_are_to_be_copied(free: Stored) -> None:
+    """Each is led by what it promises, has the step that was run, and no speed of a crank."""
+    cells = free.cells.assign(us_per_step=1.0, s_per_turn=1e-3)
+    timed = replace(free, cells=cells)
+    found = [one for one in recommendations(timed) if not one.reason]
+    assert {one.best.engine for one in found} == {"mujoco", "pymunk"}
+    for one in found:
+        text = one.snippet()
+        assert repr(1.0 / one.best.steps_per_turn) in text
+        assert "place over the sensitivity" in " ".join(text.split())
+        assert "Drive: none." in text
+        assert "crank at" not in text
+        assert "speed)" not in text
+    section = SECTIONS["free"](PageReport(timed))
+    assert section is not None
+    assert "copying.js" in section.scripts
+    assert "To be copied" in page(timed)

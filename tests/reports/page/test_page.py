@@ -25,7 +25,7 @@ from reports.store.reader import Stored
 
 MEGABYTES_8 = 8_000_000
 VOID = {"meta", "link", "input", "br", "img", "col"}
-STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "free")]
+STORED = [name for name in SECTIONS if name not in ("hard", "reading_forces", "free", "elastic")]
 """The sections of a driven store without forces and without hard cases beside it."""
 EVIL = '</script><img src=x onerror="window.hacked=1"><b>\'&amp;{{ 7 * 7 }}'
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -68,6 +69,23 @@ def test_one_value_is_shown_from_the_command_line() -> None:
     words = ["stability", "elastic-step", "--at", "360", "--profile", "tuned"]
     done = CliRunner().invoke(app, [*words, "--engine", "pymunk"])
     assert done.exit_code == 1
-    assert "a deflection, over the largest, is off by 0.029" in " ".join(done.output.split())
+    told = " ".join(done.output.split())
+    assert "a deflection, over the largest, is off by 0.029" in told
+    assert "error of the deflection, over the largest: 0.0" in told
     done = CliRunner().invoke(app, [*words, "--engine", "mujoco"])
     assert done.exit_code == 0, done.output
+
+
+def test_what_fails_is_drawn_with_its_nodes() -> None:
+    case = CATALOGUE["elastic-step"]
+    _, drawn = graded(case, "pymunk", "tuned", 360.0, draw=True)
+    assert drawn is not None
+    assert {"coupler-1-2", "coupler-2-3", "coupler-3-4"} <= {*drawn.drawing["points"]}  # type: ignore[misc]
+
+
+def test_the_page_says_what_errors_are_of(tmp_path: Path) -> None:
+    words = ["stability", "elastic-step", "--engine", "mujoco", "--profile", "as-shipped"]
+    done = CliRunner().invoke(app, [*words, "-o", str(tmp_path)])
+    assert "Numbers: the worst error of the deflection, over the largest;" in done.stdout
+    page = (tmp_path / "stability.html").read_text(encoding="utf-8")
+    assert "Worst error of the deflection, over the largest:" in page

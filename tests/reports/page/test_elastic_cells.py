@@ -1,0 +1,134 @@
+"""The page of a store whose links bend, alone and beside what is driven with rigid ones."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from playwright.sync_api import Browser
+from rich.console import Console
+
+from reports.cli.commands import sweep as command
+from reports.cli.measuring import SweepRequest
+from reports.page.build import page
+from reports.page.comment import summary
+from reports.page.sections import SECTIONS
+from reports.page.sections.section import PageReport
+from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommendations
+from reports.results.table import recommendation_table
+from reports.store.manifest import Manifest
+from reports.store.reader import Stored, read_store
+from tests.reports.page.conftest import PHONE, WIDE, Opened
+from tests.reports.page.test_browser import OUT
+
+SCENE = "fourbar-elastic"
+
+
+@pytest.fixture(scope="module")
+def bent(tmp_path_factory: pytest.TempPathFactory) -> Stored:
+    folder = tmp_path_factory.mktemp("elastic") / "store"
+    nowhere = Console(file=StringIO())
+    asked = SweepRequest(
+        folder,
+        scenes=(SCENE,),
+        engines=("mujoco",),
+        profiles=("tuned",),
+        segments="3,4",
+        steps_per_turn="720,1440",
+        turns=1.0,
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.sweep.running.ROUNDS", 2)
+        command.sweep(asked, nowhere, nowhere)
+    return read_store(folder)
+
+
+def sections(text: str) -> list[str]:
+    return re.findall(r'<section[^>]* id="([^"]+)"', text)
+
+
+def beside(small: Stored, bent: Stored) -> Stored:
+    """Both in one store."""
+    return replace(
+        small,
+        cells=pd.concat([small.cells, bent.cells], ignore_index=True),
+        manifest=Manifest(
+            runs=[*small.manifest.runs, *bent.manifest.runs],
+            scenes={**small.manifest.scenes, **bent.manifest.scenes},
+        ),
+    )
+
+
+def test_elastic_cells_have_a_section_with_their_own_heads(bent: Stored) -> None:
+    text = page(bent)
+    assert sections(text) == ["verdict", "elastic", "stability", "fairness", "provenance"]
+    told = text[: text.index('id="provenance"')]
+    assert "closed form" not in told
+    assert "beam / D" in told
+    assert "As tuned, 3 segments, it is within tolerance" in told
+
+
+def test_what_is_rigid_keeps_its_sections_without_what_bends(small: Stored, bent: Stored) -> None:
+    report = PageReport(beside(small, bent))
+    assert report.driven is not None
+    assert SCENE not in report.driven.scenes
+    section = SECTIONS["convergence"](report)
+    assert section is not None
+    assert "segments" not in json.dumps(section.embedded, default=list)
+    assert "elastic" in sections(page(report.stored))
+
+
+def test_the_course_of_the_beam_is_that_of_the_engine_less_its_error(bent: Stored) -> None:
+    line = PageReport(bent).elastic_lines[-1]
+    trace = bent.trace(str(line.cells.iloc[-1]["key"]))
+    largest = abs(trace["deflection.coupler"] - trace["deflection_error.coupler"]).max()
+    off = abs(trace["deflection_error.coupler"]).max() / largest
+    assert off == pytest.approx(line.cells.iloc[-1]["deflection_pure"], rel=0.02)
+
+
+def told(found: tuple[Recommendation, ...]) -> str:
+    console = Console(file=StringIO(), width=100)
+    console.print(recommendation_table(found, 100))
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()
+
+
+def test_settings_are_recommended_by_the_deflection(small: Stored, bent: Stored) -> None:
+    found = recommendations(bent)
+    assert [one.target for one in found] == list(ELASTIC_TARGETS)
+    assert "/ D" in told(found)
+    assert "rad" not in told(found)
+    text = found[0].snippet()
+    assert "deflection (of the largest) within 0.1" in text
+    assert "rigid segments, with a spring of rate EI n / l" in " ".join(text.split())
+    assert "over the largest" in summary(bent)
+    both = told(recommendations(beside(small, bent)))
+    assert "rad" in both
+    assert "/ D" in both
+
+
+@pytest.mark.parametrize("viewport", [WIDE, PHONE], ids=["wide", "phone"])
+def test_the_section_draws_and_keeps_within_the_window(
+    browser: Browser, bent: Stored, tmp_path: Path, viewport: dict[str, int]
+) -> None:
+    """A real browser alone finds what a script does wrong: some 2 s."""
+    path = tmp_path / "elastic.html"
+    path.write_text(page(bent), encoding="utf-8")
+    context = browser.new_context(offline=True, viewport=viewport)  # type: ignore[arg-type]
+    opened = Opened(context.new_page())
+    opened.watch()
+    opened.page.goto(path.as_uri())
+    opened.show("elastic")
+    opened.page.locator("#elastic-course").select_option("error")
+    opened.page.locator("#elastic-error").select_option("segments_pure")
+    names = "() => document.getElementById('elastic-chart').data.map(each => each.name)"
+    assert any("mujoco tuned, 4 segments" in name for name in opened.page.evaluate(names))
+    if viewport is PHONE:
+        assert not opened.page.evaluate(OUT)
+    assert not opened.said
+    context.close()
