@@ -18,6 +18,7 @@ from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.generalised_forces import Strokes
+from analytic.multibody.runaway import SHARE, check_runaway
 from analytic.multibody.singular_passage import (
     CLOSE,
     LEAST,
@@ -202,8 +203,20 @@ class Adaptive:
         with np.errstate(all="ignore"):
             trouble = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
+            self._check_runaway(steps, solver)
             raise CrankcheckError(f"{name}: the integration fails at {solver.t:g} s: {trouble}")
+        if steps.crowded:
+            self._check_runaway(steps, solver)
         steps.check_count(name, float(solver.t))
+
+    def _check_runaway(self, steps: Steps, solver: DOP853) -> None:
+        """Raises CrankcheckError where the speed has gone to infinity."""
+        if not steps.within:
+            return
+        rates, units = slice(self.dynamics.assembly.size, -1), self._units()
+        looked = steps.solution(np.array([SHARE * steps.times[-1], steps.times[-1]])).T
+        before, now = (float(np.abs(state / units)[rates].max()) for state in looked)
+        check_runaway(self.dynamics.assembly.scene, float(solver.t), now / max(before, EPS))
 
     def _take(self, steps: Steps, solver: DOP853) -> None:
         """Keep a step, and put the state back onto the constraints."""

@@ -16,6 +16,9 @@ MOST_STEPS = 1_000_000
 FIRST_STEPS, FAR = 2_000, 2.0
 """After so many it is told how many all take, and refused where they are so many times too many."""
 
+CROWD = 200
+"""The last steps, which tell how many all would take if they stay as short."""
+
 
 @dataclass
 class Steps:
@@ -38,6 +41,16 @@ class Steps:
     @property
     def solution(self) -> OdeSolution:
         return OdeSolution(self.times, self.within)
+
+    @property
+    def crowded(self) -> bool:
+        """Whether the time that is left would take too many steps, as short as the last ones; it is
+        looked at now and then."""
+        made = len(self.times) - 1
+        if made < CROWD or made % CROWD:
+            return False
+        lasted_s = self.times[-1] - self.times[-CROWD]
+        return (self.until_s - self.times[-1]) * CROWD > FAR * MOST_STEPS * lasted_s
 
     def check_count(self, name: str, now_s: float) -> None:
         """Raises CrankcheckError where the time of a scene takes more steps than can be made."""
