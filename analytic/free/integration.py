@@ -19,6 +19,7 @@ from analytic.free.kinks import heeds_direction, is_kinked
 from analytic.free.machine import Machine
 from analytic.free.window import Scale, WindowSolution, solve_window
 from analytic.free.window_kinks import BEYOND, SHORT_OF, WindowKinks
+from analytic.multibody.runaway import SHARE, check_runaway
 from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError
@@ -86,6 +87,10 @@ class Integration:
     def _check_count(self) -> None:
         """Raises CrankcheckError where the time takes more windows than can be worked out."""
         made = len(self.windows)
+        if made >= FIRST_WINDOWS:
+            lasted_s = self.now_s - self.windows[-FIRST_WINDOWS].start_s
+            if (self.until_s - self.now_s) * FIRST_WINDOWS > FAR * MOST_WINDOWS * lasted_s:
+                self._check_runaway()
         ahead = made * self.until_s / self.now_s
         if made >= MOST_WINDOWS or (made >= FIRST_WINDOWS and ahead > FAR * MOST_WINDOWS):
             raise CrankcheckError(
@@ -161,11 +166,18 @@ class Integration:
                 return solved, long_s, False
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
             aimed, rough = 0, None
+        self._check_runaway()
         raise failed or CrankcheckError(
             f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
             f"{self.scene.driver.link} at {self._driver_deg():.6g} deg: what acts, or what moves, "
             "is not smooth there, or has no mass"
         )
+
+    def _check_runaway(self) -> None:
+        """Raises CrankcheckError where the speed has gone to infinity."""
+        speeds = [abs(one.v[0]) for one in self.windows if one.start_s >= SHARE * self.now_s]
+        if speeds:
+            check_runaway(self.scene, self.now_s, abs(self.v) / max(float(min(speeds)), TINY))
 
     def _start(self, long_s: float, way: float) -> tuple[float, float]:
         """The acceleration with which a window starts, or hardly another, and its slope [1/s]."""

@@ -10,54 +10,37 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import DOP853, OdeSolution  # type: ignore[import-untyped]  # ships no stubs
+from scipy.integrate import DOP853  # type: ignore[import-untyped]  # ships no stubs
 from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.generalised_forces import Strokes
+from analytic.multibody.runaway import SHARE, check_runaway
 from analytic.multibody.singular_passage import (
+    CLOSE,
+    LEAST,
     NEAR,
-    SingularPassage,
+    SHORT,
     passage_ahead,
+    singular_at,
     smallest_singular,
 )
 from analytic.multibody.state_history import StateHistory
+from analytic.multibody.steps import Steps
 from analytic.multibody.switches import Switch, edges, state_cells, strokes, switches
 from models.array import Array
 from models.errors import CrankcheckError
 
-MOST_STEPS = 1_000_000
-FIRST_STEPS, FAR = 2_000, 2.0
-"""After so many it is told how many all take, and refused where they are so many times too many."""
 CAREFUL = 0.1
 """The smallest singular value of the constraints, of rows of the largest entry 1, below which the
 stages of a step are put back onto the constraints as well: what they are off by, which is more than
 the step is, counts there over that value."""
-
-
-@dataclass
-class _Steps:
-    """The steps of an integration: the times between them, and what is within; ``clear_s`` is the
-    time since which nothing has jumped. ``careful`` if a change point may be near."""
-
-    times: list[float]
-    until_s: float
-    within: list[Callable[[Array], Array]] = field(default_factory=list)
-    passages: list[SingularPassage] = field(default_factory=list)
-    clear_s: float = 0.0
-    careful: bool = False
-
-    def add(self, end_s: float, within: Callable[[Array], Array]) -> None:
-        self.times.append(end_s)
-        self.within.append(within)
-
-    @property
-    def solution(self) -> OdeSolution:
-        return OdeSolution(self.times, self.within)
+EPS = float(np.finfo(float).eps)
+AGAIN = 0.5
+"""A passage is looked for again at a smallest singular value of so much of the last one."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +66,7 @@ class Adaptive:
         """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
         forces = self.dynamics.forces
         own, state = switches(forces), np.concatenate([q, rates, [0.0]])
-        steps = _Steps([0.0], until_s)
+        steps = Steps([0.0], until_s)
         times = edges(forces.scene, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
@@ -103,7 +86,7 @@ class Adaptive:
 
     def _between_edges(
         self,
-        steps: _Steps,
+        steps: Steps,
         own: tuple[Switch, ...],
         cells: Array,
         begin: float,
@@ -139,19 +122,33 @@ class Adaptive:
                 solver = self._solver(steps, before_s, end, before, strokes(own, cells), first_s)
         return solver.y, cells
 
-    def _passed(self, steps: _Steps, solver: DOP853, own: Strokes) -> DOP853:
+    def _passed(self, steps: Steps, solver: DOP853, own: Strokes) -> DOP853:
         """The integration on the other side of a change point, if one is just ahead."""
         if not self.projected or self.dynamics.rank == 0 or solver.status != "running":
             return solver
-        n, now_s = self.dynamics.assembly.size, float(solver.t)
-        smallest = smallest_singular(self.dynamics, solver.y[:n])
+        now_s = float(solver.t)
+        smallest = smallest_singular(self.dynamics, solver.y[: self.dynamics.assembly.size])
         steps.careful = smallest < CAREFUL
-        if smallest >= NEAR:
+        solver.rtol, solver.atol = self._tolerances(max(NEAR / max(smallest, EPS), 1.0) ** 2)
+        if not steps.careful:
             return solver
-        passage = passage_ahead(self.dynamics, steps.solution, steps.clear_s, now_s, smallest)
+        back_s = 0.1 * (now_s - steps.times[-2])
+        at_s = singular_at(self.dynamics, steps.within[-1], now_s, back_s)
+        if not now_s < at_s < math.inf:
+            steps.tried = math.inf
+            return solver
+        if smallest > CLOSE * LEAST and (
+            smallest > NEAR or solver.h_abs > SHORT * (at_s - now_s)
+        ):  # not beyond where a passage begins
+            solver.h_abs = min(solver.h_abs, (1.0 - LEAST / smallest) * (at_s - now_s))
+            return solver
+        if smallest > AGAIN * steps.tried:
+            return solver
+        steps.tried = smallest
+        passage = passage_ahead(self.dynamics, steps.solution, steps.clear_s, now_s, at_s, own)
         if passage is None or passage.end_s >= solver.t_bound:
             return solver
-        state = self._closed(passage.state(np.array([passage.end_s]))[:, 0])
+        state = self.dynamics.closed_state(passage.state(np.array([passage.end_s]))[:, 0])
         steps.add(passage.end_s, passage.state)
         steps.passages.append(passage)
         steps.clear_s = passage.end_s
@@ -173,7 +170,7 @@ class Adaptive:
 
     def _solver(
         self,
-        steps: _Steps,
+        steps: Steps,
         begin: float,
         end: float,
         state: Array,
@@ -185,51 +182,47 @@ class Adaptive:
 
         def rates(time_s: float, state: Array) -> Array:
             if steps.careful:
-                state = self._closed(state)
+                state = self.dynamics.closed_state(state)
             return self.dynamics.rates(min(max(time_s, begin), last), state, own)
 
         first = None if first_s is None else min(first_s, end - begin)
-        return DOP853(
-            rates, begin, state, end,
-            rtol=max(self.tolerance, 3e-14), atol=self.tolerance * self._units(), first_step=first,
-        )  # fmt: skip
+        rtol, atol = self._tolerances()
+        return DOP853(rates, begin, state, end, rtol=rtol, atol=atol, first_step=first)
+
+    def _tolerances(self, loose: float = 1.0) -> tuple[float, Array]:
+        """So many times the tolerance, relative and absolute, as steps are held to it."""
+        return loose * max(self.tolerance, 3e-14), loose * self.tolerance * self._units()
 
     def _units(self) -> Array:
         """What a coordinate, a rate and the work count as one of."""
         own = self.dynamics.assembly.units
         return np.concatenate([own, own, [self.dynamics.assembly.scene.longest_m**2]])
 
-    def _step(self, solver: DOP853, steps: _Steps) -> None:
+    def _step(self, solver: DOP853, steps: Steps) -> None:
         name = self.dynamics.assembly.scene.name
         with np.errstate(all="ignore"):
             trouble = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
+            self._check_runaway(steps, solver)
             raise CrankcheckError(f"{name}: the integration fails at {solver.t:g} s: {trouble}")
-        self._check_count(len(steps.times), float(solver.t), steps.until_s)
+        if steps.crowded:
+            self._check_runaway(steps, solver)
+        steps.check_count(name, float(solver.t))
 
-    def _check_count(self, made: int, now_s: float, until_s: float) -> None:
-        """Raises CrankcheckError where the time takes more steps than can be worked out."""
-        ahead = made * until_s / now_s
-        if made > MOST_STEPS or (made >= FIRST_STEPS and ahead > FAR * MOST_STEPS):
-            raise CrankcheckError(
-                f"{self.dynamics.assembly.scene.name}: free for {until_s:g} s, of which "
-                f"{now_s:.3g} s took {made} steps of the integration; at most {MOST_STEPS} are "
-                "made, and a load that is switched by the motion may hold it in place, or a "
-                f"spring or damper is too stiff: give a time of {now_s * MOST_STEPS / made:.2g} s "
-                "or less, or a softer one"
-            )
+    def _check_runaway(self, steps: Steps, solver: DOP853) -> None:
+        """Raises CrankcheckError where the speed has gone to infinity."""
+        if not steps.within:
+            return
+        rates, units = slice(self.dynamics.assembly.size, -1), self._units()
+        looked = steps.solution(np.array([SHARE * steps.times[-1], steps.times[-1]])).T
+        before, now = (float(np.abs(state / units)[rates].max()) for state in looked)
+        check_runaway(self.dynamics.assembly.scene, float(solver.t), now / max(before, EPS))
 
-    def _take(self, steps: _Steps, solver: DOP853) -> None:
+    def _take(self, steps: Steps, solver: DOP853) -> None:
         """Keep a step, and put the state back onto the constraints."""
         steps.add(float(solver.t), solver.dense_output())
         if self.projected:
-            solver.y = self._closed(solver.y)
-
-    def _closed(self, state: Array) -> Array:
-        """A state on the constraints."""
-        n = self.dynamics.assembly.size
-        q, rates = self.dynamics.closed(state[:n], state[n : 2 * n])
-        return np.concatenate([q, rates, state[2 * n :]])
+            solver.y = self.dynamics.closed_state(solver.y)
 
     def _crossing(self, own: tuple[Switch, ...], cells: Array, solver: DOP853) -> _Crossing | None:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a

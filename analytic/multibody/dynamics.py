@@ -126,3 +126,9 @@ class Dynamics:
                 break
         step, _ = saddle.solve(0.0, -assembly.joints.jacobian(now)[0] @ rates)
         return now.q[0], rates + step
+
+    def closed_state(self, state: Array) -> Array:
+        """A state of q, q' and what else, (2 n + 1,), on the constraints."""
+        n = self.assembly.size
+        q, rates = self.closed(state[:n], state[n : 2 * n])
+        return np.concatenate([q, rates, state[2 * n :]])

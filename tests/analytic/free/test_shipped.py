@@ -21,8 +21,6 @@ SHARES = np.array([0.137, 0.359, 0.611, 0.829, 1.0])
 SEVERAL_FREEDOMS = ("double-pendulum",)
 """These have the multibody form alone, which is held to itself elsewhere."""
 NAMES = [name for name in shipped("free") if name not in SEVERAL_FREEDOMS]
-OF_BODIES = {"fourbar-chain": 1e-8}
-"""The multibody form goes through a flat position by interpolation: 1.7e-9 after 17 of them."""
 STEADY = 100.0
 """The sensitivity up to which the digits of the issue are asked for."""
 TOO_LONG = {"engine-flywheel": 1.0, "squeezer": 1.0}
@@ -67,7 +65,7 @@ def test_the_multibody_form_agrees_with_every_link(name: str, until_s: float) ->
     wanted, grown = free.at(time_s), free.sensitivity(time_s)
     for link, motion in found.links.items():
         off = np.abs(motion.theta - wanted.links[link].theta)
-        assert np.all(off <= OF_BODIES.get(name, 1e-9) * grown), link
+        assert np.all(off <= 1e-9 * grown), link
 
 
 @pytest.mark.parametrize(("name", "until_s"), [*BRIEF, *LONG])

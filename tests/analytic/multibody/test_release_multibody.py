@@ -24,6 +24,7 @@ from models.loads import Load
 from models.scene import Scene
 from models.tabulated import Tabulated
 from models.window_chain import Chain
+from tests.analytic.free.mechanisms import fourbar
 from tests.analytic.multibody.scenes import (
     DOUBLE_PENDULUM,
     FIVE_BAR,
@@ -247,8 +248,9 @@ def test_a_chain_goes_through_its_flat_positions() -> None:
     found, (theta, _, alpha) = free.at(time_s), turning.at(time_s)
     assert abs(theta[-1] - theta[0]) > math.tau
     for rocker in Chain(2).rockers():
-        assert found.links[rocker].theta == pytest.approx(theta, abs=1e-6)
-        assert found.links[rocker].alpha == pytest.approx(alpha, abs=1e-3)
+        assert found.links[rocker].theta == pytest.approx(theta, abs=1e-11)
+        assert found.links[rocker].alpha == pytest.approx(alpha, abs=1e-6)
+    assert len(free.change_points_s) == 2
 
 
 def test_within_a_passage_the_motion_is_smooth() -> None:
@@ -265,9 +267,39 @@ def test_within_a_passage_the_motion_is_smooth() -> None:
     assert found.alpha == pytest.approx(alpha, abs=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("a", "d", "start_deg", "speed_rad_s", "branch"),
+    [(0.0575, 0.2767, -2.314, 8.296, -1), (0.0838, 0.4833, 14.404, 0.0, 1)],
+    ids=["let go just beside one", "passes them slowly"],
+)
+def test_a_parallelogram_goes_through_its_flat_positions(
+    a: float, d: float, start_deg: float, speed_rad_s: float, branch: int
+) -> None:
+    """In a few steps: those of one that is missed shrink to nothing."""
+    own = fourbar(a, d, a, d, start_deg=start_deg, speed_rad_s=speed_rad_s, branch=branch)
+    free, other, time_s = let_go(own, 0.45), release(own, 0.45), np.linspace(0.0, 0.45, 41)
+    assert len(free.change_points_s) >= 3
+    assert free._history.steps < 150
+    found, wanted = free.at(time_s), other.at(time_s, bound=False)
+    for link, motion in found.links.items():
+        off = np.abs(motion.theta - wanted.links[link].theta)
+        assert np.all(off <= 1e-10 * other.sensitivity(time_s)), link
+
+
+@pytest.mark.parametrize("beside", [1e-7, -1e-9])
+def test_one_that_just_misses_a_change_point_turns_off_beside_it(beside: float) -> None:
+    """To what rounding leaves of its lengths; and its steps do not shrink to nothing either."""
+    own = fourbar(0.15, 0.3, 0.15 * (1.0 + beside), 0.3, start_deg=80.0, speed_rad_s=9.0)
+    free = let_go(own, 0.3)
+    assert free.change_points_s == ()
+    assert free._history.steps < 250
+    energy = free.energy(np.linspace(0.0, 0.3, 11))
+    assert np.ptp(energy.balance) < 1e-14 / abs(beside) * energy.kinetic.max()
+
+
 def test_what_takes_too_many_steps_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("analytic.multibody.adaptive.MOST_STEPS", 200)
-    monkeypatch.setattr("analytic.multibody.adaptive.FIRST_STEPS", 20)
+    monkeypatch.setattr("analytic.multibody.steps.MOST_STEPS", 200)
+    monkeypatch.setattr("analytic.multibody.steps.FIRST_STEPS", 20)
     damped = scene(DOUBLE_PENDULUM + '[springs.stiff]\npoints = ["A", "C"]\ndamping_n_s_m = 1e6\n')
     with pytest.raises(CrankcheckError, match=r"took 20 steps .* give a time of .* s or less"):
         release_multibody(damped, 1.0).at(np.array([1.0]))
