@@ -2,10 +2,13 @@
 
 The elastic coupler of a four-bar, at 10.5 and 5.5 of its frequency over the speed, is given to the
 engines as 4, 8, 16 and 32 segments with plain and corrected springs, at the steps that these
-hold and at half of them. Of the largest deflection: what the engine is off the exact chain by, that
-chain off the beam, the engine off the beam; the fitted order in 1/n; the seconds of a turn. Exits
-with 1 where an engine is not within 1 % of the beam with 16 plain segments, or not within 1e-3 of
-the exact chain; `--few` leaves out the 32, whose exact chain takes most of the time.
+hold and at half of them; to engines that have beams of their own as 2, 4, 8 and 16 elements of one,
+at 720 and 2880 steps a turn. Of the largest deflection: what the engine is off the exact chain by,
+that chain off the beam (of elements what they lock by, estimated), the engine off the beam; the
+fitted order in 1/n; the seconds of a turn. Exits with 1 where an engine is not within 1 % of the
+beam with 16 plain segments, or not within 1e-3 of the exact chain, or not within 1e-3 of the beam
+with 8 elements; `--few` leaves out the 32, whose exact chain takes most of the time, and `--beams`
+all segments.
 """
 
 from __future__ import annotations
@@ -24,13 +27,15 @@ from models.laws import ConstantSpeed
 from models.scene import Scene
 from reports.judge.cell import Cell, Springs, examined
 from reports.plan.elastic import SPRINGS, held_steps
-from sim.registry import usual
+from sim.registry import available, engine, usual
 
-COUNTS = (4, 8, 16, 32)
+COUNTS, ELEMENTS = (4, 8, 16, 32), (2, 4, 8, 16)
 RATIOS = (10.5, 5.5)
 FIRST_RAD_S = 77.37
 """The first frequency of the coupler."""
 MOST_BEAM, MOST_CHAIN = 1e-2, 1e-3
+Line = tuple[str, Springs, int]
+"""An engine, with what, and at how many times the steps."""
 
 
 def at_ratio(ratio: float) -> Scene:
@@ -43,13 +48,13 @@ def at_ratio(ratio: float) -> Scene:
 
 
 def measured(
-    scene: Scene, engine: str, count: int, springs: Springs, finer: int
+    scene: Scene, name: str, springs: Springs, finer: int, count: int
 ) -> tuple[float, float, float, float]:
     """Engine off chain, chain off beam, engine off beam, seconds of a turn; NaN for none."""
     steps = finer * round(held_steps(scene, count, springs))
     cell = Cell(
         scene,
-        engine,
+        name,
         "tuned",
         scene.driver.law.period_s / steps,
         steps,
@@ -60,12 +65,12 @@ def measured(
     checked, run = examined(cell)
     errors = checked.errors
     if checked.status != "ok" or errors is None or errors.elastic is None or run is None:
-        print(f"  {engine} {count} {springs}: {checked.status}: {checked.reason}")
+        print(f"  {name} {count} {springs}: {checked.status}: {checked.reason}")
         return (math.nan,) * 4
     own, beam = errors.worst("segments"), errors.worst("deflection")
-    assert own is not None
     assert beam is not None
-    return own.pure, errors.elastic.chain, beam.pure, run.cost.wall_s if run.cost else math.nan
+    chain = own.pure if own else math.nan
+    return chain, errors.elastic.chain, beam.pure, run.cost.wall_s if run.cost else math.nan
 
 
 def order(counts: tuple[int, ...], found: list[float]) -> float:
@@ -75,27 +80,29 @@ def order(counts: tuple[int, ...], found: list[float]) -> float:
 
 def main() -> int:
     counts = COUNTS[:-1] if "--few" in sys.argv else COUNTS
+    chains = () if "--beams" in sys.argv else (s for s in SPRINGS if s != "beam")
+    lines: list[Line] = [(e, s, finer) for s in chains for finer in (1, 2) for e in usual()]
+    able = [one.name for one in available() if one.version and engine(one.name).applies_beams]
+    beams: list[Line] = [(e, "beam", finer) for e in able for finer in (1, 4)]
     missed = False
     for scene in map(at_ratio, RATIOS):
         print(f"\n{scene.name}: shares of the largest deflection, seconds of a turn")
         print(f"{'engine':8} {'springs':10} {'n':>3} {'finer':>5} {'engine':>9} {'chain':>9} "
               f"{'beam':>9} {'s/turn':>8}")  # fmt: skip
-        lines = [(e, s, finer) for s in SPRINGS for finer in (1, 2) for e in usual()]
-        table = {
-            (*line, n): measured(scene, line[0], n, line[1], line[2])
-            for n in counts
-            for line in lines
-        }
-        for engine, springs, finer in lines:
-            beams = []
-            for n in counts:
-                own, chain, beam, wall = table[engine, springs, finer, n]
-                print(f"{engine:8} {springs:10} {n:3} {finer:5} {own:9.1e} {chain:9.1e} "
+        # One number of segments after the other: their exact chain is found once.
+        table = {(*line, n): measured(scene, *line, n) for n in counts for line in lines}
+        table |= {(*line, n): measured(scene, *line, n) for n in ELEMENTS for line in beams}
+        for name, springs, finer in (*lines, *beams):
+            found, of = [], ELEMENTS if springs == "beam" else counts
+            for n in of:
+                own, chain, beam, wall = table[name, springs, finer, n]
+                print(f"{name:8} {springs:10} {n:3} {finer:5} {own:9.1e} {chain:9.1e} "
                       f"{beam:9.1e} {wall:8.3f}")  # fmt: skip
-                beams.append(beam)
+                found.append(beam)
                 if n == 16 and springs == "plain":
                     missed |= not (beam <= MOST_BEAM and own <= MOST_CHAIN)
-            print(f"{engine:8} {springs:10} order in 1/n: {order(counts, beams):.2f}", flush=True)
+                missed |= springs == "beam" and n >= 8 and not beam <= MOST_CHAIN
+            print(f"{name:8} {springs:10} order in 1/n: {order(of, found):.2f}", flush=True)
     return int(missed)
 
 

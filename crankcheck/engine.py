@@ -16,6 +16,7 @@ for an engine with joint coordinates, whose motion `body_poses` turns into poses
 """
 
 from models import tree
+from models.beams import Beam
 from models.errors import EngineError
 from models.forces import Forces, SliderForces
 from models.friction import ConstantFriction
@@ -61,6 +62,7 @@ from sim.tree_poses import body_poses
 
 __all__ = [
     "GROUND",
+    "Beam",
     "BodyPose",
     "ConstantFriction",
     "Drive",

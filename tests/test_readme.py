@@ -68,6 +68,7 @@ def test_the_readme_counts_all_faults_that_are_planted() -> None:
     assert f"plants {of['forces']} faults of force" in " ".join(README.split())
     assert f"plants {of['free']} faults of dynamics" in " ".join(README.split())
     assert f"`selftest --elastic` plants {of['elastic']} faults" in " ".join(README.split())
+    assert f"in them, and {of['beam']} in beams" in " ".join(README.split())
 
 
 def test_what_uses_a_file_comes_after_what_writes_it() -> None:

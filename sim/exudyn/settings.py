@@ -88,8 +88,8 @@ TUNED = Profile(
             16.0,
             "of beams: no residual falls below what rounding leaves of their axial force; asked "
             "for less, steps fail and are cut, which excites what vibrates: of fourbar-elastic "
-            "with 8 elements accelerations are off by 100 times what they should be, and the "
-            "deflection by 0.1 to 2 %; finer runs break down",
+            "with 8 elements the deflection is 0.08 % off at 720 steps a turn, and 0.02 % with "
+            "this; finer runs and those of 16 elements break down",
         ),
         "jacobian": Setting(
             "each-step",

@@ -9,17 +9,20 @@ import numpy as np
 import pytest
 
 from analytic.elastic.node_start import node_start
+from analytic.elastic.segment_start import segment_start
 from models.beamed import BeamedScene
 from models.elastic import Shape
 from models.errors import EngineError
 from models.files import load_scene
-from models.laws import ConstantSpeed
+from models.laws import ConstantSpeed, Oscillating
 from models.motion import Motion
 from models.scene import Scene
+from models.segmented import SegmentedScene
 from models.springs import PinSpring
 from sim.engine import Run
 from sim.exudyn.engine import ENGINE
 from sim.run import run
+from sim.settings import resolved
 
 
 def still(*, start_rad: float = 0.0, **changes: float) -> Scene:
@@ -148,3 +151,23 @@ def test_a_beam_that_is_not_that_of_the_scene_is_refused(
     )
     with pytest.raises(EngineError, match=said):
         run(own.given, node_start(own, "straight"), ENGINE, dt_s=1e-3, steps=10)
+
+
+@pytest.mark.parametrize("beams", [True, False])
+def test_a_crank_that_speeds_up_starts_links_that_bend_with_their_own_accelerations(
+    *, beams: bool
+) -> None:
+    """What the constraints leave free follows by its inertia, and not in the shortest way."""
+    scene = load_scene("fourbar-elastic")
+    law = Oscillating(1.57, 0.6, 7.4, 0.4)
+    scene = replace(scene, driver=replace(scene.driver, law=law))
+    if beams:
+        given, state = BeamedScene(scene, 8).given, node_start(BeamedScene(scene, 8), "periodic")
+    else:
+        own = SegmentedScene(scene, 4)
+        given, state = own.given, segment_start(own, "periodic")
+    session = ENGINE.open(given, state, resolved(ENGINE.profiles["tuned"], {}), 1e-3, "prescribed")
+    first = session.facts().start.bodies
+    scale = max(abs(alpha) for alpha in state.alpha.values())
+    for name, alpha in state.alpha.items():
+        assert first[name].alpha[0] == pytest.approx(alpha, abs=1e-2 * scale)
