@@ -17,7 +17,7 @@ from analytic.elastic.coordinates import coordinates
 from analytic.elastic.discretisation import Discretisation, Segments, flexible_links
 from analytic.elastic.drive_check import check_drive
 from analytic.elastic.elastic_doubt import ElasticDoubt
-from analytic.elastic.periodic import PeriodicMotion, periodic_motion
+from analytic.elastic.periodic import FEWEST, OTHERS, PeriodicMotion, periodic_motion
 from analytic.elastic.reduced import Instant, ReducedForm, quasi_static_start
 from analytic.elastic.vibration import VibrationHistory, vibrate
 from analytic.kinematics import solve
@@ -49,7 +49,7 @@ MOST_BENT = 0.1
 @dataclass(frozen=True)
 class DrivenElasticMotion:
     """A scene with elastic links, driven by its law from time 0 to ``until_s``; the windows of the
-    integration are ``halved`` so many times."""
+    integration are ``halved`` so many times, and a periodic motion is taken at other instants."""
 
     scene: Scene
     until_s: float
@@ -80,7 +80,7 @@ class DrivenElasticMotion:
 
     @cached_property
     def _periodic(self) -> PeriodicMotion:
-        return periodic_motion(self.form)
+        return periodic_motion(self.form, OTHERS if self.halved % 2 else FEWEST)
 
     @cached_property
     def history(self) -> PeriodicMotion | VibrationHistory:
@@ -91,7 +91,7 @@ class DrivenElasticMotion:
 
     @property
     def finer(self) -> DrivenElasticMotion:
-        """The motion by more shapes, and in windows half as long."""
+        """The motion by more shapes, and in windows half as long, or at other instants."""
         return replace(self, by=self.by.finer, halved=self.halved + 1)
 
     def doubt(self, time_s: Array) -> ElasticDoubt:

@@ -19,8 +19,10 @@ from analytic.elastic.resonance import Sensitivity, resonance_text, sensitivity
 from models.array import Array
 from models.errors import CrankcheckError
 
-FEWEST, MOST = 65, 1025
-"""Instants of a turn; twice as many are taken as long as the series has not come to an end."""
+FEWEST, OTHERS, MOST = 65, 91, 1025
+"""Instants of a turn; twice as many are taken as long as the series has not come to an end. What
+starts from others ends with others as well: under loads with kinks or jumps there is no end, and
+what so many instants leave out two motions with the same would have in common."""
 MOST_UNKNOWNS = 6000
 """Coefficients at all instants, beyond which the equations take too much room and time."""
 ENDED = 1e-13
@@ -68,8 +70,9 @@ class PeriodicMotion:
         return decay(self.z)
 
 
-def periodic_motion(form: ReducedForm) -> PeriodicMotion:
-    """The periodic motion of a mechanism whose driver has a constant speed.
+def periodic_motion(form: ReducedForm, fewest: int = FEWEST) -> PeriodicMotion:
+    """The periodic motion of a mechanism whose driver has a constant speed, at ``fewest`` instants
+    of a turn or more, an odd number.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def periodic_motion(form: ReducedForm) -> PeriodicMotion:
         A resonance; links that bend too far; a drive or loads that do not come back after a turn.
     """
     check_periodic(form)
-    linear = found = _first(form)
+    linear = found = _first(form, fewest)
     while True:
         z, change = _met(form, found.z)
         found = _looked_at(form, z, change)
@@ -136,9 +139,9 @@ def balanced(linear: LinearForm, period_s: float, stiffness: Array) -> tuple[Arr
     return z, lu_solve(factors, (z @ stiffness).ravel()).reshape(z.shape)
 
 
-def _first(form: ReducedForm) -> PeriodicMotion:
-    """The motion of the equations linearised about the rigid mechanism."""
-    time_s = instants(FEWEST, form.period_s)
+def _first(form: ReducedForm, count: int) -> PeriodicMotion:
+    """The motion of the equations linearised about the rigid mechanism, at so many instants."""
+    time_s = instants(count, form.period_s)
     return linear_motion(form, linearise(form, time_s, FIRST * form.assembly.scene.longest_m))
 
 

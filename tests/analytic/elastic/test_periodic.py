@@ -9,15 +9,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analytic.elastic import periodic
+from analytic.elastic.discretisation import Modes
+from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.linearised import linearise
 from analytic.elastic.monodromy import by_collocation, by_newmark
-from analytic.elastic.periodic import instants, linear_motion, periodic_motion
+from analytic.elastic.periodic import PeriodicMotion, instants, linear_motion, periodic_motion
 from analytic.elastic.vibration import vibrate
 from models.characteristics import Sine
 from models.errors import CrankcheckError
 from models.files import load_scene, shipped
 from models.laws import ConstantSpeed, FromRest
 from models.loads import Load
+from models.tabulated import Tabulated
 from tests.analytic.elastic.turning import form_of, fourbar
 
 DRIVEN = [n for n in shipped("elastic") if type(load_scene(n).driver.law) is ConstantSpeed]
@@ -135,3 +139,22 @@ def test_a_load_over_time_has_to_repeat(orders: float, repeats: bool) -> None:
     else:
         with pytest.raises(CrankcheckError, match="with loads that repeat each turn"):
             periodic_motion(form)
+
+
+def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A load with kinks has a series without end: two motions that stop at as many of its terms
+    leave the same out."""
+    hat = Tabulated((0.0, 0.5 * math.pi, math.pi), (0.0, 0.5, 0.0), "linear", math.tau)
+    scene = fourbar(10.5, damping_s=1e-3)
+    scene = replace(scene, loads={"push": Load("push", "rocker", None, hat, "angle")})
+    motion = DrivenElasticMotion(scene, 1.0, Modes(1), "periodic", stiffened=True)
+    closely = periodic_motion(motion.form, 513)
+    monkeypatch.setattr(periodic, "MOST", 129)
+    assert isinstance(motion.history, PeriodicMotion)
+    time_s = instants(40, motion.form.period_s)
+    true = np.abs(motion.history.at(time_s)[0] - closely.at(time_s)[0]).max()
+    other = replace(motion, halved=1).history.at(time_s)[0]
+    assert np.abs(motion.history.at(time_s)[0] - other).max() > 0.5 * true
+    assert true > 1e-8 * np.abs(closely.z).max()
