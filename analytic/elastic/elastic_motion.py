@@ -49,7 +49,8 @@ MOST_BENT = 0.1
 @dataclass(frozen=True)
 class DrivenElasticMotion:
     """A scene with elastic links, driven by its law from time 0 to ``until_s``; the windows of the
-    integration are ``halved`` so many times, and a periodic motion is taken at other instants."""
+    integration are ``halved`` so many times, and a periodic motion is taken at other instants.
+    ``bare`` is the same mechanism with fewer named points, whose motion is sooner found."""
 
     scene: Scene
     until_s: float
@@ -57,6 +58,7 @@ class DrivenElasticMotion:
     start: Shape
     stiffened: bool
     halved: int = 0
+    bare: DrivenElasticMotion | None = None
 
     @cached_property
     def form(self) -> ReducedForm:
@@ -72,6 +74,8 @@ class DrivenElasticMotion:
     @cached_property
     def _start(self) -> tuple[Array, Array]:
         """The coefficients and their rates at time 0, (m,)."""
+        if self.bare is not None:
+            return self.bare._start
         still = np.zeros(self.form.size)
         if self.start == "periodic":
             z, rates, _ = self._periodic.at(np.zeros(1))
@@ -85,6 +89,8 @@ class DrivenElasticMotion:
     @cached_property
     def history(self) -> PeriodicMotion | VibrationHistory:
         """The coefficients of the shapes over time."""
+        if self.bare is not None:
+            return self.bare.history
         if self.start == "periodic":
             return self._periodic
         return vibrate(self.form, *self._start, self.until_s, self._windows(), self._kinks)
@@ -92,7 +98,8 @@ class DrivenElasticMotion:
     @property
     def finer(self) -> DrivenElasticMotion:
         """The motion by more shapes, and in windows half as long, or at other instants."""
-        return replace(self, by=self.by.finer, halved=self.halved + 1)
+        bare = self.bare and self.bare.finer
+        return replace(self, by=self.by.finer, halved=self.halved + 1, bare=bare)
 
     def doubt(self, time_s: Array) -> ElasticDoubt:
         """How far the motion at times [s] is to be trusted."""

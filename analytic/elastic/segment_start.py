@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from analytic.elastic.discretisation import Segments
@@ -16,7 +18,8 @@ from models.segmented import SegmentedScene
 def chain_motion(own: SegmentedScene, start: Shape, until_s: float = 1.0) -> DrivenElasticMotion:
     """The exact motion of the chains of a scene until then [s], their nodes as named points."""
     by = Segments(own.count, own.corrected)
-    return DrivenElasticMotion(own.with_nodes, until_s, by, start, stiffened=True)
+    bare = DrivenElasticMotion(own.scene, until_s, by, start, stiffened=True)
+    return replace(bare, scene=own.with_nodes, bare=bare)
 
 
 def segment_start(
