@@ -86,6 +86,7 @@ def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
     return {
         "scenes": list(choice.scenes) or study.scenes,
         "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
+        "steps_of_segments": study.steps_of_segments and not choice.steps_per_turn,
         "turns": study.turns if choice.turns is None else choice.turns,
     }
 

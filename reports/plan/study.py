@@ -84,7 +84,8 @@ class Variant(BaseModel):
 
 
 class Study(BaseModel):
-    """What a sweep runs, and how."""
+    """What a sweep runs, and how; with ``steps_of_segments`` scenes whose links bend have steps of
+    their own, that their segments hold with."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -99,6 +100,7 @@ class Study(BaseModel):
     duration_s: float | None = None
     segments: list[StrictInt] = Field(default_factory=list)
     springs: list[Literal["plain", "corrected"]] = Field(default_factory=list)
+    steps_of_segments: bool = False
 
     @property
     def steps(self) -> list[float]:
