@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from reports.cli.application import command, seconds
+from reports.cli.application import SegmentCount, SpringKind, command, seconds
 from reports.cli.showing import SceneName
 from reports.output.console import terminal
 
@@ -59,6 +59,8 @@ class JudgeRequest:
     forces: Annotated[
         bool, typer.Option("--forces", help="Judge its columns of forces and torque as well.")
     ] = False
+    segments: SegmentCount = None
+    springs: SpringKind = None
 
 
 @command

@@ -17,6 +17,7 @@ from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS
 from reports.judge.tolerance import check_names
+from reports.plan.elastic import given_of
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
@@ -74,6 +75,8 @@ def compare(
     drive: str = "scene",
     map: MapLike = None,
     forces: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> Comparison:
     """How far a run, a motion or a log is from the closed form.
 
@@ -92,6 +95,8 @@ def compare(
     forces : bool
         Of a log: its columns of forces and torque as well. Those of a run are compared where it was
         asked for them.
+    segments, springs : int or None, str or None
+        Of a log: what elastic links were given to the solver as, as of `run`.
 
     Raises
     ------
@@ -102,6 +107,7 @@ def compare(
     check_names(scene)
     if isinstance(what, Run):
         refuse_options(what, step_s=step_s, drive=drive, map=map)
+        refuse_segments(what, segments, springs)
         refuse_other_scene(scene, what)
         refuse_without_forces(what, forces=is_true(forces, "forces"))
         errors = comparing.compare(_truth_of_run(scene, what).beside(what))
@@ -113,6 +119,7 @@ def compare(
         return Comparison(scene, f"{what.engine} {what.version}, profile {what.profile}", errors)
     from reports.logs.beside_truth import beside_truth
     from reports.own_log.drives import chosen_drive, refuse_geometry_alone, truth_of_log
+    from reports.own_log.elastic_log import bent_truth
     from reports.own_log.free_log import known_log, refuse_drives
 
     chosen = chosen_drive(one_of(drive, "--drive", LOG_DRIVES))
@@ -120,7 +127,10 @@ def compare(
     log = log_of(scene, what, map, forces=forces)
     step = 0.0 if step_s is None else positive("--step", step_s, "seconds")
     truth: Truth
-    if scene.is_free:
+    given = given_of(scene, segments, springs)
+    if scene.elastic:
+        truth = bent_truth(log, given.segments, given.springs, chosen)
+    elif scene.is_free:
         refuse_drives(scene.name, chosen)
         log, truth = known_log(log, step, {})
     else:
@@ -156,6 +166,15 @@ def refuse_without_forces(run: Run, *, forces: bool) -> None:
         raise CrankcheckError(
             f"forces: the run in {run.engine} was not asked for them; run it with forces=True"
         )
+
+
+def refuse_segments(run: Run, segments: int | None, springs: str | None) -> None:
+    """Refuse what a run knows of its elastic links itself. Raises CrankcheckError."""
+    for option, given in (("--segments", segments), ("--springs", springs)):
+        if given is not None:
+            raise CrankcheckError(
+                f"{option}: it is of logs, and this is a run in {run.engine}; leave it out"
+            )
 
 
 def refuse_options(

@@ -13,7 +13,12 @@ from models.scene import Scene
 from reports.face.any_log import LogLike, MapLike, log_of, refuse_other_scene, scene_of_run
 from reports.face.arguments import SceneLike, is_true, one_of, scene_of, tolerances_of
 from reports.face.cell_verdict import CellVerdict, verdict_of_run
-from reports.face.comparison import LOG_DRIVES, refuse_options, refuse_without_forces
+from reports.face.comparison import (
+    LOG_DRIVES,
+    refuse_options,
+    refuse_segments,
+    refuse_without_forces,
+)
 from reports.face.shown import Shown
 from reports.face.solution import drawn
 from reports.face.told import in_python, parts_in_python, told_at_the_call
@@ -22,6 +27,7 @@ from reports.output.provenance import provenance
 from reports.own_log.drives import chosen_drive, refuse_geometry_alone
 from reports.own_log.judged import JudgedLog, LogRequest, judge_log
 from reports.own_log.log_limits import EVERY
+from reports.plan.elastic import given_of
 from reports.plan.steps import LEAST_STEPS, positive
 from sim.engine import Run
 
@@ -89,6 +95,8 @@ def judge(
     require: str | Iterable[str] = (),
     forces: bool = False,
     free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> LogVerdict: ...
 
 
@@ -104,6 +112,8 @@ def judge(
     require: str | Iterable[str] = (),
     forces: bool = False,
     free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> CellVerdict | LogVerdict:
     """Hold a log of your own to the closed form, as `crankcheck judge` does.
 
@@ -130,6 +140,8 @@ def judge(
         Judge its columns of forces and torque as well; of a run, those that it was asked for.
     free : bool
         The log is of a driven scene that was let go at time 0; of a run this is known.
+    segments, springs : int or None, str or None
+        What elastic links were given to the solver as, as of `run`; of a run this is known.
 
     Raises
     ------
@@ -138,6 +150,7 @@ def judge(
     """
     options: dict[str, Any] = {"step_s": step_s, "drive": drive, "map": map, "require": require}
     options |= {"forces": is_true(forces, "forces"), "free": is_true(free, "free")}
+    options |= {"segments": segments, "springs": springs}
     return judged(scene, log, target_of(target), **options)
 
 
@@ -152,6 +165,8 @@ def judged(
     require: str | Iterable[str],
     forces: bool = False,
     free: bool = False,
+    segments: int | None = None,
+    springs: str | None = None,
 ) -> CellVerdict | LogVerdict:
     """As `judge`, of either kind, within limits by quantity, that of all others under `EVERY`."""
     scene = scene_of(scene)
@@ -159,23 +174,29 @@ def judged(
     required = names_in(require, "--require")
     if isinstance(log, Run):
         refuse_options(log, step_s=step_s, drive=drive, map=map, require=required)
+        refuse_segments(log, segments, springs)
         refuse_other_scene(scene, log)
         refuse_without_forces(log, forces=forces)
         every = limits.get(EVERY)
         scene = scene_of_run(scene, log)
-        refuse_of_other_motion("--target", [*limits.keys() - {EVERY}], [scene.is_free])
+        of_some = [*limits.keys() - {EVERY}]
+        refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
         _refuse_few_steps(scene, log)
         every_name = FREE if scene.is_free else DEFAULTS
         named = limits if every is None else {name: limits.get(name, every) for name in every_name}
         return verdict_of_run(scene, log, named)
     if free:
         scene = let_go(scene)
-    refuse_of_other_motion("--target", [*limits.keys() - {EVERY}], [scene.is_free])
+    of_some = [*limits.keys() - {EVERY}]
+    refuse_of_other_motion("--target", of_some, [scene.is_free], bends=bool(scene.elastic))
+    given = given_of(scene, segments, springs)
     request = LogRequest(
         target=limits,
         step_s=0.0 if step_s is None else positive("--step", step_s, "seconds"),
         drive=chosen_drive(one_of(drive, "--drive", LOG_DRIVES)),
         require=required,
+        segments=given.segments,
+        springs=given.springs,
     )
     refuse_geometry_alone(request.drive, forces=forces)
     found = judge_log(log_of(scene, log, map, forces=forces), request)

@@ -162,6 +162,12 @@ def beside_truth(log: OwnLog, truth: Truth, *, step_s: float = 0.0) -> LogBeside
         from reports.logs.free_log_beside import FreeLogBeside  # for what is let go alone
 
         return FreeLogBeside.of_log(log, truth, run)
+    if scene.elastic:
+        from reports.compare.elastic.elastic_truth import ElasticTruth
+        from reports.logs.elastic_log_beside import ElasticLogBeside  # where links bend alone
+
+        assert isinstance(truth, ElasticTruth)
+        return ElasticLogBeside.of_log(truth, run)
     return LogBeside(truth, run, run.motion, step_s=step_s, geometry_alone=alone)
 
 
@@ -195,6 +201,8 @@ def lacking(log: OwnLog, beside: LogBeside) -> tuple[str, ...]:
     for name, entry in QUANTITIES.items():
         if (entry.role == "force" and not beside.run.with_forces) or entry.role == other_role:
             continue
+        if name == "segments":  # which the same column says as the deflection
+            continue
         reference, whole = beside.reference, beside.whole
         if entry.role == "force":
             instants = entry.instants(beside.run)
@@ -221,6 +229,8 @@ def _judged_as(scene: Scene, channel: Channel) -> tuple[str, ...]:
     """The quantities that a column is judged as: of what is let go, places at the same time and at
     its own angle."""
     kind = channel.kind
+    if kind.quantity == "deflection":
+        return "deflection", "segments"
     if kind.order or not scene.is_free:
         is_drive = (kind.name, channel.of) == ("angle", scene.driver.link)
         return ("drive",) if is_drive else (kind.quantity,)

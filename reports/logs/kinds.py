@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from models.array import Array
-from models.motion import Bound, LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import Bound, ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
 from reports.logs.units import Dimension
 from reports.quantities.moving import MovingKind, Order
+
+LoggedKind = MovingKind | Literal["elastic"]
+"""What may be logged of: an elastic link is a link, and bends and stretches besides."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +25,7 @@ class Kind:
     """
 
     name: str
-    body_kind: MovingKind
+    body_kind: LoggedKind
     dimension: Dimension
     quantity: str
     field: str
@@ -34,16 +37,26 @@ class Kind:
         """Whether it is an angle, of which whole turns may be lost."""
         return self.dimension == "angle"
 
+    @property
+    def judged_of(self) -> MovingKind:
+        """The kind of body that its quantity is of."""
+        return "link" if self.body_kind == "elastic" else self.body_kind
+
+    @property
+    def bodies(self) -> str:
+        """What a motion calls the bodies of its kind."""
+        return "elastic" if self.body_kind == "elastic" else f"{self.body_kind}s"
+
     def of(self, motion: Motion, name: str) -> Array:
         """The series (T,) of a body in a motion."""
-        body: LinkMotion | PointMotion | SliderMotion
-        body = getattr(motion, f"{self.body_kind}s")[name]
+        body: LinkMotion | PointMotion | SliderMotion | ElasticMotion
+        body = getattr(motion, self.bodies)[name]
         series: Array = getattr(body, self.field)
         return series if self.axis is None else series[:, self.axis]
 
     def bound(self, bound: Bound, name: str) -> Array:
         """What the reference may be wrong by (T,)."""
-        series: Array = getattr(getattr(bound, f"{self.body_kind}s")[name], self.field)
+        series: Array = getattr(getattr(bound, self.bodies)[name], self.field)
         return series
 
 
@@ -73,19 +86,27 @@ def _kinds() -> list[Kind]:
             Kind(prefix + letter, "point", moving[order], quantity, field, order, axis)
             for axis, letter in axes
         ]
-    return found + [
-        Kind(name, "slider", moving[order], quantity, name, order)
-        for order, name, quantity in zip(
-            orders,
-            ("displacement", "speed", "acceleration"),
-            ("displacement", "velocity", "acceleration"),
-            strict=True,
-        )
-    ]
+    return (
+        found
+        + [
+            Kind(name, "slider", moving[order], quantity, name, order)
+            for order, name, quantity in zip(
+                orders,
+                ("displacement", "speed", "acceleration"),
+                ("displacement", "velocity", "acceleration"),
+                strict=True,
+            )
+        ]
+        + [
+            Kind("deflection", "elastic", "length", "deflection", "middle", 0),
+            Kind("extension", "elastic", "length", "extension", "extension", 0),
+        ]
+    )
 
 
-KINDS: Mapping[tuple[MovingKind, str], Kind] = {
+KINDS: Mapping[tuple[LoggedKind, str], Kind] = {
     (kind.body_kind, kind.name): kind for kind in _kinds()
 }
 """By body kind and name: angle, angular velocity, angular acceleration of a link; x, y, vx, vy, ax,
-ay of a point; displacement, speed, acceleration of a slider."""
+ay of a point; displacement, speed, acceleration of a slider; deflection of the middle of an elastic
+link from the line between its pins, and its extension."""

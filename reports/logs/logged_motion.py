@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from models.array import Array
-from models.motion import LinkMotion, Motion, PointMotion, SliderMotion
+from models.motion import ElasticMotion, LinkMotion, Motion, PointMotion, SliderMotion
 from reports.logs.channel import OwnLog, Reading
 from reports.logs.kinds import Kind
 from reports.quantities.moving import Order
@@ -24,13 +24,14 @@ def logged_motion(
     ``truth_of`` gives the truth at the instants of an order, ``error_of`` what a reading is off by
     it: of a point of which the log has one coordinate, the other is right.
     """
-    bodies: dict[str, dict[str, dict[str, Array]]] = {"links": {}, "points": {}, "sliders": {}}
+    bodies: dict[str, dict[str, dict[str, Array]]]
+    bodies = {"links": {}, "points": {}, "sliders": {}, "elastic": {}}
     for (kind, body), several in _slots(log).items():
         if kind.order not in orders:
             continue
         right = kind.of(truth_of(kind.order), body)
         wrong = _largest([error_of(reading) for reading in several], kind.order)
-        fields = bodies[f"{kind.body_kind}s"].setdefault(body, {})
+        fields = bodies[kind.bodies].setdefault(body, {})
         if kind.axis is None:
             fields[kind.field] = right + wrong
             continue
@@ -83,5 +84,9 @@ def _as_motion(time_s: Array, bodies: Mapping[str, Mapping[str, Mapping[str, Arr
                 *(each.get(key, nothing) for key in ("displacement", "speed", "acceleration"))
             )
             for name, each in bodies["sliders"].items()
+        },
+        elastic={
+            name: ElasticMotion(*(each.get(key, nothing) for key in ("middle", "extension")))
+            for name, each in bodies["elastic"].items()
         },
     )

@@ -53,8 +53,10 @@ def _series(scene: Scene, motion: Motion, source: str) -> Iterator[tuple[Kind, s
     """What a motion says of bodies that move. Raises CrankcheckError for one that is not there."""
     points = [*scene.pins, *(slider.point for slider in scene.sliders.values())]
     there = {"link": [*scene.links], "point": points, "slider": [*scene.sliders]}
+    there |= {"elastic": [*scene.elastic]} if scene.elastic else {}
     for body_kind, names in there.items():
-        for body, moved in getattr(motion, f"{body_kind}s").items():
+        own = motion.elastic if body_kind == "elastic" else getattr(motion, f"{body_kind}s")
+        for body, moved in own.items():
             if body not in names:
                 hint = suggestion(str(body), names, "it has") if names else "it has none"
                 raise CrankcheckError(

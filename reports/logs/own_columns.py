@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from reports.logs.kinds import KINDS, Kind
+from reports.logs.kinds import KINDS, Kind, LoggedKind
 from reports.logs.units import si
-from reports.quantities.moving import MovingKind
 
-OWN: Mapping[tuple[MovingKind, str], str] = {
+OWN: Mapping[tuple[LoggedKind, str], str] = {
     ("link", "angle"): "theta_rad",
     ("link", "angular velocity"): "omega_rad_s",
     ("link", "angular acceleration"): "alpha_rad_s2",
     ("slider", "displacement"): "slider_displacement_m",
     ("slider", "speed"): "slider_speed_m_s",
     ("slider", "acceleration"): "slider_acceleration_m_s2",
+    ("elastic", "deflection"): "deflection_m",
+    ("elastic", "extension"): "extension_m",
     **{("point", f"{rate}{axis}"): f"{rate}{axis}_{unit}"
        for rate, unit in (("", "m"), ("v", "m_s"), ("a", "m_s2")) for axis in "xy"},
 }  # fmt: skip
@@ -35,7 +36,7 @@ class Meaning:
     on: str = ""
 
 
-def own_meanings(bodies: Mapping[str, tuple[MovingKind, ...]]) -> Mapping[str, Meaning | str]:
+def own_meanings(bodies: Mapping[str, tuple[LoggedKind, ...]]) -> Mapping[str, Meaning | str]:
     """What our own columns of ``bodies`` say, whatever those are called, by name: a later body's
     where two have one."""
     found: dict[str, Meaning | str] = {}

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from models.errors import cut
-from reports.logs.kinds import KINDS, Kind
+from reports.logs.kinds import KINDS, Kind, LoggedKind
 from reports.logs.own_columns import LENGTH
 from reports.logs.spelling import DIMENSION
-from reports.quantities.moving import MovingKind
 
 PLACES = {"pos", "position", "place", "coordinate", "coord"}
 SPEEDS = {"v", "vel", "velocity", "speed", "rate"}
@@ -28,10 +27,12 @@ AXES = {f"{prefix}{axis}": (order, at) for at, axis in enumerate("xy") for order
 
 
 def kind_of_words(
-    kinds: Sequence[MovingKind], words: Sequence[str], unit: str, *, slider: bool
+    kinds: Sequence[LoggedKind], words: Sequence[str], unit: str, *, slider: bool
 ) -> Kind | str:
     """The kind of reading that words and a unit name, or why none."""
     dimension = DIMENSION.get(unit)
+    if "elastic" in kinds and ("elastic", " ".join(words)) in KINDS:
+        return KINDS["elastic", " ".join(words)]
     if "link" in kinds:
         if len(words) > 1 and words[-1] == "z":  # the axis that all turn about
             words = words[:-1]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from models.scene import GROUND, Scene
+from reports.logs.kinds import LoggedKind
 from reports.logs.own_columns import Meaning, own_meanings
-from reports.quantities.moving import MovingKind
 
 DRIVERS = {"driver", "input", "motor"}
 SHORT = 2
@@ -37,12 +37,13 @@ class SceneNames:
         """What the columns say that we write ourselves, by name."""
         return own_meanings({body: self.kinds_of(body) for body in self.bodies})
 
-    def kinds_of(self, name: str) -> tuple[MovingKind, ...]:
+    def kinds_of(self, name: str) -> tuple[LoggedKind, ...]:
         """What has that name: often a slider and its point have the same."""
-        there: Iterable[tuple[MovingKind, bool]] = (
+        there: Iterable[tuple[LoggedKind, bool]] = (
             ("link", name in self.scene.links),
             ("point", name in self.points),
             ("slider", name in self.scene.sliders),
+            ("elastic", name in self.scene.elastic),
         )
         return tuple(kind for kind, holds in there if holds)
 

@@ -76,11 +76,6 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     CrankcheckError
         A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
     """
-    if log.scene.elastic:
-        raise CrankcheckError(
-            f"{log.scene.name}: {', '.join(log.scene.elastic)} bends, and logs of elastic links "
-            "are not judged yet; `crankcheck verify` runs engines on them"
-        )
     links, points = _compared(log)
     if drive == "scene":
         return Truth(log.scene, links=links, points=points), None

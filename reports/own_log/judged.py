@@ -17,7 +17,7 @@ from reports.compare.beside import Truth
 from reports.compare.compare import compare
 from reports.compare.errors import Errors, largest
 from reports.compare.free.free_truth import FreeTruth
-from reports.judge.cell import left_words
+from reports.judge.cell import SEGMENTS, Springs, left_words
 from reports.judge.rules import RULES, judge
 from reports.judge.rules.limits import LIMITS
 from reports.judge.rules.rule import Evidence, Finding
@@ -26,6 +26,7 @@ from reports.judge.too_good import LEAST, PLACES
 from reports.logs.beside_truth import LogBeside, beside_truth, lacking
 from reports.logs.channel import OwnLog
 from reports.own_log.drives import DriveFit, LogDrive, truth_of_log
+from reports.own_log.elastic_log import NO_CAUSE, bent_truth
 from reports.own_log.free_log import (
     known_log,
     refuse_drives,
@@ -77,6 +78,8 @@ class JudgedLog(Evidence):
     @property
     def truth_name(self) -> str:
         """What it is held to, in words."""
+        if self.scene.elastic:
+            return "beam"
         return "free motion" if self.scene.is_free else "closed form"
 
     @property
@@ -91,12 +94,15 @@ class JudgedLog(Evidence):
 @dataclass(frozen=True)
 class LogRequest:
     """How a log is to be judged: pure numbers by quantity (`EVERY` for all others), or the step
-    [s] that a budget follows from; what has to be in it."""
+    [s] that a budget follows from; what has to be in it; and what its elastic links were given
+    as."""
 
     target: Mapping[str, float] = field(default_factory=dict)
     step_s: float = 0.0
     drive: LogDrive = "scene"
     require: Sequence[str] = ()
+    segments: int = SEGMENTS
+    springs: Springs = "plain"
 
 
 def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
@@ -115,10 +121,12 @@ def judge_log(log: OwnLog, request: LogRequest) -> JudgedLog:
         refuse_forces_unasked("--require", (quantity for _, quantity, _ in required))
         refuse_forces_unasked("--target", request.target)
     truth: Truth
-    if log.scene.is_free:
+    fit = None
+    if log.scene.elastic:
+        truth = bent_truth(log, request.segments, request.springs, request.drive)
+    elif log.scene.is_free:
         refuse_drives(log.scene.name, request.drive)
         log, truth = known_log(log, request.step_s, request.target)
-        fit = None
     else:
         truth, fit = truth_of_log(log, request.drive)
     beside = beside_truth(log, truth, step_s=request.step_s)
@@ -166,8 +174,10 @@ def _explained(
     """The causes, and what else is worth knowing of a log that is within tolerance, or out."""
     rows = [row for row in errors.rows if row.kind == "total"]
     itself = (ITSELF,) if rows and all(row.maximum == 0.0 for row in rows) else ()
+    out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
+    if log.scene.elastic:
+        return (), itself or ((NO_CAUSE,) if out else ())
     if isinstance(truth, FreeTruth):
-        out = any(finding.level == "fail" for finding in judge(evidence, LIMITS))
         apart = told_apart(errors) if out else ()
         return (), itself or (
             *told_of_start(log, truth),

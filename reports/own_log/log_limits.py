@@ -63,7 +63,7 @@ def limits_by_column(log: OwnLog, evidence: Evidence, errors: Errors) -> dict[st
             continue
         limit = limit_of(row, evidence, errors).number
         for reading in readings_of(log, row.quantity, row.body):
-            if reading.channel.kind.body_kind == row.body_kind or row.body_kind == "driver":
+            if reading.channel.kind.judged_of == row.body_kind or row.body_kind == "driver":
                 side = under if row.pure <= limit else over
                 # Two coordinates may be off by too much together, though neither is alone.
                 both = (

@@ -82,7 +82,7 @@ def log_rows(judged: JudgedLog) -> list[LogRow]:
             each
             for each in readings_of(judged.log, error.quantity, error.body)
             if error.source == "reported"
-            and (each.channel.kind.body_kind == error.body_kind or error.body_kind == "driver")
+            and (each.channel.kind.judged_of == error.body_kind or error.body_kind == "driver")
         ]
         columns = tuple(each.channel.column for each in read)
         unit = _unit(read, error.unit)

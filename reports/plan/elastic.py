@@ -107,7 +107,8 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
         if scene.elastic:
             raise CrankcheckError(
                 f"{scene.name}: {', '.join(scene.elastic)} bends, and `crankcheck {what}` takes "
-                "rigid links; `crankcheck verify`, `sweep` and `run` take elastic ones"
+                f"rigid links; `crankcheck sweep {scene.name} --segments 4,8,16 -o DIR` finds the "
+                "cheapest settings of elastic ones, and `verify` judges them"
             )
         refuse_unfollowed(scene)
 

@@ -85,7 +85,8 @@ class Variant(BaseModel):
 
 
 class Study(BaseModel):
-    """What a sweep runs, and how."""
+    """What a sweep runs, and how; with ``times_held`` scenes whose links bend have steps of their
+    own, that their segments hold with."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

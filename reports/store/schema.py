@@ -61,14 +61,18 @@ NESTED: Mapping[str, tuple[str, ...]] = {
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> pa.Table:
-    """Rows, all with the same names, as a table whose types do not depend on what is missing.
+    """Rows as a table whose types do not depend on what is missing; what a row has not, as one of
+    rigid links beside one of elastic ones, is null.
 
     Columns are text, flags, lists of numbers (``values``), lists of rows, or numbers; what is not
     there is null.
     """
-    names = list(rows[0])
+    names = dict.fromkeys(name for row in rows for name in row)
     return pa.table(
-        {name: pa.array([_plain(row[name]) for row in rows], type=_type(name)) for name in names}
+        {
+            name: pa.array([_plain(row.get(name)) for row in rows], type=_type(name))
+            for name in names
+        }
     )
 
 

@@ -55,6 +55,7 @@ def _bodies(inquiry: Inquiry) -> dict[str, tuple[str, ...]]:
         "link": tuple(scene.links),
         "point": tuple(scene.pins),
         "slider": tuple(scene.sliders),
+        "elastic": tuple(scene.elastic),
     }
 
 

@@ -29,6 +29,7 @@ from reports.own_log.log_limits import EVERY
 from reports.own_log.markdown import markdown
 from reports.own_log.rows import row_table
 from reports.own_log.table import show
+from reports.plan.elastic import given_of
 
 FORMATS = ("text", "md")
 
@@ -36,12 +37,17 @@ FORMATS = ("text", "md")
 def run_judge(request: JudgeRequest, console: Console) -> int:
     """Do it; returns the exit code: 0 within, 1 out. Raises CrankcheckError for what can not be
     read or asked, before anything is written."""
-    asked = _checked(request)
     scene = load_scene(request.scene)
     if request.free:
         scene = let_go(scene)
+    asked = _checked(request, scene)
     check_names(scene)
-    refuse_of_other_motion("--target", [*asked.target.keys() - {EVERY}], [scene.is_free])
+    refuse_of_other_motion(
+        "--target",
+        [*asked.target.keys() - {EVERY}],
+        [scene.is_free],
+        bends=bool(scene.elastic),
+    )
     map_ = read_map(request.map) if request.map else Map()
     if request.write_map is not None:
         told = f"{request.write_map}: {_write_map(request.write_map, request.log, scene, map_)}"
@@ -66,7 +72,7 @@ def run_judge(request: JudgeRequest, console: Console) -> int:
     return int(judged.verdict == "out")
 
 
-def _checked(request: JudgeRequest) -> LogRequest:
+def _checked(request: JudgeRequest, scene: Scene) -> LogRequest:
     """What the log is to be judged by. Raises CrankcheckError for what can be told before."""
     if request.format not in FORMATS:
         raise CrankcheckError(f"--format {request.format!r}: unknown; use text or md")
@@ -81,11 +87,14 @@ def _checked(request: JudgeRequest) -> LogRequest:
     refuse_geometry_alone(drive, forces=request.forces)
     if request.step_s is not None and not request.step_s > 0.0:
         raise CrankcheckError(f"--step {request.step_s:g}: give a time above 0, in seconds")
+    given = given_of(scene, request.segments, request.springs)
     return LogRequest(
         target=parse(request.target, "--target", EVERY),
         step_s=request.step_s or 0.0,
         drive=drive,
         require=request.require,
+        segments=given.segments,
+        springs=given.springs,
     )
 
 

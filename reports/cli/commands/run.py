@@ -66,6 +66,8 @@ def _written(request: RunRequest, done: Simulation) -> str:
         f"{request.output}: {done.motion.time_s.size} samples of {done.scene} in {done.engine} "
         f"{done.version}, profile {done.profile}; {done.ending()}",
     ]
-    if not done.mechanism.elastic:  # whose logs are not judged
-        lines.append(f"next: {shlex.join(judge)}")
+    if done.mechanism.elastic:
+        judge += ["--segments", str(done.segments)]
+        judge += ["--springs", done.springs] * (done.springs != "plain")
+    lines.append(f"next: {shlex.join(judge)}")
     return harmless("\n".join(lines))

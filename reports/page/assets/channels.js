@@ -10,7 +10,7 @@
   const NEAR = 0.2; // of its limit: an error below that is a flat line beside it
   const DECADES = 6; // labelled on a logarithmic axis, if there are more
   const DEEPEST = 1e-4; // of the largest error: less is not drawn on such an axis
-  const LABELS = { truth: "closed form", logged: "log", limit: "limit of the error" };
+  const LABELS = { truth: own.truth, logged: "log", limit: "limit of the error" };
   let scaleIsChosen = false;
 
   /** An axis with its series unpacked, once. */

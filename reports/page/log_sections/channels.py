@@ -37,6 +37,7 @@ def build(judged: JudgedLog, drawn: Sequence[DrawnChannel], has_places: bool) ->
         },
         embedded={
             "channels": channels,
+            "truth": judged.truth_name,
             "axes": [json.loads(axis) for axis in axes],
             "phase": "crank angle [deg]" if turning else "part of the period [%]",
             "round": 360 if turning else 100,

@@ -1,0 +1,42 @@
+"""The log of a mechanism whose links bend: what it is held to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from models.errors import CrankcheckError
+from reports.judge.cell import Springs
+from reports.logs.channel import OwnLog
+
+if TYPE_CHECKING:
+    from reports.compare.elastic.elastic_truth import ElasticTruth
+
+NO_CAUSE = "causes are not looked for where links bend"
+
+
+def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> ElasticTruth:
+    """The truth of a log of so many segments.
+
+    Raises
+    ------
+    CrankcheckError
+        Another drive than that of the scene; a scene that engines are not held to; times before 0,
+        where its links do not come back after a period.
+    """
+    from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
+
+    name = log.scene.name
+    if drive != "scene":
+        raise CrankcheckError(
+            f"--drive {drive}: {name} has elastic links, and how these bend goes by the speed of "
+            "the scene's own driver; leave --drive out"
+        )
+    instants = [log.time_s, *(each.instants for each in log.readings)]
+    truth = elastic_truth(log.scene, segments, springs, max(float(each[-1]) for each in instants))
+    first = min(float(each[0]) for each in instants)
+    if first < 0.0 and not truth.theory.is_periodic:
+        raise CrankcheckError(
+            f"{log.source}: its rows begin at t = {first:.6g} s, and {name} starts at 0, "
+            f"{truth.theory.shape}; count the time from there on, or start it periodic"
+        )
+    return truth
