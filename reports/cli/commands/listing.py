@@ -95,7 +95,7 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
 def opened(scene: Scene) -> tuple[Scene, State]:
     """What an engine is given of a scene, which of elastic links are segments, and where it begins.
     Raises CrankcheckError where it can not."""
-    if scene.elastic and not scene.is_free:
+    if scene.elastic:
         return segmented(scene)
     return scene, start_of(scene)
 

@@ -67,7 +67,7 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
 def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[str, float]:
     """The largest difference of all that is compared, as pure numbers by quantity."""
     found: dict[str, float] = {}
-    for name in named("place", "derived", "force", "elastic"):
+    for name in named("free", "place", "derived", "force", "elastic"):
         for measure in QUANTITIES[name].measures:
             ours, theirs = (measure.truth(beside.scene, each) for each in (beam, chain))
             if name in CHAIN or not ours:

@@ -8,6 +8,7 @@ beside the exact chain (another step, other settings). Both truths have no engin
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
@@ -16,10 +17,9 @@ from analytic.elastic.segment_start import segment_start
 from analytic.elastic.stiffness import fastest_rad_s
 from analytic.kinematics import solve
 from models.array import Array
-from models.controlled import Controlled
 from models.errors import CrankcheckError, EngineError
 from models.motion import Motion, State
-from models.scene import Same, Scene
+from models.scene import Scene
 from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
@@ -34,47 +34,38 @@ from 2.8."""
 
 
 def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
-    """The truth of a scene that is run until then [s], its elastic links in so many segments.
+    """The truth of a scene that is driven until then [s], its elastic links in so many segments.
 
-    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches;
-    and of a scene that engines are not held to.
+    Raises EngineError where there is no such chain: fewer than two segments, a link that stretches.
     """
-    if why := unheld(scene):
-        raise EngineError(why)
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
-    return _truth(Same(scene), count, springs, until_s)
-
-
-def unheld(scene: Scene) -> str:
-    """Why engines are not held to a scene with elastic links; empty where they are."""
-    if scene.is_free:
-        return (
-            f"{scene.name} is let go and has elastic links, which engines are not held to; "
-            "`crankcheck solve` shows its motion"
-        )
-    if isinstance(scene.driver.law, Controlled):
-        return (
-            f"{scene.name}: its driver is controlled, which engines are not given; `crankcheck "
-            "solve` shows its motion"
-        )
-    return ""
+    return _truth(pickle.dumps(scene), count, springs, until_s)
 
 
 @lru_cache(maxsize=4)
-def _truth(same: Same, count: int, springs: str, until_s: float) -> ElasticTruth:
+def _truth(pickled: bytes, count: int, springs: str, until_s: float) -> ElasticTruth:
+    theory = kept_theory(pickled, until_s)
+    chain = segmented_scene(theory.scene, count, springs)
+    return ElasticTruth(theory.scene, chain=chain, theory=theory)
+
+
+def segmented_scene(scene: Scene, count: int, springs: str) -> SegmentedScene:
+    """What an engine is given of a scene with elastic links. Raises EngineError where there is
+    none."""
     try:
-        chain = SegmentedScene(same.scene, count, springs == "corrected")
+        chain = SegmentedScene(scene, count, springs == "corrected")
         assert chain.rigid  # made now, to be refused now
     except CrankcheckError as error:
         raise EngineError(str(error)) from None
-    return ElasticTruth(same.scene, chain=chain, theory=_theory(same, until_s))
+    return chain
 
 
 @lru_cache(maxsize=2)
-def _theory(same: Same, until_s: float) -> BeamTheory:
-    """One for every number of segments."""
-    return BeamTheory(same.scene, until_s)
+def kept_theory(pickled: bytes, until_s: float) -> BeamTheory:
+    """The beam of a scene, which may come from another process: one for every number of
+    segments."""
+    return BeamTheory(pickle.loads(pickled), until_s)
 
 
 @dataclass(frozen=True)
@@ -114,12 +105,12 @@ class ElasticTruth(Truth):
 
     def look(self) -> None:
         """Find the start of the beam. Raises CrankcheckError where there is none."""
-        assert self.theory.beam.first
+        assert self.theory.beam.begun
 
     @cached_property
     def fastest_rad_s(self) -> float:
         """The highest angular frequency of the chain."""
-        return fastest_rad_s(self.scene, Segments(self.chain.count, self.chain.corrected))
+        return fastest_rad_s(self.theory.scene, Segments(self.chain.count, self.chain.corrected))
 
     def _solved(self, time_s: Array) -> Motion:
         rigid = solve(self.scene, time_s, links=(), points=(), sliders=(), bound=False)
@@ -144,13 +135,18 @@ class ElasticTruth(Truth):
         stiff = run.dt_s * self.fastest_rad_s
         if done.status != "diverged" or stiff <= STEADY:
             return done
-        needed = math.ceil(self.scene.driver.law.period_s * self.fastest_rad_s / STEADY)
         return replace(
             done,
             reason=f"{done.reason}; the fastest frequency of {self.chain.count} segments is "
             f"{self.fastest_rad_s:.4g} rad/s, times the step {stiff:.2g}, and explicit steps hold "
-            f"up to about {STEADY}: take {needed} steps a turn, or fewer segments",
+            f"up to about {STEADY}: take {self.needed_step}, or fewer segments",
         )
+
+    @property
+    def needed_step(self) -> str:
+        """The longest step that holds, in words."""
+        period_s = self.scene.driver.law.period_s
+        return f"{math.ceil(period_s * self.fastest_rad_s / STEADY)} steps a turn"
 
     def beside(self, run: Run) -> Beside | None:
         """The run, with its elastic links as such, beside the beam; None where it logged

@@ -65,7 +65,7 @@ def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None
         (["verify", "fourbar-lecture-1", "--segments", "4"], "no scene has one"),
         (["verify", "elastic", "--segments", "1"], "a link bends with 2 segments or more"),
         (["verify", "elastic", "--springs", "soft"], "use plain or corrected"),
-        (["verify", NAME, "--free"], "is let go and has elastic links"),
+        (["verify", NAME, "--free"], "what is let go comes back after no period"),
         (["tune", NAME, "--engine", "mujoco", "--target", "1e-3"], "takes rigid links"),
         (["advise", NAME, "--dt", "0.01", "--speed", "7", "--target", "1e-3"], "takes rigid links"),
     ],
