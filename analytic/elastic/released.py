@@ -42,9 +42,11 @@ TOLERANCE = 1e-11
 WITH_AXIAL = 1e-10
 """The same where links stretch: they ring along themselves a thousand times faster than across, by
 1e-10 m or less, which is left to die out; at 1e-11 it would be followed, in ten times the time."""
-ENOUGH = 1e-9
-"""The same for what engines are held to: in a second of the shipped pulse it is 5e-10 of the
-deflection and 1e-12 rad off that of 1e-11, in a third of its time."""
+ENOUGH, ROUGH = 1e-9, 1e-7
+"""The same for what engines are held to. A chain by the first: in a second of the shipped pulse it
+is 5e-10 of the deflection and 1e-12 rad off that of 1e-11, in a third of its time. A beam, which
+chains are no nearer to than some 1e-4 of the deflection, by the second: off by 1e-6 of it, in a
+sixth."""
 COARSER = 100.0
 """By how much larger is the tolerance of the motion that this one is held to."""
 
@@ -131,10 +133,11 @@ class ReleasedElasticMotion:
         Raises CrankcheckError for times beyond it."""
         return self._motion(self._instants(time_s))
 
-    def before(self, time_s: Array) -> Motion:
-        """The motion that leads to the start, at times below 0 [s], (T,), within a step of it:
-        there some engines have the velocities of their first sample."""
-        return self._motion([self._in_piece(0, time_s)])
+    def outside(self, time_s: Array) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
+        end, at times above ``until_s``: within a step of it, where some engines have the velocities
+        of their first or last sample."""
+        return self._motion([self._in_piece(0 if time_s[-1] < 0.0 else -1, time_s)])
 
     def _motion(self, instants: Iterable[PieceInstants]) -> Motion:
         assembly, parts = self.dynamics.assembly, []

@@ -142,8 +142,16 @@ def _felt(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def _swung(step: float, elastic: ElasticFacts) -> float:
-    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase."""
-    return (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
+    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase.
+
+    What starts straight rings as under an even load: k half-waves, k odd, with 1/k^5 of the
+    deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. Of that
+    the sum falls as the step to the power 4/3.
+    """
+    phase = (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
+    if not elastic.straight:
+        return phase
+    return sum(min(2.0, k**6 * phase) / k**5 for k in range(1, elastic.segments, 2))
 
 
 def _left(name: str, errors: Errors) -> float:

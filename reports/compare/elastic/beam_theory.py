@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Polynomials
 from analytic.elastic.elastic_history import elastic_history
-from analytic.elastic.released import ENOUGH
+from analytic.elastic.released import ROUGH
 from analytic.elastic.sampled import ElasticHistory
 from analytic.elastic.stiffness import slowest_rad_s
 from models.array import Array
@@ -64,7 +64,7 @@ class BeamTheory:
 
     def _moved(self, by: Polynomials, *, stiffened: bool = True) -> ElasticHistory:
         return elastic_history(
-            self.scene, self.until_s, by, self.shape, stiffened=stiffened, tolerance=ENOUGH
+            self.scene, self.until_s, by, self.shape, stiffened=stiffened, tolerance=ROUGH
         )
 
     @cached_property
@@ -88,6 +88,11 @@ class BeamTheory:
         return self.beam.at(self.looks_s)
 
     @cached_property
+    def looked_other(self) -> Motion:
+        """The other description of it, there."""
+        return self.other.at(self.looks_s)
+
+    @cached_property
     def largest_m(self) -> float:
         """The largest deflection."""
         return largest_deflection(self.scene, self.looked)
@@ -95,14 +100,15 @@ class BeamTheory:
     @cached_property
     def linear_m(self) -> float:
         """What the linear theory, without foreshortening, is off by."""
-        linear = self._moved(REFERENCE, stiffened=False).at(self.looks_s)
+        by = FEWER if self.scene.is_free else REFERENCE  # a look, at half the time
+        linear = self._moved(by, stiffened=False).at(self.looks_s)
         return deflections_apart(linear, self.looked)
 
     @cached_property
     def doubt_m(self) -> float:
         """What the beam may be off by: what other polynomials are off it by and, where chains are
         soon found, how far from it these go to."""
-        off = deflections_apart(self.other.at(self.looks_s), self.looked)
+        off = deflections_apart(self.looked_other, self.looked)
         chained = self.is_periodic and not any(e.stretches for e in self.scene.elastic.values())
         return max(off, self._beside_chains()) if chained else off
 

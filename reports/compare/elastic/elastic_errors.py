@@ -50,7 +50,11 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     """What is known beside the errors."""
     truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
     share = 1.0 if truth.is_exact else (LEAST / truth.chain.count) ** 2
-    apart = _apart_by_name(beside, truth.few.at(theory.looks_s), theory.looked)
+    chain = _apart_by_name(beside, truth.few.at(theory.looks_s), theory.looked)
+    apart = {name: share * size for name, size in chain.items()}
+    if beside.scene.is_free:  # the beam's own doubt of all of it grows with the time
+        other = _apart_by_name(beside, theory.looked_other, theory.looked)
+        apart |= {name: apart[name] + size for name, size in other.items() if name not in BEAM}
     return ElasticFacts(
         segments=truth.chain.count,
         springs="corrected" if truth.chain.corrected else "plain",
@@ -59,8 +63,9 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
         slender=beside.scene.longest_m / theory.largest_m,
         doubt=theory.doubt_m / theory.largest_m,
         linear=theory.linear_m / theory.largest_m,
-        apart={name: share * size for name, size in apart.items()},
+        apart=apart,
         estimated=not truth.is_exact,
+        straight=theory.shape == "straight",
     )
 
 

@@ -19,7 +19,7 @@ from analytic.kinematics import solve
 from models.array import Array
 from models.errors import CrankcheckError, EngineError
 from models.motion import Motion, State
-from models.scene import Scene
+from models.scene import Scene, as_bytes
 from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
@@ -40,7 +40,7 @@ def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> Ela
     """
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
-    return _truth(pickle.dumps(scene), count, springs, until_s)
+    return _truth(as_bytes(scene), count, springs, until_s)
 
 
 @lru_cache(maxsize=4)

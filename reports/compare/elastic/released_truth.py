@@ -22,7 +22,7 @@ from models.array import Array
 from models.errors import ReachError
 from models.motion import Motion
 from models.rigid import with_rigid_links
-from models.scene import Scene
+from models.scene import Scene, as_bytes
 from reports.compare.beside import Beside
 from reports.compare.elastic.elastic_truth import (
     STEADY,
@@ -31,8 +31,10 @@ from reports.compare.elastic.elastic_truth import (
     segmented_scene,
 )
 from reports.compare.elastic.released_beside import ReleasedElasticBeside
-from reports.compare.free.free_truth import FreeTruth, free_truth
+from reports.compare.free.free_truth import LEAST_KNOWN, FreeTruth, free_truth
+from reports.compare.free.kept_motion import long_enough_s
 from reports.compare.free.some_samples import first_samples
+from reports.quantities.free import PHASE
 from sim.engine import Run
 
 MOST_EXACT = 32
@@ -52,34 +54,32 @@ def released_elastic_truth(
     """The truth of a scene that is let go for so many steps of ``dt_s`` [s], its elastic links in
     so many segments. Raises EngineError as `elastic_truth`, and CrankcheckError for a scene that
     can not be let go."""
-    given = tuple(sorted((tolerance or {}).items()))
-    return _truth(pickle.dumps(scene), count, springs, steps, dt_s, given)
+    limit = (tolerance or {}).get("phase", scene.tolerance.get("phase"))
+    known_rad = LEAST_KNOWN * (limit or PHASE.criteria[0].tolerance.cap)
+    return _truth(as_bytes(scene), count, springs, steps, dt_s, known_rad)
 
 
 @lru_cache(maxsize=4)
 def _truth(
-    pickled: bytes,
-    count: int,
-    springs: str,
-    steps: int,
-    dt_s: float,
-    tolerance: tuple[tuple[str, float], ...],
+    pickled: bytes, count: int, springs: str, steps: int, dt_s: float, known_rad: float
 ) -> ReleasedElasticTruth:
-    # A step longer: some velocities belong to half a step after a run.
-    theory = kept_theory(pickled, float(f"{dt_s * (steps + 1):.12g}"))
-    scene = theory.scene
-    rigid = free_truth(with_rigid_links(scene), steps, dt_s, dict(tolerance))
-    paced = replace(scene, driver=rigid.scene.driver)
+    scene: Scene = pickle.loads(pickled)
+    theory = kept_theory(pickled, long_enough_s(scene, dt_s * steps))
     chain = segmented_scene(scene, count, springs)
-    return ReleasedElasticTruth(paced, chain=chain, theory=theory, rigid=rigid)
+    rigid = free_truth(with_rigid_links(scene), steps, dt_s)
+    paced = replace(scene, driver=rigid.scene.driver)
+    return ReleasedElasticTruth(paced, chain=chain, theory=theory, rigid=rigid, known_rad=known_rad)
 
 
 @dataclass(frozen=True)
 class ReleasedElasticTruth(ElasticTruth):
     """``rigid`` is the truth of the same scene with rigid links, whose sensitivity errors are
-    judged over, and whose ``scene`` has the largest speed of the driver."""
+    judged over, and whose ``scene`` has the largest speed of the driver. Samples count as long as
+    what angles of the beam may be off by, over the sensitivity, is at most ``known_rad``, and its
+    deflection known to a part of the largest."""
 
     rigid: FreeTruth = field(kw_only=True)
+    known_rad: float = field(kw_only=True)
 
     @property
     def is_exact(self) -> bool:
@@ -93,7 +93,7 @@ class ReleasedElasticTruth(ElasticTruth):
 
     def _solved(self, time_s: Array) -> Motion:
         rigid = self.rigid.at(time_s)
-        motion = both_sides(self.beam, time_s)
+        motion = at_any(self.beam, time_s)
         return replace(motion, conditioning=rigid.conditioning, crossings=rigid.crossings)
 
     @property
@@ -101,20 +101,15 @@ class ReleasedElasticTruth(ElasticTruth):
         return f"a step of {STEADY / self.fastest_rad_s:.3g} s"
 
     @cached_property
-    def doubt(self) -> DoubtOverTime:
-        """What the beam may be off by, at the instants at which theories are compared."""
-        return DoubtOverTime.between(self.theory.looked, self.theory.other.at(self.theory.looks_s))
-
-    @cached_property
     def known_s(self) -> float:
         """Until when the truth is known well enough to judge by."""
-        doubt, time_s = self.doubt, self.theory.looks_s
+        theory, time_s = self.theory, self.theory.looks_s
+        doubt = DoubtOverTime.between(theory.looked, theory.looked_other)
         unsure = doubt.angle_rad / self.rigid.free.sensitivity(
-            np.clip(time_s, 0.0, self.rigid.free.until_s)
+            np.minimum(time_s, self.rigid.free.until_s)
         )
-        known = (unsure <= self.rigid.known_rad) & (
-            doubt.deflection_m <= MOST_DOUBT * self.theory.largest_m
-        )
+        known = unsure <= self.known_rad
+        known &= doubt.deflection_m <= MOST_DOUBT * theory.largest_m
         return math.inf if known.all() else float(time_s[int(np.argmin(known))])
 
     @property
@@ -142,13 +137,17 @@ class ReleasedElasticTruth(ElasticTruth):
         )
 
 
-def both_sides(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
-    """A motion at times in ascending order [s], (T,), some of which may be before its start."""
-    early = time_s < 0.0
-    if not early.any():
+def at_any(motion: ReleasedElasticMotion, time_s: Array) -> Motion:
+    """A motion at times in ascending order [s], (T,), some of which may be within a step of its
+    start or its end."""
+    early, late = time_s < 0.0, time_s > motion.until_s
+    if not (early.any() or late.any()):
         return sampled(motion, time_s)
-    parts = [motion.before(time_s[early])]
-    return Motion.joined(parts if early.all() else [*parts, sampled(motion, time_s[~early])])
+    parts = [motion.outside(time_s[part]) for part in (early, late) if part.any()]
+    within = time_s[~(early | late)]
+    if within.size:
+        parts.insert(int(early.any()), sampled(motion, within))
+    return Motion.joined(parts)
 
 
 @dataclass(frozen=True)

@@ -72,3 +72,11 @@ def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None
 )
 def test_what_makes_no_sense_is_refused(words: list[str], said: str) -> None:
     assert said in crankcheck(*words, code=2)
+
+
+def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> None:
+    asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "4", "--no-convergence"]
+    asked += ["--duration", "0.05", "--jobs", "1"]
+    told = crankcheck("verify", "fourbar-elastic-controlled", "fourbar-elastic-pulse", *asked)
+    assert "elastic links, profile tuned" in told
+    assert "WITHIN TOLERANCE" in told
