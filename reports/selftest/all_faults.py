@@ -9,6 +9,7 @@ from reports.selftest import (
     clock,
     dynamics,
     elastic,
+    elastic_released,
     engines,
     forces,
     handed_back,
@@ -38,6 +39,7 @@ FAULTS: dict[str, Fault] = {
         stepping,
         record,
         elastic,
+        elastic_released,
     )
     for fault in module.FAULTS
 }

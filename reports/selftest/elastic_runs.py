@@ -7,24 +7,35 @@ from functools import cache, lru_cache
 
 from models.files import load_scene
 from models.scene import Scene
-from reports.compare.elastic.elastic_truth import ElasticTruth, elastic_truth
+from reports.compare.elastic.elastic_truth import ElasticTruth
 from reports.judge.cell import Cell
 from reports.selftest.fault import PROFILE, Items
-from sim.engine import Run
+from sim.engine import Drive, Run
 from sim.run import run
 
-BENT = "fourbar-elastic"
+BENT, LOOSE = "fourbar-elastic", "fourbar-elastic-pulse"
+"""Driven on its periodic motion; and let go."""
 
 
 @dataclass(frozen=True)
 class ElasticRun:
-    """Segments of each elastic link, and steps of the one turn."""
+    """Segments of each elastic link, and steps of the one turn, or of a time [s]."""
 
     segments: int
     steps: int
+    lasts_s: float | None = None
+
+    @property
+    def words(self) -> str:
+        """Segments, steps and length."""
+        told = "a turn, 1 turn" if self.lasts_s is None else f"in {self.lasts_s:g} s, let go"
+        return f"{self.segments} segments, {self.steps} steps {told}"
 
 
-ELASTIC_RUNS: dict[str, ElasticRun] = {BENT: ElasticRun(4, 2880)}
+ELASTIC_RUNS: dict[str, ElasticRun] = {
+    BENT: ElasticRun(4, 2880),
+    LOOSE: ElasticRun(4, 1440, 0.4),
+}
 """By scene: few segments, whose exact chain is soon found, and steps so short that the limit of
 what an engine may be off by (0.2 % of the largest deflection) is well below a hundredth."""
 
@@ -37,17 +48,21 @@ def _once(name: str) -> Scene:
 
 
 def elastic_cell(name: str, engine: str, finer: float = 1.0) -> Cell:
-    """One turn of that scene; ``finer`` times as many steps."""
+    """One turn of that scene, or some time; ``finer`` times as many steps."""
     scene, own = _once(name), ELASTIC_RUNS[name]
     steps = round(own.steps * finer)
-    dt_s = scene.driver.law.period_s / steps
-    return Cell(scene, engine, PROFILE, dt_s, steps, converge=False, segments=own.segments)
+    dt_s = (own.lasts_s or scene.driver.law.period_s) / steps
+    drive: Drive = "free" if scene.is_free else "prescribed"
+    return Cell(
+        scene, engine, PROFILE, dt_s, steps, drive=drive, converge=False, segments=own.segments
+    )
 
 
 def truth_of_chain(given: Scene) -> ElasticTruth:
     """That of the elastic scene whose segments an engine is ``given``."""
-    scene = _once(given.name)
-    return elastic_truth(scene, ELASTIC_RUNS[given.name].segments, "plain", 1.0)
+    truth = elastic_cell(given.name, "").truth
+    assert isinstance(truth, ElasticTruth)
+    return truth
 
 
 @lru_cache(maxsize=3)

@@ -189,11 +189,7 @@ def _spans(verdicts: Sequence[Verdict]) -> str:
         for scene, (dt_s, steps) in FREE_RUNS.items()
         if scene in scenes
     ]
-    bent = [
-        f"{scene} in {own.segments} segments, {own.steps} steps a turn, 1 turn"
-        for scene, own in ELASTIC_RUNS.items()
-        if scene in scenes
-    ]
+    bent = [f"{scene} in {own.words}" for scene, own in ELASTIC_RUNS.items() if scene in scenes]
     turn = [f"{STEPS} steps a turn, 1 turn"] if kinds - {"free", "elastic"} else []
     return "; ".join([*turn, *([f"let go: {', '.join(free)}"] if free else []), *bent])
 
