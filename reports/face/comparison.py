@@ -17,7 +17,6 @@ from reports.face.solution import drawn
 from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS
 from reports.judge.tolerance import check_names
-from reports.plan.elastic import under_control
 from reports.plan.free import refuse_unreleased
 from reports.plan.steps import positive
 from reports.quantities import QUANTITIES
@@ -137,7 +136,7 @@ def _truth_of_run(scene: Scene, run: Run) -> Truth:
     if scene.elastic and run.drive == "free":
         from reports.compare.elastic.released_truth import released_elastic_truth  # where they bend
 
-        scene = scene_of_run(under_control(scene), run)
+        scene = scene_of_run(scene, run)
         return released_elastic_truth(scene, *bent, run.steps, run.dt_s)
     if scene.elastic:
         from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone

@@ -76,11 +76,7 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     CrankcheckError
         A drive that the log, or the scene's law, does not allow; a crank that leaves its range.
     """
-    if log.scene.elastic:
-        raise CrankcheckError(
-            f"{log.scene.name}: {', '.join(log.scene.elastic)} bends, and logs of elastic links "
-            "are not judged yet; `crankcheck verify` runs engines on them"
-        )
+    refuse_elastic(log.scene)
     links, points = _compared(log)
     if drive == "scene":
         return Truth(log.scene, links=links, points=points), None
@@ -102,6 +98,15 @@ def truth_of_log(log: OwnLog, drive: LogDrive) -> tuple[Truth, DriveFit | None]:
     fit = _of_crank(log, crank) if crank else _of_places(log)
     scene = moved(log.scene, fit.speed_rad_s, fit.start_rad)
     return Truth(scene, links=links, points=points), fit
+
+
+def refuse_elastic(scene: Scene) -> None:
+    """Refuse the log of a scene with elastic links. Raises CrankcheckError."""
+    if scene.elastic:
+        raise CrankcheckError(
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and logs of elastic links are not "
+            "judged yet; `crankcheck verify` runs engines on them"
+        )
 
 
 def _compared(log: OwnLog) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:

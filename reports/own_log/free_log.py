@@ -14,6 +14,7 @@ from reports.compare.free.kept_motion import BEYOND
 from reports.judge.tolerance import FREE
 from reports.logs.channel import OwnLog, Reading
 from reports.output.numbers import error_text, listed, short
+from reports.own_log.drives import refuse_elastic
 from reports.own_log.log_limits import EVERY
 from reports.plan.free import refuse_unreleased
 
@@ -39,9 +40,10 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
     Raises
     ------
     CrankcheckError
-        Times before 0, at which the scene is let go, or long after its end; a scene that can not be
-        let go; a truth that is lost before the second row.
+        Elastic links; times before 0, at which the scene is let go, or long after its end; a scene
+        that can not be let go; a truth that is lost before the second row.
     """
+    refuse_elastic(log.scene)
     scene, lasts_s = log.scene, _lasts_s(log)
     refuse_unreleased(scene, lasts_s)
     phase = target.get("phase", target.get(EVERY))

@@ -80,3 +80,18 @@ def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> No
     told = crankcheck("verify", "fourbar-elastic-controlled", "fourbar-elastic-pulse", *asked)
     assert "elastic links, profile tuned" in told
     assert "WITHIN TOLERANCE" in told
+
+
+def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    crankcheck("run", "fourbar-elastic-pulse", "--segments", "2", "--duration", "0.05", "-o", log)
+    told = crankcheck("judge", "fourbar-elastic-pulse", log, code=2)
+    assert "logs of elastic links are not judged yet" in told
+
+
+def test_what_is_let_go_is_swept_and_timed_over_the_step(tmp_path: Path) -> None:
+    asked = ["--free", "--engine", "mujoco", "--profile", "tuned", "--segments", "4"]
+    steps = ["--dt", "1e-3,5e-4", "--duration", "0.1", "--jobs", "1"]
+    told = crankcheck("sweep", "fourbar-elastic-pulse", "-o", tmp_path / "s", *asked, *steps)
+    assert "2 run now" in told
+    assert "2 timed now" in told

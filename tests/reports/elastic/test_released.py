@@ -12,6 +12,7 @@ from models.scene import Scene
 from models.springs import PinSpring
 from reports.compare.elastic.released_truth import ReleasedElasticTruth
 from reports.face.comparison import compare
+from reports.face.log_verdict import judge
 from reports.face.simulation import run as simulated
 from reports.judge.cell import Cell, CellRunner, Checked, check, examined
 from reports.judge.rows import cell_row
@@ -164,6 +165,12 @@ def test_a_run_is_compared_with_the_beam_that_it_was_let_go_from() -> None:
     error = found.worst("segments")
     assert error is not None
     assert error.pure < 1e-5
+
+
+def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such() -> None:
+    done = simulated(CONTROLLED, duration_s=0.02, segments=4)
+    assert done.drive == "free"
+    assert judge(CONTROLLED, done).verdict == "within"
 
 
 def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() -> None:
