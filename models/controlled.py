@@ -12,9 +12,12 @@ links (2018), control of the crank.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from models.characteristics import Characteristic, Polynomial
 from models.laws import ConstantSpeed
+from models.loads import Load, Over
 
 
 @dataclass(frozen=True)
@@ -32,3 +35,19 @@ class Controlled(ConstantSpeed):
                 f"kp_n_m_rad is {self.kp_n_m_rad:g} and kd_n_m_s {self.kd_n_m_s:g}: a controller "
                 "drives back what is ahead; give gains of 0 or more"
             )
+
+    def loads(self, link: str, needed: Characteristic) -> Iterator[Load]:
+        """The torque of the controller as loads on the driver, ``link``, that is let go: over time
+        what is ``needed``; and the gains, over time, over the driver's angle and over its angular
+        velocity."""
+        kp, kd, speed = self.kp_n_m_rad, self.kd_n_m_s, self.speed_rad_s
+        parts: list[tuple[str, Over, Characteristic]] = [("needed", "time", needed)]
+        if kp:
+            parts += [
+                ("asked", "time", Polynomial((kp * self.start_rad, kp * speed))),
+                ("angle", "angle", Polynomial((0.0, -kp))),
+            ]
+        if kd:
+            parts.append(("speed", "omega", Polynomial((kd * speed, -kd))))
+        for name, over, characteristic in parts:
+            yield Load(f"controller-{name}", link, None, characteristic, over)

@@ -46,13 +46,13 @@ def every_shipped() -> dict[str, Path]:
 
 def names_of_scenes(names: str | Iterable[str]) -> list[str]:
     """Names and paths of scenes, each once; the name of a kind stands for all its scenes but those
-    of the reference alone.
+    that are run where they are named (`run_where_named`).
 
     Raises CrankcheckError for what is neither a name nor several.
     """
     known = kinds()
     written_out = (
-        [one for one in shipped(name) if one not in reference_alone(name)]
+        [one for one in shipped(name) if one not in run_where_named(name)]
         if name in known
         else [name]
         for name in names_in(names, "scenes")
@@ -62,14 +62,24 @@ def names_of_scenes(names: str | Iterable[str]) -> list[str]:
 
 def reference_alone(kind: str) -> list[str]:
     """The shipped scenes of a kind that no engine is given: friction in them follows from the
-    reactions, or their elastic links are let go or have a controlled driver."""
-    return [name for name, path in shipped(kind).items() if _is_reference_alone(read_scene(path))]
+    reactions."""
+    return [name for name, scene in _scenes_of(kind).items() if scene.coulomb_joints]
 
 
-def _is_reference_alone(scene: Scene) -> bool:
-    law = scene.driver.law
-    loose = isinstance(law, Released | Controlled)
-    return bool(scene.coulomb_joints or (scene.elastic and loose))
+def run_where_named(kind: str) -> list[str]:
+    """The shipped scenes of a kind that the kind's name does not stand for: those of the reference
+    alone, and those whose elastic links are let go or have a controlled driver, whose truth takes
+    longer than all others."""
+    scenes = _scenes_of(kind)
+    return [name for name in scenes if scenes[name].coulomb_joints or _is_loose(scenes[name])]
+
+
+def _scenes_of(kind: str) -> dict[str, Scene]:
+    return {name: read_scene(path) for name, path in shipped(kind).items()}
+
+
+def _is_loose(scene: Scene) -> bool:
+    return bool(scene.elastic) and isinstance(scene.driver.law, Released | Controlled)
 
 
 def load_scene(name_or_path: str | PathLike[str]) -> Scene:

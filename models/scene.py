@@ -15,8 +15,9 @@ All lengths in m, angles in rad, masses in kg. Counter-clockwise is positive.
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from models.beams import Beam
@@ -163,6 +164,12 @@ class Same:
 
     def __hash__(self) -> int:
         return id(self.scene)
+
+
+def as_bytes(scene: Scene) -> bytes:
+    """What a scene holds, without what was worked out from it on the way: to keep under it, in any
+    process, what takes long."""
+    return pickle.dumps(replace(scene))
 
 
 def span(points: Mapping[str, Point]) -> float:

@@ -20,8 +20,16 @@ from analytic.multibody.generalised_forces import GeneralisedForces, Strokes
 from models.array import Array
 from models.controlled import Controlled
 from models.errors import CrankcheckError
-from models.released import check_duration
+from models.released import check_duration, let_go
+from models.rigid import with_rigid_links
 from models.scene import Same, Scene
+from models.waves import FourierSum
+
+TURN_SAMPLES = (64, 128, 256, 512, 1024)
+"""Of the torque that the rigid mechanism needs, tried one after the other."""
+SMOOTH, REPEATED = 1e-13, 1e-9
+"""Of its largest: what the shortest waves of a smooth one come to, and what it may be off by a turn
+later."""
 
 
 class ControlledForces(GeneralisedForces):
@@ -32,7 +40,7 @@ class ControlledForces(GeneralisedForces):
         law = assembly.scene.driver.law
         assert isinstance(law, Controlled)
         self._law = law
-        self._rigid = Same(replace(assembly.scene, elastic={}))
+        self._rigid = Same(with_rigid_links(assembly.scene))
 
     def on(self, time_s: Array, now: Configuration, strokes: Strokes | None = None) -> Array:
         gradient = now.gradient[:, self.assembly.frames[self.scene.driver.link], 2]
@@ -71,10 +79,62 @@ def control_elastic(
     CrankcheckError
         A driver that follows another law, or none.
     """
-    if not isinstance(scene.driver.law, Controlled):
+    _controlled(scene)
+    check_duration(scene.name, until_s)
+    return follow(scene, until_s, by, stiffened, method, tolerance, ControlledForces)
+
+
+def released_under_control(scene: Scene) -> Scene:
+    """A scene whose driver is controlled as one that is let go, with the torque of the controller
+    as loads: what engines are given.
+
+    What the rigid mechanism needs is a sum of Fourier's, to rounding.
+
+    Raises
+    ------
+    CrankcheckError
+        As `control_elastic`; a torque that does not repeat itself turn by turn, or is not smooth.
+    """
+    law, link = _controlled(scene), scene.driver.link
+    loads = {load.name: load for load in law.loads(link, _needed_sum(scene, law))}
+    if taken := loads.keys() & scene.loads.keys():
+        raise CrankcheckError(
+            f"{scene.name}: loads.{min(taken)} has the name of a part of the controller's torque; "
+            "give it another one"
+        )
+    return replace(let_go(scene), loads={**scene.loads, **loads})
+
+
+def _needed_sum(scene: Scene, law: Controlled) -> FourierSum:
+    """The driving torque of the rigid mechanism over a turn. Raises CrankcheckError."""
+    rigid, period_s = Same(with_rigid_links(scene)), law.period_s
+    for count in TURN_SAMPLES:
+        turn_s = period_s / count * np.arange(count)
+        torque = _needed(rigid, tuple(turn_s))
+        size = float(np.abs(torque).max()) or 1.0
+        # Of as many samples the shortest wave is of two; the last half says what is left out.
+        waves = np.fft.rfft(torque)[: count // 2] / count
+        if np.abs(waves[count // 4 :]).max() <= SMOOTH * size:
+            later = _needed(rigid, tuple(turn_s[:: count // 8] + period_s))
+            if np.abs(later - torque[:: count // 8]).max() <= REPEATED * size:
+                kept = waves[1 : count // 4]
+                cosines, sines = 2.0 * kept.real, -2.0 * kept.imag
+                return FourierSum(
+                    float(waves[0].real), tuple(cosines.tolist()), tuple(sines.tolist()), period_s
+                )
+    raise CrankcheckError(
+        f"{scene.name}: the torque that its controller adds to does not go evenly on from turn to "
+        "turn, as loads over time or with jumps make it; leave these out, or look at the motion "
+        "with `crankcheck solve`"
+    )
+
+
+def _controlled(scene: Scene) -> Controlled:
+    """The law of a driver that is controlled. Raises CrankcheckError for another."""
+    law = scene.driver.law
+    if not isinstance(law, Controlled):
         raise CrankcheckError(
             f'{scene.name}: its driver is not controlled; give law = "controlled" in [driver], '
             "with speed_rad_s, kp_n_m_rad and kd_n_m_s"
         )
-    check_duration(scene.name, until_s)
-    return follow(scene, until_s, by, stiffened, method, tolerance, ControlledForces)
+    return law

@@ -23,6 +23,7 @@ from analytic.elastic.vibration import VibrationHistory, vibrate
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
@@ -111,6 +112,12 @@ class DrivenElasticMotion:
         z, rates = self._start
         zero = np.zeros(1)
         return self.form.at(zero, z[None], rates[None], self.form.near(zero))
+
+    @property
+    def begun(self) -> tuple[Configuration, Array]:
+        """The configuration at time 0, and the second derivatives of all coordinates (1, n)."""
+        first = self.first
+        return first.now, first.all_seconds(first.seconds)
 
     @property
     def _kinks(self) -> list[float]:

@@ -96,12 +96,7 @@ def by_collocation(
     CrankcheckError
         Loads with kinks over the state of the mechanism; a motion that can not go on.
     """
-    if own := switches(form.dynamics.forces):
-        raise CrankcheckError(
-            f"{form.dynamics.assembly.scene.name}: loads.{own[0].load.name} is not smooth over the "
-            "motion, which collocation needs; integrate it by the equations with multipliers "
-            "(analytic.multibody.release_multibody)"
-        )
+    check_smooth(form)
     stretches = any(link.stretches for link in form.dynamics.assembly.scene.elastic.values())
     rule = radau(NODES) if stretches else LIFT
     going = _Going(form, rule, q, rates, tolerance, FIRST * until_s)
@@ -111,6 +106,17 @@ def by_collocation(
         for begin, end in itertools.pairwise(times)
         for window in going.through(begin, end, SHORTEST * until_s)
     )
+
+
+def check_smooth(form: TangentForm) -> None:
+    """Raises CrankcheckError for loads with kinks over the state, which collocation does not
+    take."""
+    if own := switches(form.dynamics.forces):
+        raise CrankcheckError(
+            f"{form.dynamics.assembly.scene.name}: loads.{own[0].load.name} is not smooth over the "
+            "motion, which collocation needs; integrate it by the equations with multipliers "
+            "(analytic.multibody.release_multibody)"
+        )
 
 
 @dataclass

@@ -7,7 +7,7 @@ method that is explicit (`analytic.multibody.release_multibody`) are a third way
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -16,11 +16,12 @@ import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
 from analytic.elastic.free_by_library import by_library
-from analytic.elastic.free_windows import FreePiece, by_collocation
+from analytic.elastic.free_windows import FreePiece, by_collocation, check_smooth
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
 from analytic.kinematics import solve
 from analytic.multibody.as_motion import as_motion
 from analytic.multibody.assembly import Assembly
+from analytic.multibody.configuration import Configuration
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.energy_balance import EnergyBalance
 from analytic.multibody.generalised_forces import GeneralisedForces
@@ -35,10 +36,17 @@ from models.samples import samples
 from models.scene import Scene
 
 Method = Literal["collocation", "library"]
+PieceInstants = tuple[Array, FreePiece, FreeInstant, Array]
+"""Times (T,), the piece that they are in, the equations and the work until then."""
 TOLERANCE = 1e-11
 WITH_AXIAL = 1e-10
 """The same where links stretch: they ring along themselves a thousand times faster than across, by
 1e-10 m or less, which is left to die out; at 1e-11 it would be followed, in ten times the time."""
+ENOUGH, ROUGH = 1e-9, 1e-7
+"""The same for what engines are held to. A chain by the first: in a second of the shipped pulse it
+is 5e-10 of the deflection and 1e-12 rad off that of 1e-11, in a third of its time. A beam, which
+chains are no nearer to than some 1e-4 of the deflection, by the second: off by 1e-6 of it, in a
+sixth."""
 COARSER = 100.0
 """By how much larger is the tolerance of the motion that this one is held to."""
 
@@ -90,6 +98,15 @@ class ReleasedElasticMotion:
         """Coordinates and rates (n,) at time 0."""
         return self._ready[1], self._ready[2]
 
+    @property
+    def begun(self) -> tuple[Configuration, Array]:
+        """The configuration at time 0, and the second derivatives of all coordinates (1, n)."""
+        q, rates = self.start
+        tangent = self.form.tangent(q)
+        own = self.form.coordinates(tangent, rates)[None]
+        first = self.form.at(np.zeros(1), tangent, np.zeros_like(own), own)
+        return first.now, first.all_seconds
+
     @cached_property
     def form(self) -> TangentForm:
         """The equations in coordinates that are independent of each other."""
@@ -114,8 +131,17 @@ class ReleasedElasticMotion:
     def at(self, time_s: Array) -> Motion:
         """The motion at times [s], (T,) in ascending order, with its reactions and its shapes.
         Raises CrankcheckError for times beyond it."""
+        return self._motion(self._instants(time_s))
+
+    def outside(self, time_s: Array) -> Motion:
+        """The motion that leads to the start, at times below 0 [s], (T,), or that goes on from the
+        end, at times above ``until_s``: within a step of it, where some engines have the velocities
+        of their first or last sample."""
+        return self._motion([self._in_piece(0 if time_s[-1] < 0.0 else -1, time_s)])
+
+    def _motion(self, instants: Iterable[PieceInstants]) -> Motion:
         assembly, parts = self.dynamics.assembly, []
-        for some, piece, instant, _ in self._instants(time_s):
+        for some, piece, instant, _ in instants:
             motion = as_motion(assembly, some, instant.now, instant.all_seconds)
             multipliers = self.form.multipliers(piece.tangent, instant)
             driving = self.dynamics.forces.driving(some, instant.now)
@@ -158,8 +184,8 @@ class ReleasedElasticMotion:
         own = self.at(time_s)
         return DoubtOverTime.between(own, self.finer.at(time_s), self.coarser.at(time_s))
 
-    def _instants(self, time_s: Array) -> Iterator[tuple[Array, FreePiece, FreeInstant, Array]]:
-        """Times, the piece that they are in, the equations and the work until then."""
+    def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
+        """Those of all pieces, one after the other."""
         instants = samples(time_s, "time_s")
         if instants.min() < 0.0 or instants.max() > self.until_s * (1.0 + 1e-12):
             raise CrankcheckError(
@@ -169,9 +195,12 @@ class ReleasedElasticMotion:
         ends = np.array([piece.end_s for piece in self.pieces[:-1]])
         number = np.searchsorted(ends, instants, side="right")
         for k in np.unique(number):
-            piece, some = self.pieces[k], instants[number == k]
-            y, rates, work = piece.course(some)
-            yield some, piece, self.form.at(some, piece.tangent, y, rates), work
+            yield self._in_piece(int(k), instants[number == k])
+
+    def _in_piece(self, number: int, time_s: Array) -> PieceInstants:
+        piece = self.pieces[number]
+        y, rates, work = piece.course(time_s)
+        return time_s, piece, self.form.at(time_s, piece.tangent, y, rates), work
 
 
 def release_elastic(
@@ -228,6 +257,8 @@ def follow(
         scene, float(until_s), by or Modes(), stiffened, method, tolerance, acting
     )
     assert motion.form  # raises what there is to raise now
+    if method == "collocation":
+        check_smooth(motion.form)
     return motion
 
 

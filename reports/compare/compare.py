@@ -26,6 +26,7 @@ from reports.compare.loading import loading
 from reports.compare.role_rows import differenced_rows, reported_rows, uncertain, whole_rows
 from reports.compare.uneven import uneven, unevenly_turned
 from reports.quantities import named
+from reports.quantities.quantity import Role
 
 
 def compare(beside: Beside | None) -> Errors | None:
@@ -44,8 +45,9 @@ def compare(beside: Beside | None) -> Errors | None:
     if isinstance(beside, FreeBeside):
         from reports.compare.free.free_errors import free_errors  # for what is let go alone
 
-        return free_errors(beside)
-    errors = _of_driven(beside)
+        errors = free_errors(beside)
+    else:
+        errors = _of_driven(beside)
     if isinstance(beside, ElasticBeside):
         from reports.compare.elastic.elastic_errors import with_elastic  # where links bend alone
 
@@ -104,13 +106,11 @@ def places(beside: Beside | None) -> list[Error]:
     if isinstance(beside, FreeBeside):
         from reports.compare.free.free_errors import free_places  # for what is let go alone
 
-        return free_places(beside)
-    at = instants_of(beside, beside.motion.time_s, beside.reference)
-    rows = [
-        *whole_rows(beside, at, "drive"),
-        *whole_rows(beside, at, "place"),
-        *whole_rows(beside, at, "closure"),
-    ]
+        rows = free_places(beside)
+    else:
+        at = instants_of(beside, beside.motion.time_s, beside.reference)
+        roles: tuple[Role, ...] = ("drive", "place", "closure")
+        rows = [row for role in roles for row in whole_rows(beside, at, role)]
     if isinstance(beside, ElasticBeside):
         from reports.compare.elastic.elastic_errors import elastic_rows
 

@@ -15,6 +15,7 @@ from reports.face.simulation import Simulation
 from reports.face.solution import Solution
 from reports.logs.channel import OwnLog
 from reports.logs.map_file import Map, map_of, read_map
+from reports.plan.elastic import under_control
 from sim.engine import Run
 
 if TYPE_CHECKING:
@@ -75,8 +76,9 @@ def refuse_other_scene(scene: Scene, run: Run) -> None:
 
 
 def scene_of_run(scene: Scene, run: Run) -> Scene:
-    """The scene as the run has it: let go where that was."""
-    return let_go(scene) if run.drive == "free" else scene
+    """The scene as the run has it: let go where that was, with the torque of its controller if it
+    has elastic links and one."""
+    return let_go(under_control(scene)) if run.drive == "free" else scene
 
 
 def _refuse_other(scene: Scene, motion: Motion) -> None:

@@ -142,15 +142,16 @@ def compare(
 
 def _truth_of_run(scene: Scene, run: Run) -> Truth:
     """The truth of a scene as a run has it. Raises CrankcheckError."""
-    if scene.elastic and run.drive != "free":
+    bent = getattr(run, "segments", SEGMENTS), getattr(run, "springs", "plain")
+    if scene.elastic and run.drive == "free":
+        from reports.compare.elastic.released_truth import released_elastic_truth  # where they bend
+
+        scene = scene_of_run(scene, run)
+        return released_elastic_truth(scene, *bent, run.steps, run.dt_s)
+    if scene.elastic:
         from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
 
-        return elastic_truth(
-            scene,
-            getattr(run, "segments", SEGMENTS),
-            getattr(run, "springs", "plain"),
-            run.dt_s * run.steps,
-        )
+        return elastic_truth(scene, *bent, run.dt_s * run.steps)
     if run.drive != "free":
         return truth_of(Same(scene))
     from reports.compare.free.free_truth import free_truth  # for what is let go alone

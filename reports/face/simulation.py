@@ -24,7 +24,7 @@ from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS, Springs
-from reports.plan.elastic import GivenAs, given_of, held_steps, refuse_free_elastic
+from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps, under_control
 from reports.plan.steps import TURNS, counted, counted_free
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue
@@ -196,7 +196,7 @@ def simulated(
     springs: str | None = None,
 ) -> Simulation:
     """As `run`, in the words of the command."""
-    scene = scene_of(scene)
+    scene = under_control(scene_of(scene))
     name, profile = engine_of(engine, profile, settings)
     driven = _drive(scene, drive)
     every = whole_of(every, "--every")
@@ -205,13 +205,18 @@ def simulated(
     if scene.elastic and driven != "free" and dt_s is None and steps_per_turn is None:
         steps_per_turn = held_steps(scene, bent.segments, bent.springs)
     if driven == "free" and turns is None and steps_per_turn is None:
-        dt_s, steps = counted_free(let_go(scene), dt_s, duration_s, every=every, least=1)
+        loose, asked = let_go(scene), (dt_s, duration_s)
+        dt_s, steps = (
+            counted_released(loose, *asked, bent.segments, bent.springs, every=every, least=1)
+            if scene.elastic
+            else counted_free(loose, *asked, every=every, least=1)
+        )
     else:
         turns = TURNS if turns is None else turns
         dt_s, steps = counted(scene, dt_s, steps_per_turn, turns, every=every, least=1)
     if driven == "free":
         scene = let_go(scene)
-    truth = _truth(scene, bent, dt_s * steps)
+    truth = _truth(scene, bent, dt_s, steps)
     done = stepping.run(
         scene if truth is None else truth.given,
         released_state(scene) if truth is None else truth.start,
@@ -229,15 +234,19 @@ def simulated(
     return Simulation(**vars(done), mechanism=scene, segments=bent.segments, springs=bent.springs)
 
 
-def _truth(scene: Scene, bent: GivenAs, lasts_s: float) -> Truth | None:
-    """What a driven run starts from, None of one that is let go. Raises CrankcheckError."""
+def _truth(scene: Scene, bent: GivenAs, dt_s: float, steps: int) -> Truth | None:
+    """What a run of so many steps starts from, None of one with rigid links that is let go. Raises
+    CrankcheckError."""
+    if scene.elastic and scene.is_free:
+        from reports.compare.elastic.released_truth import released_elastic_truth  # where they bend
+
+        return released_elastic_truth(scene, bent.segments, bent.springs, steps, dt_s)
     if scene.is_free:
-        refuse_free_elastic(scene)
         return None
     if scene.elastic:
         from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
 
-        return elastic_truth(scene, bent.segments, bent.springs, lasts_s)
+        return elastic_truth(scene, bent.segments, bent.springs, dt_s * steps)
     return truth_of(Same(scene))
 
 

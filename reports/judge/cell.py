@@ -74,6 +74,13 @@ class Cell:
     @property
     def truth(self) -> Truth:
         """What it is held to. Raises CrankcheckError for a scene that can not be let go."""
+        if self.scene.elastic and self.drive == "free":
+            from reports.compare.elastic.released_truth import (  # where links bend
+                released_elastic_truth,
+            )
+
+            given = self.segments, self.springs, self.steps, self.dt_s
+            return released_elastic_truth(self.scene, *given, self.tolerance)
         if self.scene.elastic:
             from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend
 
@@ -103,10 +110,14 @@ class Cell:
     @property
     def every(self) -> int:
         """How many steps are taken from sample to sample: one; of elastic links, whose springs ask
-        for far more steps than anybody looks at, up to `MOST_LOGGED` of a turn are logged."""
+        for far more steps than anybody looks at, up to `MOST_LOGGED` of a turn are logged, or of
+        the whole of what is let go for less than a second."""
         if not self.scene.elastic:
             return 1
-        return max(1, math.ceil(self.steps_per_turn / MOST_LOGGED - 1e-9))
+        steps = self.steps_per_turn
+        if self.drive == "free":
+            steps = min(steps, float(self.steps))
+        return max(1, math.ceil(steps / MOST_LOGGED - 1e-9))
 
     @property
     def label(self) -> str:

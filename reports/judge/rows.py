@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Mapping
 from reports.compare.errors import Error, ErrorKind, largest
 from reports.judge.cell import Checked
 from reports.judge.precision import IFTOMM, precision
-from reports.judge.tolerance import DEFAULTS, ELASTIC, FORCES, FREE, Limit
+from reports.judge.tolerance import FORCES, Limit, known_limits
 from reports.quantities import QUANTITIES, named
 from reports.quantities.quantity import BodyKind, Source
 
@@ -85,7 +85,7 @@ def cell_row(checked: Checked) -> dict[str, object]:
     errors = checked.errors.rows if checked.errors else ()
     free = checked.cell.drive == "free"
     bends = bool(checked.cell.scene.elastic)
-    wanted: Collection[str] = FREE if free else ELASTIC if bends else DEFAULTS
+    wanted: Collection[str] = known_limits(free=free, bends=bends)
     if not checked.cell.with_forces:
         wanted = [name for name in wanted if name not in FORCES]
     others = DRIVE_COLUMNS if free else FREE_COLUMNS

@@ -82,13 +82,15 @@ DEFAULTS: dict[str, Tolerance] = {
     if entry.role not in ("free", "elastic")
 }
 """Of a mechanism that is driven."""
-ELASTIC: dict[str, Tolerance] = DEFAULTS | {
+BENDING: dict[str, Tolerance] = {
     tolerance_name(name, each.source): each.tolerance
     for name, entry in QUANTITIES.items()
     for each in entry.criteria
     if entry.role == "elastic"
 }
-"""Of one whose links bend."""
+"""Of elastic links themselves."""
+ELASTIC = DEFAULTS | BENDING
+"""Of a mechanism whose links bend."""
 FREE: dict[str, Tolerance] = {
     tolerance_name(name, each.source): of_free
     for name, entry in QUANTITIES.items()
@@ -96,6 +98,8 @@ FREE: dict[str, Tolerance] = {
     if (of_free := each.tolerance if entry.role == "free" else each.free) is not None
 }
 """Of one that was let go: its errors at the same time are over the sensitivity of its motion."""
+FREE_ELASTIC = FREE | BENDING
+"""Of one whose links bend as well."""
 EVERY = tuple(dict.fromkeys((*DEFAULTS, *FREE, *ELASTIC)))
 """All that there may be a limit of."""
 
@@ -138,8 +142,16 @@ def _felt(tolerance: Tolerance, errors: Errors) -> float:
 
 
 def _swung(step: float, elastic: ElasticFacts) -> float:
-    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase."""
-    return (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
+    """What the swings of springs are off by, of which a step makes (r step)^2/24 of the phase.
+
+    What starts straight rings as under an even load: k half-waves, k odd, with 1/k^5 of the
+    deflection, k^2 times as fast, and so with k^6 of the phase, up to their whole swing. Of that
+    the sum falls as the step to the power 4/3.
+    """
+    phase = (elastic.ratio * step) ** 2 * (1.0 + math.tau * elastic.cycles) / 12.0
+    if not elastic.straight:
+        return phase
+    return sum(min(2.0, k**6 * phase) / k**5 for k in range(1, elastic.segments, 2))
 
 
 def beyond_engine(name: str, errors: Errors) -> float:
@@ -172,9 +184,14 @@ class Limit:
 
 def numbers_for(errors: Errors) -> Mapping[str, Tolerance]:
     """The numbers of the default limits of a run."""
-    if errors.elastic is not None:
-        return ELASTIC
-    return DEFAULTS if errors.free is None else FREE
+    return known_limits(free=errors.free is not None, bends=errors.elastic is not None)
+
+
+def known_limits(*, free: bool, bends: bool) -> Mapping[str, Tolerance]:
+    """Those that there are of what is let go, or driven, with links that bend or without."""
+    if bends:
+        return FREE_ELASTIC if free else ELASTIC
+    return FREE if free else DEFAULTS
 
 
 def limits(
@@ -247,12 +264,11 @@ def refuse_of_other_motion(
 ) -> None:
     """Refuse limits of what none of the cells has, which are ``free`` or driven; ``bends``
     says that one has elastic links. Raises CrankcheckError."""
-    driven = ELASTIC if bends else DEFAULTS
-    known = {name for each in set(free) for name in (FREE if each else driven)}
+    known = {name for each in set(free) for name in known_limits(free=each, bends=bends)}
     other = [name for name in quantities if name not in known]
     if other:
         of = "of free motion; let scenes go with --free, or" if other[0] in FREE else "of a drive;"
-        of = "of elastic links;" if other[0] in ELASTIC.keys() - DEFAULTS.keys() else of
+        of = "of elastic links;" if other[0] in BENDING else of
         raise CrankcheckError(
             f"{option} {other[0]}: it is {of} leave {other[0]} out. There is {', '.join(known)}"
         )

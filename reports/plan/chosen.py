@@ -8,7 +8,14 @@ import numpy as np
 
 from analytic.kinematics import solve
 from models.errors import CrankcheckError, nearest
-from models.files import kinds, load_scene, names_of_scenes, reference_alone, shipped
+from models.files import (
+    kinds,
+    load_scene,
+    names_of_scenes,
+    reference_alone,
+    run_where_named,
+    shipped,
+)
 from models.one_or_more import names_in
 from models.scene import Scene
 from reports.judge.tolerance import check_names
@@ -44,18 +51,32 @@ def chosen_scenes(
 
 
 def left_out_note(names: str | Sequence[str]) -> str:
-    """What is said of scenes that named kinds have and no engine is given; "" where there are
+    """What is said of scenes that named kinds have and do not stand for; "" where there are
     none."""
     asked = names_in(names, "scenes")
-    scenes = [one for name in asked if name in kinds() for one in reference_alone(name)]
-    several = [one for one in dict.fromkeys(scenes) if one not in asked]
-    if not several:
-        return ""
-    return (
-        f"{' and '.join(several)}: left out, as engines are given no friction that grows with what "
-        "a joint bears, nor elastic links that are let go or driven by a controller; `crankcheck "
-        "solve` shows them"
-    )
+    named = [name for name in asked if name in kinds()]
+    alone = _left_out(named, asked, reference_alone)
+    loose = [one for one in _left_out(named, asked, run_where_named) if one not in alone]
+    notes = []
+    if alone:
+        notes.append(
+            f"{' and '.join(alone)}: left out, as engines are given no friction that grows with "
+            "what a joint bears; `crankcheck solve` shows it"
+        )
+    if loose:
+        notes.append(
+            f"{' and '.join(loose)}: left out, as the truth of elastic links that are let go, or "
+            "driven by a controller, takes longer than all others; they are run where they are "
+            "named"
+        )
+    return "\n".join(notes)
+
+
+def _left_out(
+    named: Sequence[str], asked: Sequence[str], of: Callable[[str], list[str]]
+) -> list[str]:
+    """What kinds that are named leave out, and nobody asked for."""
+    return [one for one in dict.fromkeys(x for name in named for x in of(name)) if one not in asked]
 
 
 def refuse_unfollowed(scene: Scene) -> None:

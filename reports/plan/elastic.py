@@ -7,14 +7,23 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from models.controlled import Controlled
 from models.errors import CrankcheckError, EngineError, shown
 from models.motion import State
 from models.scene import Scene
 from reports.judge.cell import SEGMENTS, Springs
 from reports.plan.chosen import refuse_unfollowed
-from reports.plan.steps import STEPS_PER_TURN
+from reports.plan.free import LOOK
+from reports.plan.steps import (
+    FREE_STEP_S,
+    LEAST_STEPS,
+    STEPS_PER_TURN,
+    counted_free,
+    positive,
+)
 
 if TYPE_CHECKING:
+    from reports.compare.elastic.elastic_truth import ElasticTruth
     from reports.plan.study import Study
 
 SPRINGS: tuple[Springs, ...] = ("plain", "corrected", "beam")
@@ -23,8 +32,10 @@ MOST_SEGMENTS = 64
 STEADY = 1.5
 """The step times the fastest frequency of the segments, in the steps that are taken if none are
 asked for: explicit methods come apart from 2 on, or from 2.8."""
+SWINGS = 5
+"""Of the slowest elastic link of what is let go, in a run for which no time is asked for."""
 PART = 360
-"""Of which the steps of a turn are a multiple."""
+"""Of which the steps of a turn are a multiple, or those of a whole run that is let go."""
 
 
 def chosen_springs(text: str, option: str = "--springs") -> Springs:
@@ -84,22 +95,6 @@ def given_of(scene: Scene, segments: int | None, springs: str | None) -> GivenAs
     return GivenAs(chosen_segments(segments), chosen_springs(springs or "plain"))
 
 
-def refuse_free_elastic(scene: Scene) -> None:
-    """Refuse elastic links of what is let go. Raises CrankcheckError."""
-    if scene.elastic and scene.is_free:
-        raise CrankcheckError(
-            f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
-            "give the driver a law, or leave [elastic] out"
-        )
-
-
-def is_unheld(scene: Scene) -> bool:
-    """Whether no engine is held to a scene with elastic links."""
-    from reports.compare.elastic.elastic_truth import unheld  # for elastic links alone
-
-    return bool(unheld(scene))
-
-
 def rigid_alone(what: str) -> Callable[[Scene], None]:
     """A check of scenes for a command that has no elastic links; it raises CrankcheckError."""
 
@@ -117,11 +112,20 @@ def rigid_alone(what: str) -> Callable[[Scene], None]:
 
 def segmented(scene: Scene) -> tuple[Scene, State]:
     """What an engine is given of a scene with elastic links, and the state that it starts from.
-    Raises CrankcheckError as `elastic_truth`."""
-    from reports.compare.elastic.elastic_truth import elastic_truth  # for elastic links alone
-
-    truth = elastic_truth(scene, SEGMENTS, SPRINGS[0], scene.driver.law.period_s)
+    Raises CrankcheckError as the truth of such a scene."""
+    truth = _truth_of_start(scene, SEGMENTS, SPRINGS[0])
     return truth.given, truth.start
+
+
+def under_control(scene: Scene) -> Scene:
+    """A scene whose links bend and whose driver is controlled as what engines are given of it: let
+    go, with the torque of the controller as loads; others as they are. Raises CrankcheckError as
+    `analytic.elastic.control.released_under_control`."""
+    if not (scene.elastic and isinstance(scene.driver.law, Controlled)):
+        return scene
+    from analytic.elastic.control import released_under_control  # for elastic links alone
+
+    return released_under_control(scene)
 
 
 def refuse_rigid(scenes: Iterable[Scene], count: object, springs: object) -> None:
@@ -144,25 +148,83 @@ def refuse_unelastic(scene: Scene, segments: int, springs: Springs) -> None:
         A link that stretches, which segments do not; a resonance, next to which no periodic motion
         is found.
     """
-    from reports.compare.elastic.elastic_truth import elastic_truth  # for elastic links alone
-
     if not scene.elastic:
         return
     try:
-        truth = elastic_truth(scene, segments, springs, scene.driver.law.period_s)
+        truth = _truth_of_start(scene, segments, springs)
     except EngineError:
         return  # a row with its reason
     truth.look()
 
 
+def _truth_of_start(scene: Scene, segments: int, springs: Springs) -> ElasticTruth:
+    from reports.compare.elastic.elastic_truth import elastic_truth  # for elastic links alone
+    from reports.compare.elastic.released_truth import released_elastic_truth
+
+    lasts_s = scene.driver.law.period_s
+    if scene.is_free:
+        return released_elastic_truth(scene, segments, springs, 1, LOOK * lasts_s)
+    return elastic_truth(scene, segments, springs, lasts_s)
+
+
 def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
     """Steps in a turn that explicit methods hold so many segments with, at least the usual, which
     is what the implicit ones of engines that have beams are given."""
+    if springs == "beam":
+        return float(STEPS_PER_TURN)
+    needed = scene.driver.law.period_s * _fastest_rad_s(scene, segments, springs) / STEADY
+    return max(STEPS_PER_TURN, float(PART * math.ceil(needed / PART)))
+
+
+def _fastest_rad_s(scene: Scene, segments: int, springs: Springs) -> float:
     from analytic.elastic.discretisation import Segments
     from analytic.elastic.stiffness import fastest_rad_s
 
-    if springs == "beam":
-        return float(STEPS_PER_TURN)
-    fastest = fastest_rad_s(scene, Segments(segments, springs == "corrected"))
-    needed = scene.driver.law.period_s * fastest / STEADY
-    return max(STEPS_PER_TURN, float(PART * math.ceil(needed / PART)))
+    return fastest_rad_s(scene, Segments(segments, springs == "corrected"))
+
+
+def counted_released(
+    scene: Scene,
+    dt_s: float | None,
+    duration_s: float | None,
+    segments: int,
+    springs: Springs,
+    *,
+    every: int = 1,
+    least: int = LEAST_STEPS,
+) -> tuple[float, int]:
+    """Step [s] and number of steps for elastic links that are let go, as of `counted_free`; for a
+    few swings of the slowest link, and by steps that hold the segments, if nothing else is asked
+    for. Raises CrankcheckError as that."""
+    if duration_s is not None:
+        lasts_s = positive("--duration", duration_s, "seconds, such as 1")
+    else:
+        lasts_s = few_swings_s(scene)
+    if dt_s is None:
+        needed = lasts_s * max(_fastest_rad_s(scene, segments, springs) / STEADY, 1.0 / FREE_STEP_S)
+        dt_s = lasts_s / (PART * math.ceil(needed / PART))
+    return counted_free(scene, dt_s, lasts_s, every=every, least=least)
+
+
+def few_swings_s(scene: Scene) -> float:
+    """For how long elastic links are let go if nothing else is asked for [s]: what rings is
+    followed through all of its swings, so that the truth of a longer time takes as much longer."""
+    from analytic.elastic.discretisation import REFERENCE
+    from analytic.elastic.stiffness import slowest_rad_s
+
+    swings_s = SWINGS * math.tau / slowest_rad_s(scene, REFERENCE)
+    return min(scene.driver.law.period_s, float(f"{swings_s:.2g}"))
+
+
+def shortened_note(scene: Scene, lasts_s: float) -> str:
+    """What is said of a run of elastic links that ends before the scene does, as nothing else was
+    asked for; "" where it does not."""
+    if not (scene.elastic and scene.is_free):
+        return ""
+    whole_s = scene.driver.law.period_s
+    if few_swings_s(scene) >= whole_s or not math.isclose(lasts_s, few_swings_s(scene)):
+        return ""
+    return (
+        f"{scene.name}: let go for {lasts_s:.3g} s of its {whole_s:.4g} s, {SWINGS} swings of its "
+        "slowest elastic link; --duration takes more, whose truth takes as much longer"
+    )

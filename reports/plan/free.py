@@ -9,6 +9,7 @@ import numpy as np
 from models.errors import CrankcheckError
 from models.files import kinds, shipped
 from models.released import let_go
+from models.rigid import with_rigid_links
 from models.scene import Scene
 from reports.judge.tolerance import check_names
 from reports.plan.chosen import chosen_scenes
@@ -47,11 +48,6 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     from analytic.free.release import release  # slow to import, for free motion alone
 
     check_names(scene)
-    if scene.elastic:
-        raise CrankcheckError(
-            f"{scene.name}: it is let go and has elastic links, which engines are not held to yet; "
-            "give the driver a law, or leave [elastic] out"
-        )
     if scene.coulomb_joints:
         raise CrankcheckError(
             f"{scene.name}: friction that grows with what a joint bears "
@@ -60,7 +56,7 @@ def refuse_unreleased(scene: Scene, duration_s: float) -> None:
     for load in scene.loads.values():
         if load.over == "time":
             load.magnitude(np.array([0.0, duration_s]))
-    release(scene, LOOK * duration_s)
+    release(with_rigid_links(scene), LOOK * duration_s)
 
 
 def refuse_other_options(

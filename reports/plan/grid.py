@@ -17,7 +17,6 @@ from reports.plan.elastic import (
     GivenAs,
     given_as,
     held_steps,
-    is_unheld,
     refuse_rigid,
     refuse_unelastic,
 )
@@ -120,7 +119,7 @@ def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]
         return steps
     refuse_unelastic(scene, given.segments, given.springs)
     per_turn = study.steps_per_turn
-    if study.times_held and scene.elastic and not is_unheld(scene):
+    if study.times_held and scene.elastic:
         held = held_steps(scene, given.segments, given.springs)
         per_turn = [times * held for times in study.times_held]
     steps = [counted(scene, None, each, study.turns) for each in per_turn]

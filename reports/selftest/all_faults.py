@@ -10,6 +10,7 @@ from reports.selftest import (
     clock,
     dynamics,
     elastic,
+    elastic_released,
     engines,
     forces,
     handed_back,
@@ -40,6 +41,7 @@ FAULTS: dict[str, Fault] = {
         record,
         elastic,
         beams,
+        elastic_released,
     )
     for fault in module.FAULTS
 }

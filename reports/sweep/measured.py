@@ -110,10 +110,10 @@ def timed(cell: Cell, us_per_step: float) -> Repeats:
 
 def _start(cell: Cell) -> State:
     """What a cell starts from, without the truth of all of it. Raises CrankcheckError."""
-    if cell.drive == "free":
-        return released_state(cell.scene)
     if cell.scene.elastic:
         return cell.truth.start
+    if cell.drive == "free":
+        return released_state(cell.scene)
     return solve(cell.scene, np.zeros(1)).state()
 
 

@@ -12,9 +12,13 @@ from reports.quantities import QUANTITIES
 from reports.verify.row_cells import mark, row_cells
 
 ELASTIC_NUMBERS = {
-    QUANTITIES[name].head: [name] for name in ("segments", "deflection", "angle", "gap")
+    QUANTITIES["segments"].head: ["segments"],
+    QUANTITIES["deflection"].head: ["deflection"],
+    QUANTITIES["angle"].head: ["angle", "phase"],
+    QUANTITIES["gap"].head: ["gap"],
 }
-"""What of an engine's errors is shown: beside the exact chain, beside the beam, and of places."""
+"""What of an engine's errors is shown: beside the exact chain, beside the beam, and of places; of
+what is let go the driver's angle as well."""
 THEORIES = ("chain\n/ D", "doubt\n/ D", "linear\n/ D")
 WIDE, STACKED = 98, 76
 """Columns of a terminal that show every number, and below which it shows one."""

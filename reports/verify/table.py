@@ -105,9 +105,9 @@ def _table(
 
 def _kind(one: Checked) -> str:
     """The table that a cell stands in."""
-    if one.cell.drive == "free":
-        return "free"
-    return "elastic" if one.cell.scene.elastic else "driven"
+    if one.cell.scene.elastic:
+        return "elastic"
+    return "free" if one.cell.drive == "free" else "driven"
 
 
 TABLES = {"driven": _table, "free": free_table, "elastic": elastic_table}

@@ -21,6 +21,7 @@ from models.files import (
     parse_scene,
     read_scene,
     reference_alone,
+    run_where_named,
     scene_texts,
     shipped,
 )
@@ -74,7 +75,7 @@ def test_no_two_kinds_share_a_name_and_no_scene_is_called_as_a_kind() -> None:
 
 def test_all_scenes_of_a_kind_are_meant_by_its_name_and_those_of_no_kind_by_none() -> None:
     several = ["shaper", "forces", "toggle-press", "shaper"]
-    engines_are_given = [n for n in shipped("forces") if n not in reference_alone("forces")]
+    engines_are_given = [n for n in shipped("forces") if n not in run_where_named("forces")]
     assert names_of_scenes(several) == ["shaper", *engines_are_given]
     assert names_of_scenes("kinematics") == list(shipped())
     assert scene_texts(()).keys() == scene_texts("kinematics").keys() == shipped().keys()
@@ -82,10 +83,11 @@ def test_all_scenes_of_a_kind_are_meant_by_its_name_and_those_of_no_kind_by_none
     assert [path.stem for path in find_scenes("forces")] == engines_are_given
 
 
-def test_scenes_of_the_reference_alone_are_run_where_they_are_named() -> None:
-    assert reference_alone("kinematics") == []
-    assert reference_alone("forces") == ["slider-crank-self-locking"]
-    assert reference_alone("elastic") == ["fourbar-elastic-controlled", "fourbar-elastic-pulse"]
+def test_what_no_engine_is_given_and_what_takes_long_is_run_where_it_is_named() -> None:
+    assert run_where_named("kinematics") == []
+    assert run_where_named("forces") == reference_alone("forces") == ["slider-crank-self-locking"]
+    assert run_where_named("elastic") == ["fourbar-elastic-controlled", "fourbar-elastic-pulse"]
+    assert reference_alone("elastic") == []
     named = names_of_scenes(["forces", "slider-crank-self-locking"])
     assert named[-1] == "slider-crank-self-locking"
 

@@ -23,7 +23,7 @@ from reports.describe.law import describe_law
 from reports.judge.cell import SEGMENTS
 from reports.output.columns import plain_table
 from reports.output.write import check_file, write
-from reports.plan.elastic import SPRINGS, held_steps, segmented
+from reports.plan.elastic import SPRINGS, held_steps, segmented, under_control
 from sim.registry import available, brought, engine
 
 
@@ -80,7 +80,7 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
     """
     if output is not None:
         check_file(output, "-o", (".xml",), inputs=[find_scene(name)])
-    own = load_scene(name)
+    own = under_control(load_scene(name))
     scene, start = opened(own)
     # Of segments the step is one that holds their fastest vibration.
     steps = (held_steps(own, SEGMENTS, SPRINGS[0]),) if own.elastic else ()
@@ -95,7 +95,7 @@ def export(name: str, output: Path | None, close: tuple[str, ...], console: Cons
 def opened(scene: Scene) -> tuple[Scene, State]:
     """What an engine is given of a scene, which of elastic links are segments, and where it begins.
     Raises CrankcheckError where it can not."""
-    if scene.elastic and not scene.is_free:
+    if scene.elastic:
         return segmented(scene)
     return scene, start_of(scene)
 

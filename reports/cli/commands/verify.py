@@ -34,10 +34,12 @@ from reports.plan.chosen import (
 from reports.plan.elastic import (
     chosen_segments,
     chosen_springs,
+    counted_released,
     held_steps,
-    is_unheld,
     refuse_rigid,
     refuse_unelastic,
+    shortened_note,
+    under_control,
 )
 from reports.plan.forces import gives_forces, refuse_forceless, silent_note
 from reports.plan.free import (
@@ -48,7 +50,7 @@ from reports.plan.free import (
 )
 from reports.plan.short_tables import refuse_short_tables
 from reports.plan.singular import passage_note, refuse_singular
-from reports.plan.steps import STEPS_PER_TURN, TURNS, counted, counted_free
+from reports.plan.steps import TURNS, counted, counted_free
 from reports.verify.all_cells import check_all
 from reports.verify.table import show
 from sim.engine import Drive
@@ -148,7 +150,8 @@ def plan(request: VerifyRequest) -> list[Cell]:
 
 
 def _scenes(request: VerifyRequest) -> list[Scene]:
-    """The scenes, those that are to be let go with a driver that is."""
+    """The scenes, those that are to be let go with a driver that is, as those that are given way
+    to by a controller."""
     if request.free:
         return scenes_of(request.scenes, free=True)
 
@@ -157,7 +160,7 @@ def _scenes(request: VerifyRequest) -> list[Scene]:
         if not scene.is_free:
             refuse_unfollowed(scene)
 
-    return chosen_scenes(request.scenes, check)
+    return [under_control(scene) for scene in chosen_scenes(request.scenes, check)]
 
 
 def _refuse_options(request: VerifyRequest, scenes: Sequence[Scene]) -> None:
@@ -179,19 +182,21 @@ def _refuse_options(request: VerifyRequest, scenes: Sequence[Scene]) -> None:
 
 def _steps(request: VerifyRequest, scene: Scene) -> tuple[float, int]:
     """Step [s] and number of steps of a scene. Raises CrankcheckError where it can not be run."""
-    if scene.elastic and is_unheld(scene):
-        return scene.driver.law.period_s / STEPS_PER_TURN, int(
-            STEPS_PER_TURN
-        )  # a row with its reason
-    if scene.is_free:
-        dt_s, count = counted_free(scene, request.dt_s, request.duration_s)
-        refuse_unreleased(scene, dt_s * count)
-        return dt_s, count
-    turns = TURNS if request.turns is None else request.turns
     segments, springs = (
         chosen_segments(request.segments),
         chosen_springs(request.springs or "plain"),
     )
+    if scene.is_free:
+        step = request.dt_s, request.duration_s
+        dt_s, count = (
+            counted_released(scene, *step, segments, springs)
+            if scene.elastic
+            else counted_free(scene, *step)
+        )
+        refuse_unreleased(scene, dt_s * count)
+        refuse_unelastic(scene, segments, springs)
+        return dt_s, count
+    turns = TURNS if request.turns is None else request.turns
     per_turn = request.steps_per_turn
     if scene.elastic and request.dt_s is None and per_turn is None:
         per_turn = held_steps(scene, segments, springs)
@@ -205,10 +210,13 @@ def _steps(request: VerifyRequest, scene: Scene) -> tuple[float, int]:
 
 
 def passages(cells: Sequence[Cell]) -> list[str]:
-    """What is to be said of change points, once for every scene and duration of the cells."""
-    driven = (cell for cell in cells if cell.drive != "free")
-    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell.scene for cell in driven}
-    notes = (passage_note(scene, duration_s) for (_, duration_s), scene in runs.items())
+    """What is to be said of change points, and of elastic links that are let go for a part of their
+    time, once for every scene and duration of the cells."""
+    runs = {(cell.scene.name, cell.dt_s * cell.steps): cell for cell in cells}
+    notes = (
+        (shortened_note if cell.drive == "free" else passage_note)(cell.scene, duration_s)
+        for (_, duration_s), cell in runs.items()
+    )
     return [note for note in dict.fromkeys(notes) if note]
 
 

@@ -1,9 +1,9 @@
 """The beam that engines are held to, and what it may be off by.
 
 It is described by polynomials, with the shortening of a bent link. What it may be off by is seen
-from fewer of them, and from where exact chains of more and more segments go to, which know nothing
-of polynomials or of foreshortening: their distance to it falls as 1/n^2, up to what the beam
-neglects.
+from fewer of them, or more, and from where exact chains of more and more segments go to, which know
+nothing of polynomials or of foreshortening: their distance to it falls as 1/n^2, up to what the
+beam neglects.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from functools import cached_property
 import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Polynomials
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.elastic_history import elastic_history
+from analytic.elastic.released import ROUGH
+from analytic.elastic.sampled import ElasticHistory
 from analytic.elastic.stiffness import slowest_rad_s
 from models.array import Array
 from models.elastic import Shape
@@ -57,11 +59,18 @@ class BeamTheory:
         return self.shape == "periodic"
 
     @cached_property
-    def beam(self) -> DrivenElasticMotion:
+    def beam(self) -> ElasticHistory:
         return self._moved(REFERENCE)
 
-    def _moved(self, by: Polynomials, *, stiffened: bool = True) -> DrivenElasticMotion:
-        return DrivenElasticMotion(self.scene, self.until_s, by, self.shape, stiffened)
+    def _moved(self, by: Polynomials, *, stiffened: bool = True) -> ElasticHistory:
+        return elastic_history(
+            self.scene, self.until_s, by, self.shape, stiffened=stiffened, tolerance=ROUGH
+        )
+
+    @cached_property
+    def other(self) -> ElasticHistory:
+        """By fewer polynomials; of what is let go by more, as small differences grow there."""
+        return self._moved(REFERENCE.finer if self.scene.is_free else FEWER)
 
     @cached_property
     def lowest_rad_s(self) -> float:
@@ -79,6 +88,11 @@ class BeamTheory:
         return self.beam.at(self.looks_s)
 
     @cached_property
+    def looked_other(self) -> Motion:
+        """The other description of it, there."""
+        return self.other.at(self.looks_s)
+
+    @cached_property
     def largest_m(self) -> float:
         """The largest deflection."""
         return largest_deflection(self.scene, self.looked)
@@ -86,14 +100,15 @@ class BeamTheory:
     @cached_property
     def linear_m(self) -> float:
         """What the linear theory, without foreshortening, is off by."""
-        linear = self._moved(REFERENCE, stiffened=False).at(self.looks_s)
+        by = FEWER if self.scene.is_free else REFERENCE  # a look, at half the time
+        linear = self._moved(by, stiffened=False).at(self.looks_s)
         return deflections_apart(linear, self.looked)
 
     @cached_property
     def doubt_m(self) -> float:
-        """What the beam may be off by: what fewer polynomials are off it by and, where chains are
+        """What the beam may be off by: what other polynomials are off it by and, where chains are
         soon found, how far from it these go to."""
-        off = deflections_apart(self._moved(FEWER).at(self.looks_s), self.looked)
+        off = deflections_apart(self.looked_other, self.looked)
         chained = self.is_periodic and not any(e.stretches for e in self.scene.elastic.values())
         return max(off, self._beside_chains()) if chained else off
 

@@ -49,6 +49,10 @@ def _theory_rows(beside: ElasticBeside, other: Motion, kind: ErrorKind) -> Itera
 def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
     """What is known beside the errors."""
     truth, theory, time_s = beside.elastic, beside.elastic.theory, beside.motion.time_s
+    apart = truth.apart(partial(_apart_by_name, beside))
+    if beside.scene.is_free:  # the beam's own doubt of all of it grows with the time
+        other = _apart_by_name(beside, theory.looked_other, theory.looked)
+        apart |= {name: apart[name] + size for name, size in other.items() if name not in BEAM}
     return ElasticFacts(
         segments=truth.cut.count,
         springs=truth.springs,
@@ -57,15 +61,16 @@ def elastic_facts(beside: ElasticBeside) -> ElasticFacts:
         slender=beside.scene.longest_m / theory.largest_m,
         doubt=theory.doubt_m / theory.largest_m,
         linear=theory.linear_m / theory.largest_m,
-        apart=truth.apart(partial(_apart_by_name, beside)),
+        apart=apart,
         estimated=not truth.is_exact,
+        straight=theory.shape == "straight",
     )
 
 
 def _apart_by_name(beside: ElasticBeside, chain: Motion, beam: Motion) -> dict[str, float]:
     """The largest difference of all that is compared, as pure numbers by quantity."""
     found: dict[str, float] = {}
-    for name in named("place", "derived", "force", "elastic"):
+    for name in named("free", "place", "derived", "force", "elastic"):
         for measure in QUANTITIES[name].measures:
             ours, theirs = (measure.truth(beside.scene, each) for each in (beam, chain))
             if name in CHAIN or not ours:

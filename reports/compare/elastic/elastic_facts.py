@@ -13,10 +13,13 @@ class ElasticFacts:
     they swing at it over the run, 0 where the motion is periodic. ``slender`` is the longest link
     over the largest deflection.
 
+    ``straight`` says that they start so, and ring with all that they have.
+
     As shares of the largest deflection: ``doubt`` is what the beam may be off by, and ``linear``
     what the linear theory, without foreshortening, is off it by. ``apart`` is how far the exact
-    chain is from the beam, as a pure number by quantity; where the motion is not periodic it is
-    ``estimated`` from the chain of a few segments, and of elements from what they lock by.
+    chain is from the beam, as a pure number by quantity, of what is let go with what the beam may
+    be off by; of a driven motion that is not periodic it is ``estimated`` from the chain of a few
+    segments, and of elements from what they lock by.
     """
 
     segments: int
@@ -28,6 +31,7 @@ class ElasticFacts:
     linear: float
     apart: Mapping[str, float] = field(default_factory=dict)
     estimated: bool = False
+    straight: bool = False
 
     @property
     def pieces(self) -> str:

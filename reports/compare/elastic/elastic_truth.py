@@ -9,6 +9,7 @@ has beams of its own may be given these: there is the beam alone to hold it to.
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -20,11 +21,10 @@ from analytic.elastic.stiffness import fastest_rad_s
 from analytic.kinematics import solve
 from models.array import Array
 from models.beamed import BeamedScene
-from models.controlled import Controlled
 from models.cut_links import CutScene
 from models.errors import CrankcheckError, EngineError
 from models.motion import Motion, State
-from models.scene import Same, Scene
+from models.scene import Scene, as_bytes
 from models.segmented import SegmentedScene
 from reports.compare.beside import Beside, Truth
 from reports.compare.elastic.beam_theory import LEAST, BeamTheory, shape_of
@@ -41,17 +41,14 @@ from 2.8."""
 
 
 def elastic_truth(scene: Scene, count: int, springs: str, until_s: float) -> ElasticTruth:
-    """The truth of a scene that is run until then [s], its elastic links in so many segments, or
+    """The truth of a scene that is driven until then [s], its elastic links in so many segments, or
     elements of a beam.
 
-    Raises EngineError where there are no such: fewer than two, segments of a link that stretches;
-    and of a scene that engines are not held to.
+    Raises EngineError where there are no such: fewer than two, segments of a link that stretches.
     """
-    if why := unheld(scene):
-        raise EngineError(why)
     if shape_of(scene) == "periodic":  # however long a run is, the truth is one
         until_s = scene.driver.law.period_s
-    return _truth(Same(scene), count, springs, until_s)
+    return _truth(as_bytes(scene), count, springs, until_s)
 
 
 def chain_truth(scene: Scene, count: int, until_s: float) -> ChainTruth:
@@ -61,36 +58,30 @@ def chain_truth(scene: Scene, count: int, until_s: float) -> ChainTruth:
     return truth
 
 
-def unheld(scene: Scene) -> str:
-    """Why engines are not held to a scene with elastic links; empty where they are."""
-    if scene.is_free:
-        return (
-            f"{scene.name} is let go and has elastic links, which engines are not held to; "
-            "`crankcheck solve` shows its motion"
-        )
-    if isinstance(scene.driver.law, Controlled):
-        return (
-            f"{scene.name}: its driver is controlled, which engines are not given; `crankcheck "
-            "solve` shows its motion"
-        )
-    return ""
-
-
 @lru_cache(maxsize=4)
-def _truth(same: Same, count: int, springs: str, until_s: float) -> ElasticTruth:
+def _truth(pickled: bytes, count: int, springs: str, until_s: float) -> ElasticTruth:
+    theory = kept_theory(pickled, until_s)
+    pieces = cut_scene(theory.scene, count, springs)
+    kind = ChainTruth if isinstance(pieces, SegmentedScene) else ElasticTruth
+    return kind(theory.scene, cut=pieces, theory=theory)
+
+
+def cut_scene(scene: Scene, count: int, springs: str) -> CutScene:
+    """What an engine is given of a scene with elastic links. Raises EngineError where there is
+    none."""
     try:
-        pieces = cut(same.scene, count, springs)
+        pieces = cut(scene, count, springs)
         assert pieces.given  # made now, to be refused now
     except CrankcheckError as error:
         raise EngineError(str(error)) from None
-    kind = ChainTruth if isinstance(pieces, SegmentedScene) else ElasticTruth
-    return kind(same.scene, cut=pieces, theory=_theory(same, until_s))
+    return pieces
 
 
 @lru_cache(maxsize=2)
-def _theory(same: Same, until_s: float) -> BeamTheory:
-    """One for every number of segments."""
-    return BeamTheory(same.scene, until_s)
+def kept_theory(pickled: bytes, until_s: float) -> BeamTheory:
+    """The beam of a scene, which may come from another process: one for every number of
+    segments."""
+    return BeamTheory(pickle.loads(pickled), until_s)
 
 
 @dataclass(frozen=True)
@@ -129,7 +120,7 @@ class ElasticTruth(Truth):
 
     def look(self) -> None:
         """Find the start of the beam. Raises CrankcheckError where there is none."""
-        assert self.theory.beam.first
+        assert self.theory.beam.begun
 
     def _solved(self, time_s: Array) -> Motion:
         rigid = solve(self.scene, time_s, links=(), points=(), sliders=(), bound=False)
@@ -201,7 +192,7 @@ class ChainTruth(ElasticTruth):
     @cached_property
     def fastest_rad_s(self) -> float:
         """The highest angular frequency of the chain."""
-        return fastest_rad_s(self.scene, Segments(self.chain.count, self.chain.corrected))
+        return fastest_rad_s(self.theory.scene, Segments(self.chain.count, self.chain.corrected))
 
     def exact_at(self, time_s: Array) -> Motion:
         """Of the last instants that were asked for it is kept."""
@@ -218,10 +209,15 @@ class ChainTruth(ElasticTruth):
         stiff = run.dt_s * self.fastest_rad_s
         if done.status != "diverged" or stiff <= STEADY:
             return done
-        needed = math.ceil(self.scene.driver.law.period_s * self.fastest_rad_s / STEADY)
         return replace(
             done,
             reason=f"{done.reason}; the fastest frequency of {self.chain.count} segments is "
             f"{self.fastest_rad_s:.4g} rad/s, times the step {stiff:.2g}, and explicit steps hold "
-            f"up to about {STEADY}: take {needed} steps a turn, or fewer segments",
+            f"up to about {STEADY}: take {self.needed_step}, or fewer segments",
         )
+
+    @property
+    def needed_step(self) -> str:
+        """The longest step that holds, in words."""
+        period_s = self.scene.driver.law.period_s
+        return f"{math.ceil(period_s * self.fastest_rad_s / STEADY)} steps a turn"

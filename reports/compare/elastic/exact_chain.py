@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from analytic.elastic.elastic_motion import DrivenElasticMotion
+from analytic.elastic.sampled import ElasticHistory
 from analytic.elastic.segment_start import chain_motion
 from models.array import Array
 from models.elastic import Shape
@@ -22,7 +22,7 @@ class ExactChain:
     shape: Shape
 
     @cached_property
-    def motion(self) -> DrivenElasticMotion:
+    def motion(self) -> ElasticHistory:
         return chain_motion(self.chain, self.shape, self.until_s)
 
     def at(self, time_s: Array) -> Motion:

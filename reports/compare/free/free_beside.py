@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -16,7 +17,31 @@ from reports.compare.tracks import Track
 from sim.engine import Run
 
 if TYPE_CHECKING:
-    from analytic.free.free_motion import FreeMotion
+    from analytic.free.free_motion import LimitPassage
+    from analytic.multibody.energy_balance import EnergyBalance
+
+
+class FreeReference(Protocol):
+    """What is asked of the motion that a run is held to (`analytic.free.free_motion.FreeMotion`,
+    which is one)."""
+
+    @property
+    def until_s(self) -> float: ...
+
+    @property
+    def passages(self) -> Sequence[LimitPassage]: ...
+
+    @property
+    def by_dyads(self) -> bool: ...
+
+    @property
+    def driver_tells(self) -> bool: ...
+
+    def beside(self, logged: Motion) -> Motion: ...
+
+    def energy(self, time_s: Array) -> EnergyBalance: ...
+
+    def sensitivity(self, time_s: Array) -> Array: ...
 
 
 @dataclass(frozen=True)
@@ -29,7 +54,7 @@ class FreeBeside(Beside):
     """
 
     whole_run: Run = field(kw_only=True)
-    free: FreeMotion = field(kw_only=True)
+    free: FreeReference = field(kw_only=True)
 
     @cached_property
     def at_crank(self) -> Motion:

@@ -10,7 +10,7 @@ import numpy as np
 
 from models.motion import State
 from models.released import LONGEST_S
-from models.scene import Scene
+from models.scene import Scene, as_bytes
 
 if TYPE_CHECKING:
     from analytic.free.free_motion import FreeMotion
@@ -25,7 +25,7 @@ LOOK = 1e-3
 def kept_motion(scene: Scene, lasts_s: float) -> FreeMotion:
     """The motion of a scene that is let go, for so long [s] at least. Raises CrankcheckError as
     `analytic.free.release`."""
-    return _released(pickle.dumps(scene), max(lasts_s, _told_s(scene, BEYOND * lasts_s)))
+    return _released(as_bytes(scene), long_enough_s(scene, lasts_s))
 
 
 def released_state(scene: Scene) -> State:
@@ -33,6 +33,11 @@ def released_state(scene: Scene) -> State:
     free, with the accelerations that its masses and forces give it. Raises CrankcheckError as
     `analytic.free.release`."""
     return kept_motion(scene, LOOK * scene.driver.law.period_s).at(np.zeros(1), bound=False).state()
+
+
+def long_enough_s(scene: Scene, lasts_s: float) -> float:
+    """Until when a motion is integrated that a run of so long is compared with [s]."""
+    return max(lasts_s, _told_s(scene, BEYOND * lasts_s))
 
 
 def _told_s(scene: Scene, until_s: float) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic.elastic.control import ControlledForces, control_elastic
+from analytic.elastic.control import ControlledForces, control_elastic, released_under_control
 from analytic.elastic.discretisation import Modes, flexible_links
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.released import assembled, release_elastic
@@ -21,9 +21,11 @@ from models.elastic import Shape
 from models.errors import CrankcheckError, SceneError
 from models.files import find_scene, load_scene, parse_scene
 from models.laws import ConstantSpeed
+from models.loads import Load
 from models.mjcf import build
 from models.scene import Scene
 from models.scene_text import scene_text
+from models.waves import FourierSum, Pulse
 from sim.check import refuse_unknown_forces
 from sim.registry import ENGINES, engine
 
@@ -148,3 +150,35 @@ def test_let_go_it_has_no_controller() -> None:
     free = release_elastic(SCENE, 0.01, Modes(1)).at(time_s)
     assert free.forces is not None
     assert largest(free.forces.torque) == 0.0
+
+
+@pytest.mark.parametrize(("kp", "kd"), [(10.0, 0.1), (10.0, 0.0), (0.0, 0.1)])
+def test_let_go_with_the_controllers_torque_as_loads_it_moves_as_under_control(
+    kp: float, kd: float
+) -> None:
+    scene = with_gains(replace(SCENE, gravity_m_s2=(0.0, -9.81)), kp, kd)
+    times = np.linspace(0.0, 0.1, 50)
+    loose = released_under_control(scene)
+    assert loose.is_free
+    ours = release_elastic(loose, 0.1, Modes(2)).at(times)
+    theirs = control_elastic(scene, 0.1, Modes(2)).at(times)
+    assert largest(ours.links["crank"].theta - theirs.links["crank"].theta) < 1e-12
+    assert largest(ours.links["crank"].alpha - theirs.links["crank"].alpha) < 1e-8
+
+
+def test_a_torque_that_does_not_repeat_itself_is_no_sum_of_waves() -> None:
+    kick = Load("kick", "rocker", None, Pulse(0.1, 0.3))
+    with pytest.raises(CrankcheckError, match="does not go evenly on from turn to turn"):
+        released_under_control(replace(SCENE, loads={"kick": kick}))
+    # Two waves in three turns: smooth, and another in each of them.
+    long = Load("kick", "rocker", None, FourierSum(0.0, (0.1,), (0.0,), 1.5 * TURN_S))
+    with pytest.raises(CrankcheckError, match="does not go evenly on from turn to turn"):
+        released_under_control(replace(SCENE, loads={"kick": long}))
+
+
+def test_a_load_with_the_name_of_the_controllers_is_refused() -> None:
+    taken = Load("controller-speed", "rocker", None, FourierSum(0.1, (), (), 1.0))
+    with pytest.raises(CrankcheckError, match="controller-speed has the name"):
+        released_under_control(replace(SCENE, loads={"controller-speed": taken}))
+    with pytest.raises(CrankcheckError, match="its driver is not controlled"):
+        released_under_control(load_scene("fourbar-elastic"))

@@ -11,6 +11,7 @@ import pytest
 
 from analytic.elastic.discretisation import Discretisation, Elements, Modes, flexible_links
 from analytic.elastic.released import assembled, release_elastic
+from analytic.elastic.stiffness import slowest_rad_s
 from analytic.free.release import release
 from analytic.multibody.multibody_motion import MultibodyMotion
 from analytic.multibody.release_multibody import release_multibody
@@ -18,6 +19,7 @@ from models.array import Array
 from models.elastic import ElasticLink
 from models.errors import CrankcheckError, SceneError
 from models.files import find_scene, load_scene, parse_scene
+from models.laws import ConstantSpeed
 from models.motion import Motion
 from models.scene import Scene
 from tests.analytic.multibody.scenes import FIVE_BAR, PARALLELOGRAM, SLIDER_CRANK, scene
@@ -220,3 +222,27 @@ def test_loads_with_kinks_over_the_state_are_for_the_other_form() -> None:
     with pytest.raises(CrankcheckError, match=r"loads\.stop is not smooth over the motion"):
         release_elastic(kinked, 0.1, Modes(1)).at(np.zeros(1))
     assert by_multipliers(kinked, 0.01, Modes(1)).at(np.array([0.01]))
+
+
+def test_next_to_its_start_and_its_end_it_goes_on_as_it_does_there() -> None:
+    """What an engine with velocities of half a step later, or before, is held to."""
+    motion, longer = (release_elastic(PULSE, until_s, Modes(2)) for until_s in (0.1, 0.2))
+    after = np.array([0.1003])
+    ours, theirs = motion.outside(after), longer.at(after)
+    assert apart(ours, theirs, "coupler") < 1e-5
+    rest, before = motion.at(np.zeros(1)), motion.outside(np.array([-1e-3]))
+    alpha = rest.links["crank"].alpha[0]
+    assert before.links["crank"].omega[0] == pytest.approx(
+        rest.links["crank"].omega[0] - 1e-3 * alpha, abs=1e-3
+    )
+
+
+def test_its_frequencies_are_those_of_what_nothing_holds() -> None:
+    """A light crank gives way: the first is higher than with one that is held, and no joint of
+    the rigid mechanism counts as one."""
+    law = ConstantSpeed(PULSE.driver.law.start_rad, 1.0)  # type: ignore[attr-defined]
+    held = replace(PULSE, driver=replace(PULSE.driver, law=law))
+    by = Modes(2)
+    assert slowest_rad_s(held, by) < slowest_rad_s(PULSE, by) < 1.1 * slowest_rad_s(held, by)
+    assert slowest_rad_s(PULSE, by) == pytest.approx(32.27, rel=1e-3)
+    assert slowest_rad_s(FIVE, by) > 10.0

@@ -57,7 +57,7 @@ def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None
         (["verify", "fourbar-lecture-1", "--segments", "4"], "no scene has one"),
         (["verify", "elastic", "--segments", "1"], "a link bends with 2 segments or more"),
         (["verify", "elastic", "--springs", "soft"], "use plain, corrected or beam"),
-        (["verify", NAME, "--free"], "is let go and has elastic links"),
+        (["verify", NAME, "--free"], "what is let go comes back after no period"),
         (
             ["tune", NAME, "--engine", "mujoco", "--target", "1e-3"],
             f"`crankcheck sweep {NAME} --segm",
@@ -89,3 +89,26 @@ def test_a_sweep_of_both_steps_elastic_links_as_their_segments_ask(tmp_path: Pat
     steps = cells[cells["scene"] == NAME]["steps_per_turn"]
     assert sorted(steps / steps.min()) == [1.0, 2.0, 4.0]
     assert cells["segments"].isna().sum() == 7
+
+
+def test_elastic_links_that_are_let_go_are_verified_where_they_are_named() -> None:
+    asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "4", "--no-convergence"]
+    asked += ["--duration", "0.05", "--jobs", "1"]
+    told = crankcheck("verify", "fourbar-elastic-controlled", "fourbar-elastic-pulse", *asked)
+    assert "elastic links, profile tuned" in told
+    assert "WITHIN TOLERANCE" in told
+
+
+def test_a_log_of_elastic_links_that_were_let_go_is_not_judged_either(tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    crankcheck("run", "fourbar-elastic-pulse", "--segments", "2", "--duration", "0.05", "-o", log)
+    told = crankcheck("judge", "fourbar-elastic-pulse", log, code=2)
+    assert "logs of elastic links that are let go are not judged yet" in told
+
+
+def test_what_is_let_go_is_swept_and_timed_over_the_step(tmp_path: Path) -> None:
+    asked = ["--free", "--engine", "mujoco", "--profile", "tuned", "--segments", "4"]
+    steps = ["--dt", "1e-3,5e-4", "--duration", "0.1", "--jobs", "1"]
+    told = crankcheck("sweep", "fourbar-elastic-pulse", "-o", tmp_path / "s", *asked, *steps)
+    assert "2 run now" in told
+    assert "2 timed now" in told

@@ -22,3 +22,10 @@ def test_what_a_kind_has_for_the_reference_alone_is_left_out_with_a_note() -> No
     assert note.startswith("slider-crank-self-locking: left out, as engines are given no friction")
     assert left_out_note(["forces", "slider-crank-self-locking"]) == ""
     assert left_out_note(["kinematics", "shaper"]) == left_out_note(()) == ""
+
+
+def test_elastic_links_that_are_let_go_are_run_where_they_are_named() -> None:
+    note = left_out_note(["elastic"])
+    assert "fourbar-elastic-controlled and fourbar-elastic-pulse: left out" in note
+    assert "run where they are named" in note
+    assert left_out_note(["elastic", "fourbar-elastic-pulse", "fourbar-elastic-controlled"]) == ""

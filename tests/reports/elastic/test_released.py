@@ -1,0 +1,209 @@
+"""Engines on elastic links that are let go, or that a controller drives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from models.files import load_scene
+from models.scene import Scene
+from models.springs import PinSpring
+from reports.compare.elastic.released_truth import ReleasedElasticTruth
+from reports.face.comparison import compare
+from reports.face.log_verdict import judge
+from reports.face.simulation import run as simulated
+from reports.judge.cell import Cell, CellRunner, Checked, check, examined
+from reports.judge.rows import cell_row
+from reports.judge.tolerance import limits
+from reports.plan.elastic import (
+    counted_released,
+    few_swings_s,
+    shortened_note,
+    under_control,
+)
+from sim.engine import Run
+from sim.run import run
+
+PULSE, CONTROLLED = "fourbar-elastic-pulse", "fourbar-elastic-controlled"
+SEGMENTS = 4
+LASTS_S = {PULSE: 0.3, CONTROLLED: 0.1}
+"""What starts straight rings with all that it has, and takes longer."""
+
+
+@cache
+def scene(name: str) -> Scene:
+    return under_control(load_scene(name))
+
+
+def cell(name: str = PULSE, engine: str = "mujoco", **changes: object) -> Cell:
+    dt_s, steps = counted_released(scene(name), None, LASTS_S[name], SEGMENTS, "plain")
+    asked = Cell(
+        scene(name), engine, "tuned", dt_s, steps, drive="free", converge=False, segments=SEGMENTS
+    )
+    return replace(asked, **changes)  # type: ignore[arg-type]
+
+
+def worst(checked: Checked, quantity: str) -> float:
+    assert checked.errors is not None
+    error = checked.errors.worst(quantity)
+    assert error is not None, quantity
+    return error.pure
+
+
+@pytest.mark.parametrize(
+    ("name", "engine", "most"),
+    [
+        (PULSE, "mujoco", 1e-5),
+        (PULSE, "pymunk", 2e-4),
+        (PULSE, "exudyn", 1e-3),
+        (CONTROLLED, "mujoco", 1e-5),
+        (CONTROLLED, "pymunk", 1e-3),
+        (CONTROLLED, "exudyn", 1e-3),
+    ],
+)
+def test_an_engine_comes_to_its_exact_chain_as_the_square_of_the_step(
+    name: str, engine: str, most: float
+) -> None:
+    found = check(cell(name, engine, converge=True))
+    assert found.verdict == "within", [finding.text for finding in found.failures]
+    assert worst(found, "segments") < most
+    assert found.convergence is not None
+    assert found.convergence.order > 1.8  # MuJoCo's springs ring with the fourth
+
+
+@pytest.fixture(scope="module")
+def checked() -> Checked:
+    return check(cell())
+
+
+def test_the_segments_are_told_from_the_engine_and_the_phase_is_that_of_the_beam(
+    checked: Checked,
+) -> None:
+    errors = checked.errors
+    assert errors is not None
+    assert errors.elastic is not None
+    assert errors.elastic.chain == pytest.approx(worst(checked, "deflection"), rel=0.01)
+    assert errors.elastic.chain == pytest.approx(0.05, rel=0.1)  # 0.80/n^2
+    assert errors.elastic.doubt < 1e-5
+    raw = errors.worst("phase", kind="raw")
+    assert raw is not None
+    assert raw.pure == pytest.approx(errors.elastic.apart["phase"], rel=0.01)
+    assert worst(checked, "phase") < raw.pure  # over how a small change of the start has grown
+    assert worst(checked, "energy") < 1e-6
+    assert "the segments end before the engine" in next(
+        finding.text for finding in checked.findings if finding.rule == "CC134"
+    )
+
+
+def test_there_is_no_geometry_at_the_drivers_angle_where_links_bend(checked: Checked) -> None:
+    assert checked.errors is not None
+    assert checked.errors.worst("geometry") is None
+    assert "no geometry: where links bend" in " ".join(checked.errors.notes)
+
+
+def test_a_cell_has_what_is_of_free_motion_and_what_is_of_elastic_links(checked: Checked) -> None:
+    row = cell_row(checked)
+    assert row["drive"] == "free"
+    assert row["place_pure"] == row["deflection_pure"]
+    for name in ("phase_limit_pure", "energy_limit_pure", "segments_limit_pure", "sensitivity"):
+        assert isinstance(row[name], float)
+    assert (row["segments"], row["left_out"]) == (4.0, 0)
+
+
+def stiffer(by: float) -> CellRunner:
+    """A runner whose springs are stiffer by a share."""
+
+    def runner(given: Scene, *rest: object, **options: object) -> Run:
+        springs = {
+            name: replace(spring, rate=spring.rate * (1.0 + by))
+            if isinstance(spring, PinSpring)
+            else spring
+            for name, spring in given.springs.items()
+        }
+        return run(replace(given, springs=springs), *rest, **options)  # type: ignore[arg-type]
+
+    return runner
+
+
+def test_springs_that_are_a_part_in_a_hundred_too_stiff_are_out() -> None:
+    found, _ = examined(cell(), stiffer(0.01))
+    assert "CC132" in {finding.rule for finding in found.failures}
+
+
+def test_a_step_that_the_springs_do_not_hold_says_which_would() -> None:
+    found = check(cell(segments=8, dt_s=3e-3, steps=100))
+    assert found.status == "diverged"
+    assert "take a step of 0.00117 s, or fewer segments" in found.reason
+
+
+def test_the_velocities_of_half_a_step_before_the_start_have_a_truth() -> None:
+    """As MuJoCo ships it is half a step off, before the start and before the end."""
+    found = check(cell(profile="as-shipped"))
+    assert found.errors is not None
+    assert [error.finite for error in found.errors.rows] == [True] * len(found.errors.rows)
+
+
+def test_a_truth_that_is_in_doubt_ends() -> None:
+    truth = cell(tolerance={"phase": 1e-11}).truth
+    assert isinstance(truth, ReleasedElasticTruth)
+    assert 0.0 < truth.known_s < LASTS_S[PULSE]
+    found = check(cell(tolerance={"phase": 1e-11}))
+    assert found.errors is not None
+    assert found.errors.free is not None
+    assert found.errors.free.left_out > 0
+    assert "the truth ends" in " ".join(found.errors.notes)
+
+
+def test_a_run_is_compared_with_the_beam_that_it_was_let_go_from() -> None:
+    done = simulated(PULSE, duration_s=0.1, segments=4)
+    assert done.drive == "free"
+    assert done.motion is not None
+    assert set(done.motion.links) == {"crank", "coupler", "rocker"}
+    found = compare(PULSE, done)
+    error = found.worst("segments")
+    assert error is not None
+    assert error.pure < 1e-5
+
+
+def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such() -> None:
+    done = simulated(CONTROLLED, duration_s=0.02, segments=4)
+    assert done.drive == "free"
+    assert judge(CONTROLLED, done).verdict == "within"
+
+
+def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() -> None:
+    own = scene(PULSE)
+    assert few_swings_s(own) == pytest.approx(0.97)
+    dt_s, steps = counted_released(own, None, None, 16, "plain")
+    assert dt_s * steps == pytest.approx(0.97)
+    assert "let go for 0.97 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
+    assert counted_released(own, 1e-4, 2.0, 16, "plain") == (1e-4, 20_000)
+    assert shortened_note(own, 2.0) == shortened_note(own, 0.3) == ""
+    assert shortened_note(load_scene("fourbar-pulse"), 0.97) == ""
+
+
+def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:
+    errors = checked.errors
+    assert errors is not None
+    assert errors.elastic is not None
+
+    def limit(step: float, *, straight: bool) -> float:
+        facts = replace(errors.elastic, straight=straight, segments=16, slender=0.0)
+        found = limits(scene(PULSE), replace(errors, step_rad=step, elastic=facts), {})
+        return found["segments"].number
+
+    even = limit(1e-3, straight=False)
+    assert even / limit(5e-4, straight=False) == pytest.approx(4.0)
+    assert limit(1e-3, straight=True) > 3.0 * even
+    # The power 4/3 of the step, up to the waves that so many segments have.
+    assert limit(1e-3, straight=True) / limit(5e-4, straight=True) == pytest.approx(2.5, abs=0.5)
+
+
+def test_a_link_that_stretches_is_no_chain_when_it_is_let_go() -> None:
+    own = scene(PULSE)
+    coupler = replace(own.elastic["coupler"], axial_n=2.4e6)
+    found = check(cell(scene=replace(own, elastic={"coupler": coupler})))
+    assert found.verdict == "unsupported"
+    assert "elastic.coupler stretches" in found.reason
