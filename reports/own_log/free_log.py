@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from models.errors import CrankcheckError, few
+from models.scene import Scene
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import FreeTruth, free_truth_until
 from reports.compare.free.kept_motion import BEYOND
@@ -162,6 +163,6 @@ def _refuse_elastic(scene: Scene) -> None:
     """Refuse the log of elastic links that were let go. Raises CrankcheckError."""
     if scene.elastic:
         raise CrankcheckError(
-            f"{scene.name}: {', '.join(scene.elastic)} bends, and logs of elastic links that are let "
-            "go are not judged yet; `crankcheck verify` runs engines on them"
+            f"{scene.name}: {', '.join(scene.elastic)} bends, and logs of elastic links that are "
+            "let go are not judged yet; `crankcheck verify` runs engines on them"
         )
