@@ -12,7 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-Trend = Literal["shrinks", "levels off", "does not shrink", "grows", "at rounding", "diverges"]
+Trend = Literal[
+    "shrinks", "levels off", "does not shrink", "grows", "at rounding", "as the truth", "diverges"
+]
 
 AT_ROUNDING = 1e-11
 """A pure error that rounding over a run of thousands of steps explains by itself."""
@@ -80,8 +82,10 @@ def convergence(
     if len(dt_s) != 3 or len(error) != 3:
         raise ValueError(f"{len(error)} steps: a floor needs three")
     first, second, third = error
-    trend, order, floor = _read(first, second, third, max(rounding, known))
-    if trend in ("levels off", "does not shrink") and floor <= known:
+    trend, order, floor = _read(first, second, third, rounding)
+    if trend not in ("at rounding", "diverges") and max(second, third) <= known:
+        trend, order, floor = "as the truth", math.nan, math.nan
+    elif trend == "levels off" and floor <= known:
         trend, floor = "shrinks", math.nan
     if cancels and trend == "levels off" and third <= STAYS * second:
         trend, floor = "shrinks", math.nan

@@ -59,9 +59,27 @@ def test_errors_of_rounding_are_not_read_as_orders() -> None:
     assert seen(0.0, 0.0, 0.0).trend == "at rounding"
 
 
+@pytest.mark.parametrize(
+    ("errors", "trend"),
+    [
+        ((8e-5, 4e-5, 3e-5), "as the truth"),  # all of it may be the truth's
+        ((8e-5, 3e-5, 4e-5), "as the truth"),
+        ((3e-4, 1.0e-4, 5e-5), "shrinks"),  # down to a floor that may be
+        ((3e-4, 2.5e-4, 2.4e-4), "does not shrink"),
+    ],
+)
+def test_a_floor_that_the_truth_may_be_off_by_is_not_the_engines(
+    errors: tuple[float, float, float], trend: str
+) -> None:
+    dt_s = (1e-3, 5e-4, 2.5e-4)
+    assert convergence(dt_s, errors, "rad", known=4e-5).trend == trend
+    assert convergence(dt_s, errors, "rad").trend in ("levels off", "shrinks", "does not shrink")
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_an_error_that_is_no_number_diverges(bad: float) -> None:
     assert seen(1e-3, 1e-4, bad).trend == "diverges"
+    assert convergence((4.0, 2.0, 1.0), (1e-3, 1e-4, bad), "rad", known=1.0).trend == "diverges"
 
 
 def test_two_steps_are_not_enough_for_a_floor() -> None:
