@@ -177,9 +177,12 @@ def held_steps(scene: Scene, segments: int, springs: Springs) -> float:
 
 
 def _fastest_rad_s(scene: Scene, segments: int, springs: Springs) -> float:
+    """That of the segments; 0 where a link stretches alone, and is no chain of them."""
     from analytic.elastic.discretisation import Segments
     from analytic.elastic.stiffness import fastest_rad_s
 
+    if not all(link.bends for link in scene.elastic.values()):
+        return 0.0
     return fastest_rad_s(scene, Segments(segments, springs == "corrected"))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from models.files import find_scene
 from reports.cli import app
 from reports.store.reader import read_store
 
@@ -112,3 +113,14 @@ def test_what_is_let_go_is_swept_and_timed_over_the_step(tmp_path: Path) -> None
     told = crankcheck("sweep", "fourbar-elastic-pulse", "-o", tmp_path / "s", *asked, *steps)
     assert "2 run now" in told
     assert "2 timed now" in told
+
+
+@pytest.mark.parametrize("name", [NAME, "fourbar-elastic-pulse"])
+def test_a_link_that_stretches_alone_is_a_row_with_its_reason(name: str, tmp_path: Path) -> None:
+    text = find_scene(name).read_text(encoding="utf-8")
+    stretched = text.replace(
+        "[elastic.coupler]", "[elastic.coupler]\nbends = false\nstretches = true"
+    )
+    (tmp_path / "axial.toml").write_text(stretched.replace("periodic", "quasi-static"))
+    told = crankcheck("verify", tmp_path / "axial.toml", "--engine", "mujoco", code=2)
+    assert "elastic.coupler stretches, and a chain of segments does not" in told
