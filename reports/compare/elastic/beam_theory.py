@@ -16,7 +16,7 @@ import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Polynomials
 from analytic.elastic.elastic_motion import DrivenElasticMotion
-from analytic.elastic.stiffness import slowest_rad_s
+from analytic.elastic.natural import lowest_rad_s
 from models.array import Array
 from models.elastic import Shape
 from models.motion import Motion
@@ -65,8 +65,8 @@ class BeamTheory:
 
     @cached_property
     def lowest_rad_s(self) -> float:
-        """The lowest angular frequency of the links."""
-        return slowest_rad_s(self.scene, REFERENCE)
+        """The lowest angular frequency of the links, each alone."""
+        return lowest_rad_s(self.scene)
 
     @cached_property
     def looks_s(self) -> Array:

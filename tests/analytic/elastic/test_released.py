@@ -135,7 +135,7 @@ def test_modes_and_elements_agree_to_what_they_are_in_doubt_of() -> None:
     off = np.abs(
         modes.at(time_s).elastic["coupler"].middle - elements.at(time_s).elastic["coupler"].middle
     )
-    allowed = 2.0 * (doubt.deflection_m + other.deflection_m) + 1e-12
+    allowed = 2.0 * (doubt.middle_m["coupler"] + other.middle_m["coupler"]) + 1e-12
     assert (off <= allowed).all()
     assert allowed.max() < 0.05 * largest(modes.at(time_s).elastic["coupler"].middle)
 
