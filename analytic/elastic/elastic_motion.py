@@ -17,6 +17,7 @@ from analytic.elastic.coordinates import coordinates
 from analytic.elastic.discretisation import Discretisation, Segments, flexible_links
 from analytic.elastic.drive_check import check_drive
 from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.natural import link_modes
 from analytic.elastic.periodic import FEWEST, OTHERS, PeriodicMotion, periodic_motion
 from analytic.elastic.reduced import Instant, ReducedForm, quasi_static_start
 from analytic.elastic.vibration import VibrationHistory, vibrate
@@ -28,7 +29,6 @@ from analytic.multibody.generalised_forces import GeneralisedForces
 from analytic.multibody.joint_forces import joint_forces
 from models.array import Array
 from models.elastic import Shape
-from models.elastic_line import line_of
 from models.errors import CrankcheckError
 from models.motion import ElasticMotion as LinkShape
 from models.motion import Motion
@@ -130,13 +130,9 @@ class DrivenElasticMotion:
 
     def _windows(self) -> int:
         """Of the integration, before they are halved."""
-        slowest = 0.0
-        for name, link in self.scene.elastic.items():
-            line = line_of(self.scene, name)
-            if link.bends:
-                slowest = max(slowest, link.bending_rad_s(line.length_m, line.density_kg_m))
+        first = (e.frequency_rad_s for e in link_modes(self.scene, 1) if e.kind == "across")
         turns = self.until_s / self.scene.driver.law.period_s
-        cycles = self.until_s * slowest / math.tau
+        cycles = self.until_s * max(first, default=0.0) / math.tau
         followed = min(PER_CYCLE * cycles, MOST_PER_TURN * turns)
         windows = math.ceil(max(2.0, PER_TURN * turns, followed))
         if windows > MOST_WINDOWS:

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Modes, Segments, flexible_links
+from analytic.elastic.elastic_doubt import ElasticDoubt
 from analytic.elastic.free_by_library import by_library
 from analytic.elastic.free_windows import FreePiece, by_collocation, check_smooth
 from analytic.elastic.tangent_form import FreeInstant, TangentForm
@@ -49,26 +50,6 @@ chains are no nearer to than some 1e-4 of the deflection, by the second: off by 
 sixth."""
 COARSER = 100.0
 """By how much larger is the tolerance of the motion that this one is held to."""
-
-
-@dataclass(frozen=True)
-class DoubtOverTime:
-    """What a motion may be off by, the largest so far at T times: ``deflection_m`` of the middle of
-    any elastic link, ``angle_rad`` of any link."""
-
-    deflection_m: Array
-    angle_rad: Array
-
-    @staticmethod
-    def between(motion: Motion, *others: Motion) -> DoubtOverTime:
-        """How far a motion is from others."""
-        bent, turned = np.zeros(len(motion.time_s)), np.zeros(len(motion.time_s))
-        for other in others:
-            for name, own in motion.elastic.items():
-                bent = np.maximum(bent, np.abs(own.middle - other.elastic[name].middle))
-            for name, link in motion.links.items():
-                turned = np.maximum(turned, np.abs(link.theta - other.links[name].theta))
-        return DoubtOverTime(np.maximum.accumulate(bent), np.maximum.accumulate(turned))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,11 +159,11 @@ class ReleasedElasticMotion:
         """The motion integrated to a larger tolerance."""
         return replace(self, tolerance=COARSER * self.tolerance)
 
-    def doubt(self, time_s: Array) -> DoubtOverTime:
-        """What the motion may be off by at times [s], (T,) in ascending order: how far it is from
-        that of the next finer shapes, and from one integrated to a larger tolerance."""
+    def doubt(self, time_s: Array) -> ElasticDoubt:
+        """What the motion may be off by up to times [s], (T,) in ascending order: how far it is
+        from that of the next finer shapes, and from one integrated to a larger tolerance."""
         own = self.at(time_s)
-        return DoubtOverTime.between(own, self.finer.at(time_s), self.coarser.at(time_s))
+        return ElasticDoubt.between(own, self.finer.at(time_s), self.coarser.at(time_s)).so_far
 
     def _instants(self, time_s: Array) -> Iterator[PieceInstants]:
         """Those of all pieces, one after the other."""

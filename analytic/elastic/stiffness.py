@@ -1,4 +1,4 @@
-"""The frequencies of elastic links at the start, which say what step holds them."""
+"""The highest frequency of elastic links at the start, which says what step holds them."""
 
 from __future__ import annotations
 
@@ -17,11 +17,6 @@ from models.scene import Scene
 def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
     """The highest angular frequency of the links in the position of the start, unloaded."""
     return math.sqrt(float(_squares(scene, by).max()))
-
-
-def slowest_rad_s(scene: Scene, by: Discretisation) -> float:
-    """The lowest."""
-    return math.sqrt(max(float(_squares(scene, by).min()), 0.0))
 
 
 def _squares(scene: Scene, by: Discretisation) -> Array:

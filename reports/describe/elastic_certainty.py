@@ -3,11 +3,13 @@ links changes, and what the linear theory leaves out."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from analytic.elastic.discretisation import Discretisation, Elements, Segments
+from analytic.elastic.elastic_doubt import ElasticDoubt
 from analytic.elastic.released import ReleasedElasticMotion
 from analytic.elastic.sampled import ElasticHistory
 from models.array import Array
@@ -21,33 +23,28 @@ SAMPLES = 73
 """Instants of a motion that are compared."""
 
 
-@dataclass(frozen=True)
-class Differences:
-    """The largest differences of two motions: of a deflection over the largest of its link (the
-    worst link counts), of an angle [rad], of the torque over its largest."""
+class Shares(NamedTuple):
+    """The largest distances of a motion from another: of a deflection over the largest of its link
+    in that one (the worst link counts), of an angle [rad], of the torque over its largest."""
 
     deflection: float
     angle_rad: float
     torque: float
 
-    @staticmethod
-    def of(one: Motion, other: Motion) -> Differences:
-        """Between motions at the same instants."""
-        bent = [
-            _over(shape.middle, other.elastic[name].middle) for name, shape in one.elastic.items()
-        ]
-        turned = [
-            float(np.max(np.abs(link.theta - other.links[name].theta)))
-            for name, link in one.links.items()
-        ]
-        torques = (each.forces.torque for each in (one, other) if each.forces is not None)
-        every = max(bent, default=0.0), max(turned, default=0.0), _over(*torques)
-        return Differences(*(max(ROUNDING, each) for each in every))
+
+def _shares(one: Motion, other: Motion) -> Shares:
+    """Of motions at the same instants; none is less than rounding."""
+    apart = ElasticDoubt.between(one, other)
+    bent = [_over(off, other.elastic[name].middle) for name, off in apart.middle_m.items()]
+    turned = [float(off.max()) for off in apart.theta_rad.values()]
+    acting = other.forces.torque if other.forces is not None else np.zeros(0)
+    every = max(bent, default=0.0), max(turned, default=0.0), _over(apart.torque_n_m, acting)
+    return Shares(*(max(ROUNDING, each) for each in every))
 
 
-def _over(one: Array, other: Array) -> float:
-    largest = float(np.nanmax(np.abs(other), initial=0.0))
-    return float(np.nanmax(np.abs(one - other), initial=0.0)) / (largest or 1.0)
+def _over(off: Array, series: Array) -> float:
+    largest = float(np.nanmax(np.abs(series), initial=0.0))
+    return float(np.nanmax(off, initial=0.0)) / (largest or 1.0)
 
 
 def certainty(motion: ElasticHistory) -> list[str]:
@@ -59,7 +56,7 @@ def certainty(motion: ElasticHistory) -> list[str]:
     own = motion.at(time_s)
     notes = [_by_other_shapes(motion, time_s, own)]
     if not motion.stiffened:
-        short = Differences.of(own, replace(motion, stiffened=True).at(time_s))
+        short = _shares(own, replace(motion, stiffened=True).at(time_s))
         notes.append(
             "What the linear theory leaves out, the shortening of bent links, changes deflections "
             f"by {100.0 * short.deflection:.3g} % of the largest; engines are held to the motion "
@@ -74,7 +71,7 @@ def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
     fewer = coarser(motion.by)
     slow = isinstance(motion, ReleasedElasticMotion) or isinstance(motion.by, Elements)
     if not slow or described(motion.scene, fewer) == described(motion.scene, motion.by):
-        found = Differences.of(own, motion.finer.at(time_s))
+        found = _shares(own, motion.finer.at(time_s))
         told = [
             f"deflections are off by about {error_text(found.deflection)} of the largest",
             f"angles by {error_text(found.angle_rad)} rad",
@@ -82,7 +79,7 @@ def _by_other_shapes(motion: ElasticHistory, time_s: Array, own: Motion) -> str:
         if own.forces is not None and own.forces.torque.any():
             told.append(f"the torque by {error_text(found.torque)} of its largest")
         return f"As the next finer description has it, {', '.join(told)}."
-    found = Differences.of(replace(motion, by=fewer).at(time_s), own)
+    found = _shares(replace(motion, by=fewer).at(time_s), own)
     return (
         f"By {described(motion.scene, fewer)} deflections are off this by "
         f"{error_text(found.deflection)} of the largest, angles by {error_text(found.angle_rad)} "

@@ -9,9 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from models.errors import CrankcheckError
 from models.one_or_more import names_in
-from reports.face.arguments import SceneLike, each_of, is_true, path_of, whole_of
+from reports.face.arguments import SceneLike, each_of, is_true, path_of
 from reports.face.shown import Shown
 from reports.face.told import told_at_the_call
 from reports.plan.steps import positive
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from reports.sweep.running import Done
 
 Values = float | int | str | Sequence[float | int | str]
-MOST_JOBS = 1024
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,6 +126,7 @@ def sweep(
     """
     from reports.face.sweep_arguments import (
         command_of,
+        manner_of,
         numbers_of,
         overrides_of,
         refuse_empty_lists,
@@ -137,26 +136,15 @@ def sweep(
     from reports.plan.chosen_study import StudyChoice, chosen_study, study_engines
     from reports.plan.elastic import chosen_segments, chosen_springs
     from reports.plan.study import load_study
-    from reports.sweep.whole import Manner, swept
-    from reports.workers.isolated import checked_limits
+    from reports.sweep.whole import swept
 
     where = path_of(folder, "folder")
     chosen = {"scenes": scenes, "engines": engines, "profiles": profiles}
     refuse_empty_lists(chosen | {"steps_per_turn": steps_per_turn})
-    limits = checked_limits(
-        positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
+    manner = manner_of(
+        limit_s, memory_gb, jobs, timing=timing, keep_trajectories=keep_trajectories, again=again
     )
-    jobs = whole_of(jobs, "--jobs", 0)
-    if jobs > MOST_JOBS:
-        raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
     named = names_in(engines, "engines")
-    manner = Manner(
-        limits,
-        jobs,
-        timing=is_true(timing, "timing"),
-        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
-        again=is_true(again, "again"),
-    )
     told = load_study(None if study is None else path_of(study, "study"))
     with ExitStack() as kept:
         choice = StudyChoice(

@@ -11,10 +11,22 @@ from tempfile import TemporaryDirectory
 from models.errors import CrankcheckError
 from models.files import every_shipped, load_scene
 from models.scene_text import scene_text
-from reports.face.arguments import each_of, kind_of, path_of, scene_of, setting_of
+from reports.face.arguments import (
+    each_of,
+    is_true,
+    kind_of,
+    path_of,
+    scene_of,
+    setting_of,
+    whole_of,
+)
 from reports.plan.chosen_study import Overrides, StudyChoice, refuse_other_engine
 from reports.plan.steps import positive
 from reports.plan.study import StudyValue
+from reports.sweep.whole import Manner
+from reports.workers.isolated import checked_limits
+
+MOST_JOBS = 1024
 
 
 def refuse_empty_lists(arguments: Mapping[str, object]) -> None:
@@ -36,6 +48,31 @@ def _is_empty(value: object) -> bool:
         return isinstance(value, Sized) and len(value) == 0
     except TypeError:
         return False
+
+
+def manner_of(
+    limit_s: float,
+    memory_gb: float,
+    jobs: int,
+    *,
+    timing: bool,
+    keep_trajectories: bool,
+    again: bool,
+) -> Manner:
+    """How cells are run. Raises CrankcheckError for what can not be asked."""
+    limits = checked_limits(
+        positive("--limit-s", limit_s, "seconds"), positive("--memory-gb", memory_gb, "GB")
+    )
+    jobs = whole_of(jobs, "--jobs", 0)
+    if jobs > MOST_JOBS:
+        raise CrankcheckError(f"--jobs {jobs}: at most {MOST_JOBS}; 0 is one per processor")
+    return Manner(
+        limits,
+        jobs,
+        timing=is_true(timing, "timing"),
+        keep_runs=is_true(keep_trajectories, "keep_trajectories"),
+        again=is_true(again, "again"),
+    )
 
 
 def scene_names(scenes: object, kept: ExitStack) -> list[str]:

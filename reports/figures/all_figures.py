@@ -13,24 +13,27 @@ from reports.figures import error_parts as split
 from reports.figures.free_runs import courses, energy_change, phase_diagrams
 from reports.results.overview import Report
 
+Drives = Literal["driven", "elastic", "let go"]
+
 
 @dataclass(frozen=True)
 class Drawing:
     """What a figure shows, of one scene and over all of them; None where it has no such form.
 
     Each gives None where a store has nothing to draw. Files are called ``name-scene`` and ``name``.
-    ``drives`` says whether it shows what was driven, or what was let go, or both.
+    ``drives`` says whether it shows what was driven, with rigid links or elastic ones, or what was
+    let go.
     """
 
     of: Callable[[Report, str], Figure | None] | None = None
     over_all: Callable[[Report], Figure | None] | None = None
-    drives: tuple[Literal["driven", "let go"], ...] = ("driven",)
+    drives: tuple[Drives, ...] = ("driven",)
 
 
-BOTH: tuple[Literal["driven", "let go"], ...] = ("driven", "let go")
+BOTH: tuple[Drives, ...] = ("driven", "let go")
 FIGURES: Mapping[str, Drawing] = {
-    "work-precision": Drawing(work_precision.draw, work_precision.draw_all),
-    "convergence": Drawing(convergence.draw, convergence.draw_all, BOTH),
+    "work-precision": Drawing(work_precision.draw, work_precision.draw_all, ("driven", "elastic")),
+    "convergence": Drawing(convergence.draw, convergence.draw_all, (*BOTH, "elastic")),
     "split": Drawing(split.draw),
     "mechanism": Drawing(mechanism.draw, drives=BOTH),
     "profile": Drawing(None, profile.draw_all),

@@ -26,7 +26,15 @@ from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, SMALL, logarithmic, width_in
 from reports.output.numbers import duration
-from reports.results.drawable import PLACE, PLACE_FREE, around, ends, fitted, measured
+from reports.results.drawable import (
+    PLACE,
+    PLACE_ELASTIC,
+    PLACE_FREE,
+    around,
+    ends,
+    fitted,
+    measured,
+)
 from reports.results.lines import Line, Named, named
 from reports.results.origin import notes
 from reports.results.overview import Report
@@ -55,7 +63,7 @@ def draw(report: Report, scene: str) -> Figure:
         axes.text(-0.02, 1.0 - strip / 2, "failed", size=SMALL, **right)
     free = _all_free(own)
     axes.set_xlabel(TIME if free else STEP)
-    axes.set_ylabel(PLACE_FREE if free else PLACE)
+    axes.set_ylabel(_error_of(own))
     (_time if free else _upper)(axes, own)
     return figure
 
@@ -72,7 +80,7 @@ def draw_all(report: Report) -> Figure:
         entries.append((Rectangle((0, 0), 1, 1, fc=STRIP), "strip along the top: failed"))
     mark_of = {name: mark.scaled(0.75) for name, mark in mark_of.items()}
     free = _all_free(lines)
-    labels = (TIME, PLACE_FREE) if free else (PER_TURN, PLACE)
+    labels = (TIME if free else PER_TURN, _error_of(lines))
     figure, axes = grid(scenes, "Convergence", labels, entries, notes(report, lines))
     _limits(axes, lines, 1.0 if free else 0.0)
     for scene, one in zip(scenes, axes, strict=True):
@@ -87,6 +95,13 @@ def draw_all(report: Report) -> Figure:
 def _all_free(lines: Sequence[Line]) -> bool:
     """Whether lines have no turns, and errors over the sensitivity of their motion."""
     return all(line.drive == "free" for line in lines)
+
+
+def _error_of(lines: Sequence[Line]) -> str:
+    """What the errors of lines are of; rigid and elastic links are not drawn together."""
+    if any(line.bends for line in lines):
+        return PLACE_ELASTIC
+    return PLACE_FREE if _all_free(lines) else PLACE
 
 
 def _panel(axes: Axes, lines: Sequence[Line], mark_of: Mapping[Named, Mark], unit_s: float) -> None:

@@ -19,7 +19,7 @@ from reports.figures.grids import grid
 from reports.figures.marks import Mark, marks
 from reports.figures.sheet import Panels, sheet
 from reports.figures.style import COLUMN_IN, FRONT, logarithmic
-from reports.results.drawable import PLACE, around, ends, timed
+from reports.results.drawable import PLACE, PLACE_ELASTIC, around, ends, timed
 from reports.results.lines import Line, Named, named
 from reports.results.looks import label
 from reports.results.origin import notes
@@ -42,7 +42,7 @@ def draw(report: Report, scene: str) -> Figure | None:
     _limits([axes], _points(own))
     _panel(axes, report, own, mark_of)
     axes.set_xlabel(COST)
-    axes.set_ylabel(PLACE)
+    axes.set_ylabel(PLACE_ELASTIC if own[0].bends else PLACE)
     return figure
 
 

@@ -212,10 +212,9 @@ def counted_released(
 def few_swings_s(scene: Scene) -> float:
     """For how long elastic links are let go if nothing else is asked for [s]: what rings is
     followed through all of its swings, so that the truth of a longer time takes as much longer."""
-    from analytic.elastic.discretisation import REFERENCE
-    from analytic.elastic.stiffness import slowest_rad_s
+    from analytic.elastic.natural import lowest_rad_s
 
-    swings_s = SWINGS * math.tau / slowest_rad_s(scene, REFERENCE)
+    swings_s = SWINGS * math.tau / lowest_rad_s(scene)
     return min(scene.driver.law.period_s, float(f"{swings_s:.2g}"))
 
 

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from reports.output.console import tell
 from reports.output.provenance import provenance
-from reports.plan.grid import Grid, grid
+from reports.plan.grid import Grid, Task, grid
 from reports.plan.study import Study
 from reports.store.manifest import Manifest
 from reports.store.writer import Writer
@@ -53,6 +53,7 @@ def swept(
         # What the cells are called in this run, which may not be what they were called before.
         "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
     }
+    run |= {"own_steps": own} if (own := _own_steps(study, laid.tasks)) else {}
     with Writer(folder, Manifest(laid.texts, (run,))) as writer:
         tell(writer.mended)
         running = Running(writer, laid.tasks, manner.limits, facts, progress)
@@ -64,3 +65,12 @@ def swept(
             progress.print("what is done is kept; the same command goes on from there")
             raise
     return laid, done
+
+
+def _own_steps(study: Study, tasks: Sequence[Task]) -> dict[str, list[float]]:
+    """The steps in a turn of lines that have others than the study, as elastic links may."""
+    steps: dict[str, list[float]] = {}
+    for task in tasks:
+        if task.cell.scene.elastic and study.times_held:
+            steps.setdefault(task.line, []).append(task.cell.steps_per_turn)
+    return steps

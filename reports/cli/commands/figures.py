@@ -96,7 +96,8 @@ def _whole(report: Report, drawing: Drawing) -> Report | None:
     """What of a store a figure over all scenes shows: what was driven, where there is any."""
     if report.driven is not None:
         return report.driven if "driven" in drawing.drives else report
-    return report if "let go" in drawing.drives else None
+    alike = len({(line.bends, line.drive == "free") for line in report.lines}) < 2
+    return report if alike and "let go" in drawing.drives else None
 
 
 def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
@@ -104,6 +105,8 @@ def _report_on(report: Report, drawing: Drawing, scene: str) -> Report | None:
     driven = report.driven
     if driven is not None and scene in driven.scenes and "driven" in drawing.drives:
         return driven
+    if "elastic" in drawing.drives and any(line.scene == scene for line in report.elastic_lines):
+        return report
     free = any(line.scene == scene for line in report.free_lines)
     return report if free and "let go" in drawing.drives else None
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 from rich.console import Console
@@ -26,7 +27,7 @@ from reports.vibration import vibration_files as files
 from reports.vibration.vibration_tables import show_map, show_speeds, show_vibration
 
 if TYPE_CHECKING:
-    from reports.figures.vibration.vibration_figures import Drawing
+    from matplotlib.figure import Figure
 
 MOST_COUNT = 5000
 """Speeds, or speeds times factors, beyond which it takes minutes."""
@@ -38,7 +39,65 @@ MOST_RATIO = 1e4
 ONE, MANY = 5, 3
 """Modes across each link, at one speed and at many: three give the deflection to 1e-3 of itself."""
 
-Written = Mapping[str, Callable[[], str]]
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class Files(Generic[Found]):
+    """What is written of what was found: texts by file, and ``figures``, which ``draws`` has a
+    function each for and loads what draws only then."""
+
+    texts: Mapping[str, Callable[[Found], str]]
+    figures: Sequence[str]
+    draws: Callable[[], Sequence[Callable[[Found], Figure]]]
+
+
+def _over_turn() -> Sequence[Callable[[SteadyVibration], Figure]]:
+    from reports.figures.vibration import over_turn
+
+    return over_turn.draw, over_turn.draw_spectrum
+
+
+def _over_speed() -> Sequence[Callable[[OverSpeeds], Figure]]:
+    from reports.figures.vibration import over_speed
+
+    return over_speed.draw, over_speed.draw_waterfall
+
+
+def _over_inertia() -> Sequence[Callable[[InertiaMap], Figure]]:
+    from reports.figures.vibration import over_inertia as figure
+
+    return (figure.draw,)
+
+
+AT_A_SPEED = Files[SteadyVibration](
+    {
+        "vibration.json": files.vibration_document,
+        "turn.csv": lambda found: csv(files.turn_frame(found)),
+        "natural.csv": lambda found: csv(files.natural_frame(found)),
+        "spectrum.csv": lambda found: csv(files.spectrum_frame(found)),
+    },
+    ("deflection", "spectrum"),
+    _over_turn,
+)
+OVER_SPEEDS = Files[OverSpeeds](
+    {
+        "speeds.json": files.speeds_document,
+        "speeds.csv": lambda found: csv(files.speeds_frame(found)),
+        "waterfall.csv": lambda found: csv(files.waterfall_frame(found)),
+        "critical.csv": lambda found: csv(files.critical_frame(found)),
+    },
+    ("speeds", "waterfall"),
+    _over_speed,
+)
+OVER_INERTIA = Files[InertiaMap](
+    {
+        "map.json": files.map_document,
+        "map.csv": lambda found: csv(files.map_frame(found)),
+    },
+    ("map",),
+    _over_inertia,
+)
 
 
 def run_vibration(request: VibrationRequest, console: Console) -> int:
@@ -65,56 +124,25 @@ def _modes(across: int) -> Modes:
 
 def _vibration(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
     """At the speed of the scene."""
-    names = ("vibration.json", "turn.csv", "natural.csv", "spectrum.csv")
-    _check(request, (*names, *_drawn("deflection", "spectrum")))
+    _check(request, AT_A_SPEED)
     found: SteadyVibration = steady_vibration(scene, by)
     show_vibration(console, found)
-    contents = (
-        lambda: files.vibration_document(found),
-        lambda: csv(files.turn_frame(found)),
-        lambda: csv(files.natural_frame(found)),
-        lambda: csv(files.spectrum_frame(found)),
-    )
-    if request.output is not None:
-        from reports.figures.vibration import over_turn
-        from reports.figures.vibration.vibration_figures import Drawing
-
-        drawings = (
-            Drawing("deflection", lambda: over_turn.draw(found)),
-            Drawing("spectrum", lambda: over_turn.draw_spectrum(found)),
-        )
-        _write(request.output, dict(zip(names, contents, strict=True)), drawings, console, scene)
+    _write(request, AT_A_SPEED, found, console, scene)
 
 
 def _speeds(request: VibrationRequest, scene: Scene, by: Modes, console: Console) -> None:
     """Over speeds."""
-    names = ("speeds.json", "speeds.csv", "waterfall.csv", "critical.csv")
-    _check(request, (*names, *_drawn("speeds", "waterfall")))
+    _check(request, OVER_SPEEDS)
     speeds = _asked_speeds(scene, request.speeds)
     _refuse_many(len(speeds), "--speeds")
     found: OverSpeeds = over_speeds(scene, by, speeds)
     show_speeds(console, found)
-    contents = (
-        lambda: files.speeds_document(found),
-        lambda: csv(files.speeds_frame(found)),
-        lambda: csv(files.waterfall_frame(found)),
-        lambda: csv(files.critical_frame(found)),
-    )
-    if request.output is not None:
-        from reports.figures.vibration import over_speed
-        from reports.figures.vibration.vibration_figures import Drawing
-
-        drawings = (
-            Drawing("speeds", lambda: over_speed.draw(found)),
-            Drawing("waterfall", lambda: over_speed.draw_waterfall(found)),
-        )
-        _write(request.output, dict(zip(names, contents, strict=True)), drawings, console, scene)
+    _write(request, OVER_SPEEDS, found, console, scene)
 
 
 def _map(request: VibrationRequest, scene: Scene, by: Modes, link: str, console: Console) -> None:
     """Over speeds and inertia."""
-    names = ("map.json", "map.csv")
-    _check(request, (*names, *_drawn("map")))
+    _check(request, OVER_INERTIA)
     low, high, count = asked_range(request.factors or FACTORS, "--factors", "0.1:10:9")
     factors = np.geomspace(low, high, count)
     with_inertia(scene, link, 1.0)  # or refused
@@ -122,13 +150,7 @@ def _map(request: VibrationRequest, scene: Scene, by: Modes, link: str, console:
     _refuse_many(len(speeds) * len(factors), "--speeds and --factors")
     found: InertiaMap = over_inertia(scene, by, speeds, link, factors)
     show_map(console, found)
-    contents = (lambda: files.map_document(found), lambda: csv(files.map_frame(found)))
-    if request.output is not None:
-        from reports.figures.vibration import over_inertia as figure
-        from reports.figures.vibration.vibration_figures import Drawing
-
-        drawings = (Drawing("map", lambda: figure.draw(found)),)
-        _write(request.output, dict(zip(names, contents, strict=True)), drawings, console, scene)
+    _write(request, OVER_INERTIA, found, console, scene)
 
 
 def _asked_speeds(scene: Scene, text: str | None) -> Array:
@@ -170,24 +192,29 @@ def _refuse_many(count: int, option: str) -> None:
         raise CrankcheckError(f"{option}: found {count} points; give {MOST_COUNT} or fewer")
 
 
-def _drawn(*names: str) -> list[str]:
-    """The files of figures, without loading what draws them."""
-    return [f"{name}.{kind}" for name in names for kind in ("svg", "pdf")]
-
-
-def _check(request: VibrationRequest, names: tuple[str, ...]) -> None:
+def _check(request: VibrationRequest, written: Files[Found]) -> None:
+    """Refuse a folder that is not to be written. Raises CrankcheckError."""
     if request.output is not None:
-        check_folder(request.output, "-o", names, inputs=[find_scene(request.scene)])
+        drawn = [f"{name}.{kind}" for name in written.figures for kind in ("svg", "pdf")]
+        inputs = [find_scene(request.scene)]
+        check_folder(request.output, "-o", [*written.texts, *drawn], inputs=inputs)
 
 
 def _write(
-    folder: Path, texts: Written, drawings: tuple[Drawing, ...], console: Console, scene: Scene
+    request: VibrationRequest, written: Files[Found], found: Found, console: Console, scene: Scene
 ) -> None:
-    """Tables and figures into a folder."""
-    from reports.figures.vibration.vibration_figures import write_figures
+    """Tables and figures into a folder, where one was named."""
+    folder = request.output
+    if folder is None:
+        return
+    from reports.figures.vibration.vibration_figures import Drawing, write_figures
 
-    for name, text in texts.items():
-        write(folder / name, text())
+    for name, text in written.texts.items():
+        write(folder / name, text(found))
+    drawings = [
+        Drawing(name, partial(draw, found))
+        for name, draw in zip(written.figures, written.draws(), strict=True)
+    ]
     figures = write_figures(folder, drawings, scene.name)
-    told = f"{folder}: {', '.join((*texts, *figures))}"
+    told = f"{folder}: {', '.join((*written.texts, *figures))}"
     console.print(harmless(told), highlight=False, markup=False, soft_wrap=True)

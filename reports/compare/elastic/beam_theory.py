@@ -16,9 +16,9 @@ import numpy as np
 
 from analytic.elastic.discretisation import REFERENCE, Polynomials
 from analytic.elastic.elastic_history import elastic_history
+from analytic.elastic.natural import lowest_rad_s
 from analytic.elastic.released import ROUGH
 from analytic.elastic.sampled import ElasticHistory
-from analytic.elastic.stiffness import slowest_rad_s
 from models.array import Array
 from models.elastic import Shape
 from models.motion import Motion
@@ -74,8 +74,8 @@ class BeamTheory:
 
     @cached_property
     def lowest_rad_s(self) -> float:
-        """The lowest angular frequency of the links."""
-        return slowest_rad_s(self.scene, REFERENCE)
+        """The lowest angular frequency of the links, each alone."""
+        return lowest_rad_s(self.scene)
 
     @cached_property
     def looks_s(self) -> Array:

@@ -14,7 +14,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from analytic.elastic.released import DoubtOverTime, ReleasedElasticMotion
+from analytic.elastic.elastic_doubt import ElasticDoubt
+from analytic.elastic.released import ReleasedElasticMotion
 from analytic.elastic.sampled import energies, sampled
 from analytic.free.free_motion import FreeMotion, LimitPassage
 from analytic.multibody.energy_balance import EnergyBalance
@@ -110,12 +111,12 @@ class ReleasedElasticTruth(ChainTruth):
     def known_s(self) -> float:
         """Until when the truth is known well enough to judge by."""
         theory, time_s = self.theory, self.theory.looks_s
-        doubt = DoubtOverTime.between(theory.looked, theory.looked_other)
-        unsure = doubt.angle_rad / self.rigid.free.sensitivity(
-            np.minimum(time_s, self.rigid.free.until_s)
-        )
+        doubt = ElasticDoubt.between(theory.looked, theory.looked_other).so_far
+        turned = np.max(list(doubt.theta_rad.values()), axis=0)
+        bent = np.max(list(doubt.middle_m.values()), axis=0)
+        unsure = turned / self.rigid.free.sensitivity(np.minimum(time_s, self.rigid.free.until_s))
         known = unsure <= self.known_rad
-        known &= doubt.deflection_m <= MOST_DOUBT * theory.largest_m
+        known &= bent <= MOST_DOUBT * theory.largest_m
         return math.inf if known.all() else float(time_s[int(np.argmin(known))])
 
     @property

@@ -57,9 +57,9 @@ def test_the_reference_is_good_to_1e_8_of_the_deflection(name: str) -> None:
     motion, time_s = driven(scene), times(scene)
     doubt, own = motion.doubt(time_s), motion.at(time_s)
     for link, middle in doubt.middle_m.items():
-        assert middle < 1e-8 * np.abs(own.elastic[link].middle).max()
+        assert middle.max() < 1e-8 * np.abs(own.elastic[link].middle).max()
     assert own.forces is not None
-    assert doubt.torque_n_m < 1e-8 * np.abs(own.forces.torque).max()
+    assert doubt.torque_n_m.max() < 1e-8 * np.abs(own.forces.torque).max()
 
 
 @pytest.mark.parametrize(
@@ -79,17 +79,17 @@ def test_the_estimated_error_is_not_under_the_true_one(by: Discretisation, start
     best = replace(motion, by=Polynomials(10, 6), halved=3)
     true = off(motion.at(time_s), best.at(time_s))
     doubt = motion.doubt(time_s)
-    assert doubt.torque_n_m * BETWEEN >= true["torque"]
-    assert doubt.middle_m["coupler"] * BETWEEN >= true["middle coupler"]
-    assert doubt.extension_m["coupler"] * BETWEEN >= true["extension coupler"]
+    assert doubt.torque_n_m.max() * BETWEEN >= true["torque"]
+    assert doubt.middle_m["coupler"].max() * BETWEEN >= true["middle coupler"]
+    assert doubt.extension_m["coupler"].max() * BETWEEN >= true["extension coupler"]
     for link, theta in doubt.theta_rad.items():
-        assert theta * BETWEEN >= true[f"theta {link}"] - 1e-15
+        assert theta.max() * BETWEEN >= true[f"theta {link}"] - 1e-15
 
 
 def test_of_a_chain_the_windows_alone_are_in_doubt() -> None:
     motion = driven(fourbar(), Segments(6), "quasi-static")
     doubt = motion.doubt(np.linspace(0.0, 0.2, 9))
-    assert 0.0 < doubt.middle_m["coupler"] < 1e-8
+    assert 0.0 < doubt.middle_m["coupler"].max() < 1e-8
 
 
 @pytest.mark.parametrize("bends", [True, False])

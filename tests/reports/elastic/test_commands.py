@@ -86,7 +86,9 @@ def test_a_sweep_of_both_steps_elastic_links_as_their_segments_ask(tmp_path: Pat
     told = crankcheck("sweep", NAME, "fourbar-lecture-1", "-o", folder, *asked, "--jobs", "1")
     assert "10 run now" in told
     assert "diverged" not in told
-    cells = read_store(folder).cells
+    stored = read_store(folder)
+    assert not stored.notice  # it is whole
+    cells = stored.cells
     steps = cells[cells["scene"] == NAME]["steps_per_turn"]
     assert sorted(steps / steps.min()) == [1.0, 2.0, 4.0]
     assert cells["segments"].isna().sum() == 7

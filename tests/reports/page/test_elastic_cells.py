@@ -14,11 +14,15 @@ from playwright.sync_api import Browser
 from rich.console import Console
 
 from reports.cli.commands import sweep as command
+from reports.cli.commands.figures import _planned
 from reports.cli.measuring import SweepRequest
+from reports.figures import convergence, work_precision
+from reports.figures.style import styled
 from reports.page.build import page
 from reports.page.comment import summary
 from reports.page.sections import SECTIONS
 from reports.page.sections.section import PageReport
+from reports.results.drawable import PLACE_ELASTIC
 from reports.results.recommend import ELASTIC_TARGETS, Recommendation, recommendations
 from reports.results.table import recommendation_table
 from reports.store.manifest import Manifest
@@ -132,3 +136,13 @@ def test_the_section_draws_and_keeps_within_the_window(
         assert not opened.page.evaluate(OUT)
     assert not opened.said
     context.close()
+
+
+def test_figures_of_elastic_cells_say_what_their_errors_are_of(bent: Stored) -> None:
+    report = PageReport(bent)
+    for draw in (convergence.draw, work_precision.draw):
+        with styled():
+            figure = draw(report, SCENE)
+        assert figure is not None
+        assert figure.axes[0].get_ylabel() == PLACE_ELASTIC
+    assert f"convergence-{SCENE}" in _planned(report, ["convergence"], [])
