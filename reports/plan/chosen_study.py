@@ -86,6 +86,7 @@ def _driven(study: Study, choice: StudyChoice) -> dict[str, object]:
     return {
         "scenes": list(choice.scenes) or study.scenes,
         "steps_per_turn": list(choice.steps_per_turn) or study.steps_per_turn,
+        "times_held": [] if choice.steps_per_turn else study.times_held,
         "turns": study.turns if choice.turns is None else choice.turns,
     }
 

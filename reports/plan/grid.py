@@ -13,7 +13,14 @@ from models.scene import Scene
 from reports.judge.cell import Cell
 from reports.output.numbers import count as told
 from reports.plan.chosen import chosen_engines
-from reports.plan.elastic import given_as, refuse_rigid, refuse_unelastic
+from reports.plan.elastic import (
+    GivenAs,
+    given_as,
+    held_steps,
+    is_unheld,
+    refuse_rigid,
+    refuse_unelastic,
+)
 from reports.plan.forces import gives_forces, refuse_forceless
 from reports.plan.free import refuse_unreleased, scenes_of
 from reports.plan.key import cell_key, digest, line_key
@@ -77,9 +84,8 @@ def grid(study: Study) -> Grid:
     tasks: dict[str, Task] = {}
     for scene in scenes:
         name = digest(texts[scene.name])
-        steps = _steps(study, scene)
-        given = given_as(scene, study)
-        for (variant, settings), bent in itertools.product(complete, given):
+        given = [(bent, _steps(study, scene, bent)) for bent in given_as(scene, study)]
+        for (variant, settings), (bent, steps) in itertools.product(complete, given):
             for dt_s, count in steps:
                 cell = Cell(
                     scene=scene,
@@ -105,16 +111,19 @@ def grid(study: Study) -> Grid:
     return Grid(tuple(tasks.values()), texts)
 
 
-def _steps(study: Study, scene: Scene) -> list[tuple[float, int]]:
+def _steps(study: Study, scene: Scene, given: GivenAs) -> list[tuple[float, int]]:
     """Steps [s] and numbers of steps of a scene. Raises CrankcheckError where it can not be run for
     so long."""
     if study.free:
         steps = [counted_free(scene, each, study.duration_s) for each in study.dt_s]
         refuse_unreleased(scene, max(dt_s * count for dt_s, count in steps))
         return steps
-    steps = [counted(scene, None, each, study.turns) for each in study.steps_per_turn]
-    for given in given_as(scene, study):
-        refuse_unelastic(scene, given.segments, given.springs)
+    refuse_unelastic(scene, given.segments, given.springs)
+    per_turn = study.steps_per_turn
+    if study.times_held and scene.elastic and not is_unheld(scene):
+        held = held_steps(scene, given.segments, given.springs)
+        per_turn = [times * held for times in study.times_held]
+    steps = [counted(scene, None, each, study.turns) for each in per_turn]
     longest_s = max(dt_s * count for dt_s, count in steps)
     refuse_singular(scene, longest_s)
     if study.forces:

@@ -9,6 +9,7 @@
 
     segments = [4, 8, 16, 32]          # of each elastic link; 16 if left out
     springs = ["plain", "corrected"]   # between them; plain if left out
+    times_held = [1, 2, 4]             # steps of these, over the fewest that the segments hold with
 
     # or, of mechanisms that are let go, in place of steps_per_turn and turns:
     free = true
@@ -99,6 +100,7 @@ class Study(BaseModel):
     duration_s: float | None = None
     segments: list[StrictInt] = Field(default_factory=list)
     springs: list[Literal["plain", "corrected"]] = Field(default_factory=list)
+    times_held: list[float] = Field(default_factory=list)
 
     @property
     def steps(self) -> list[float]:

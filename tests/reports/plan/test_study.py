@@ -312,3 +312,27 @@ def test_a_study_says_steps_of_what_is_driven_or_of_what_is_let_go(
     with pytest.raises(CrankcheckError) as caught:
         load_study(written(tmp_path, "free.toml", FREE.replace(old, new)))
     assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "steps"),
+    [
+        ([], {4: [720, 1440, 2880], 6: [1080, 2160, 4320]}),
+        ([720.0, 1440.0], {4: [720, 1440], 6: [720, 1440]}),
+    ],
+)
+def test_elastic_links_are_swept_over_steps_that_their_segments_hold(
+    chosen: list[float], steps: dict[int, list[int]]
+) -> None:
+    choice = StudyChoice(
+        scenes=["fourbar-elastic"],
+        engines=["mujoco"],
+        profiles=["tuned"],
+        segments=[4, 6],
+        steps_per_turn=chosen,
+    )
+    tasks = grid(chosen_study(load_study(None), choice, is_shipped=True)).tasks
+    found = {
+        n: [round(t.cell.steps_per_turn) for t in tasks if t.cell.segments == n] for n in steps
+    }
+    assert found == steps
