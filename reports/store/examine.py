@@ -106,11 +106,13 @@ def _timings(folder: Path, timings: Folder) -> Iterator[Damage]:
 
 
 def _asked(manifest: Manifest) -> dict[str, int]:
-    """How many cells of each line were asked for, from the numbers of steps of the studies."""
+    """How many cells of each line were asked for, from the numbers of steps of the line, or of the
+    studies."""
     asked: dict[str, set[float]] = {}
     for run in manifest.runs:
+        usual = run.get("study", {}).get("steps_per_turn", ())
         for line in run.get("lines", {}):
-            asked.setdefault(line, set()).update(run.get("study", {}).get("steps_per_turn", ()))
+            asked.setdefault(line, set()).update(run.get("steps", {}).get(line, usual))
     return {line: len(steps) for line, steps in asked.items()}
 
 

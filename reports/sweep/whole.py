@@ -52,6 +52,7 @@ def swept(
         "provenance": facts,
         # What the cells are called in this run, which may not be what they were called before.
         "lines": {t.line: [t.variant, t.cell.profile, t.cell.gated] for t in laid.tasks},
+        **_steps(laid),
     }
     with Writer(folder, Manifest(laid.texts, (run,))) as writer:
         tell(writer.mended)
@@ -64,3 +65,12 @@ def swept(
             progress.print("what is done is kept; the same command goes on from there")
             raise
     return laid, done
+
+
+def _steps(laid: Grid) -> dict[str, dict[str, list[float]]]:
+    """The steps in a turn of each line of elastic links, whose segments say what these are."""
+    steps: dict[str, list[float]] = {}
+    for task in laid.tasks:
+        if task.cell.scene.elastic:
+            steps.setdefault(task.line, []).append(round(task.cell.steps_per_turn, 6))
+    return {"steps": steps} if steps else {}
