@@ -44,11 +44,12 @@ def test_a_verification_is_compared_with_itself(verified: Path) -> None:
 
 def test_a_sweep_has_a_line_for_every_number_of_segments(tmp_path: Path) -> None:
     asked = ["--engine", "mujoco", "--profile", "tuned", "--segments", "3,4", "--no-timing"]
-    steps = ["--steps-per-turn", "720", "--turns", "1", "--jobs", "1"]
-    told = crankcheck("sweep", NAME, "-o", tmp_path / "store", *asked, *steps)
-    assert "2 run now" in told
+    told = crankcheck(
+        "sweep", NAME, "-o", tmp_path / "store", *asked, "--turns", "1", "--jobs", "1"
+    )
+    assert "6 run now" in told  # the steps that they hold, twice and four times these
     page = tmp_path / "report.html"
-    crankcheck("report", tmp_path / "store", "-o", page)
+    assert "not whole" not in crankcheck("report", tmp_path / "store", "-o", page)
     assert "3 segments" in page.read_text(encoding="utf-8")
 
 
