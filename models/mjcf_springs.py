@@ -22,9 +22,10 @@ from models.tree import Limb, Tree
 class SpringTendon:
     """The tendon of a spring, whose q is ``sense`` times the length of the tendon plus ``shift``.
 
-    ``joints`` are those whose coordinates it adds up, with their signs; none where it runs between
-    points. ``sense`` is -1 where the length at which it is slack would be negative otherwise:
-    MuJoCo takes -1 for "as the model stands".
+    ``joints`` are those whose coordinates it adds up, with their signs, or one that it adds 0
+    times; none where it runs between points. ``sense`` is -1 where the length at which it is slack
+    would be negative otherwise: MuJoCo
+    takes -1 for "as the model stands".
     """
 
     spring: Spring
@@ -59,6 +60,8 @@ def _tendon(spring: Spring, state: State, tree: Tree) -> SpringTendon:
         shift = after - before + whole_turns(spring, end - start)
     else:
         signs, shift = {_sliding(tree, spring.slider): 1}, 0.0
+    if not signs:  # they never turn against each other; a tendon asks for a joint all the same
+        signs = {next(freedom.name for limb in tree.limbs for freedom in limb.freedoms): 0}
     sense = -1 if spring.free < shift else 1
     joints = tuple((name, sense * sign) for name, sign in signs.items())
     return SpringTendon(spring, joints, shift, sense)

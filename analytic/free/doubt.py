@@ -12,7 +12,7 @@ from analytic.free.chart import Chart
 from analytic.free.coordinate_history import CoordinateHistory
 from models.array import Array
 
-SAFETY = 4.0
+SAFETY = 8.0
 """How much more than the largest difference so far the error may be."""
 SHARES = (0.13, 0.5, 0.87)
 """Where windows are looked at: not at their ends, where what acts may jump."""

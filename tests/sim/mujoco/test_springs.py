@@ -11,10 +11,11 @@ import pytest
 from analytic.free.machine import Machine
 from analytic.free.release import release
 from analytic.kinematics import solve, solve_driven
+from analytic.multibody.release_multibody import start_state
 from models.array import Array
 from models.characteristics import Polynomial
 from models.errors import EngineError
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.joints import block_name, joints, local_point, riding_body
 from models.loads import Load
 from models.mjcf import build
@@ -274,3 +275,37 @@ def test_springs_dampers_and_motors_are_followed_to_second_order() -> None:
         errors.append(np.abs(off).max())
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.3)
     assert errors[1] < 1e-6
+
+
+TABLES = """
+name = "two-tables"
+source = "made here: two tables on parallel lines, pinned at R, never turn against each other"
+[ground]
+points = { A = [0.0, 0.0] }
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+rod = { bar = ["B", "R"], length_m = 0.3 }
+table = { points = { R = [0.0, 0.0], T = [0.1, 0.05] }, mass_kg = 1.0 }
+second = { points = { R = [0.0, 0.0], U = [0.1, 0.05] }, mass_kg = 1.0 }
+[sliders]
+R = { on = "ground", link = "table" }
+U = { on = "ground", link = "second", through_m = [0.0, 0.05] }
+[driver]
+link = "crank"
+law = "free"
+speed_rad_s = 5.0
+[start]
+angles_deg = { rod = 0.0, table = 0.0, second = 0.0 }
+"""
+
+
+def test_a_spring_between_bodies_that_never_turn_against_each_other_moves_nothing() -> None:
+    scene = parse_scene(TABLES, "here")
+    idle = PinSpring("idle", 2.0, 0.1, 0.2, "R", ("table", "second"))
+    state = start_state(scene)
+    model = mujoco.MjModel.from_xml_string(build(replace(scene, springs={"idle": idle}), state))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert np.all(data.qfrc_passive == 0.0)
+    pulled = model.tendon_stiffness[0] * (data.ten_length[0] - model.tendon_lengthspring[0, 0])
+    assert abs(pulled) == pytest.approx(abs(idle.pull(0.0, 0.0)))
