@@ -39,7 +39,7 @@ PER_TURN, PER_CYCLE = 24, 6
 """Windows of the integration in a turn of the driver, and in a cycle of the first mode across: 10
 nodes follow the third to 9 digits, and those above as far as their part in the motion needs."""
 
-MOST_PER_TURN = 2000
+MOST_PER_TURN = 600
 """What rings faster is so stiff that it hardly bends; the method stands it, and the doubt tells."""
 MOST_WINDOWS = 50_000
 """Minutes of work."""

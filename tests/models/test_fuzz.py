@@ -28,8 +28,9 @@ from hypothesis import strategies as st
 from models.files import shipped
 from reports.workers.isolated import Isolated, Limits, Lost
 from tests.worlds import fuzzing
+from tests.worlds.elastic_files import elastic_mechanisms
 from tests.worlds.free_files import free_mechanisms
-from tests.worlds.fuzzing import COMMANDS, LET_GO, QUICK, VERIFY, Ended, attempt, fitting
+from tests.worlds.fuzzing import COMMANDS, ELASTIC, LET_GO, QUICK, VERIFY, Ended, attempt, fitting
 from tests.worlds.mutation import mutant, retied, stretched
 from tests.worlds.scene_files import Tree, scene_files, toml
 
@@ -41,7 +42,7 @@ MOST_BYTES = 1_000_000_000
 SEED = 20260
 FAST, EACH, PARTS = 40, 250, 20
 """Files of either kind: in the fast test, in each part of the slow ones, and the parts of those."""
-KINDS = ("made", "free", "changed")
+KINDS = ("made", "free", "elastic", "changed")
 HOME = Path(tempfile.gettempdir()) / f"crankcheck-misdeed-{os.getpid()}"
 
 
@@ -121,10 +122,16 @@ def try_made(
     holds()
 
 
-TRY = {"made": try_made, "free": try_free, "changed": try_changed}
+def try_elastic(bench: Bench, number: int, count: int, commands: tuple[str, ...]) -> None:
+    """Files of mechanisms with elastic links, with commands of their own."""
+    del commands
+    try_made(bench, number, count, ELASTIC, elastic_mechanisms())
 
 
-LEAST_RUN = {"made": 0.2, "changed": 0.2, "free": 0.1}
+TRY = {"made": try_made, "free": try_free, "elastic": try_elastic, "changed": try_changed}
+
+
+LEAST_RUN = {"made": 0.2, "changed": 0.2, "free": 0.1, "elastic": 0.1}
 """The share of files that run. Some 18 to 25 of 100 free ones do: which are made depends on what
 hypothesis finds in the code as well, and not on the seed alone."""
 

@@ -64,6 +64,16 @@ LET_GO = (
     "view FILE -o OUT.png",
 )
 """What files of mechanisms that are let go for a moment are tried with."""
+ELASTIC = (
+    "solve FILE",
+    "solve FILE --elements 2 --forces -o OUT.csv",
+    "solve FILE --linear --modes 2 -o OUT.html",
+    "vibration FILE --modes 2",
+    "vibration FILE --modes 1 --speeds 2:20:5 -o OUT",
+    "export FILE",
+    f"verify FILE --engine mujoco {_SHORT} --segments 4",
+)
+"""What files of mechanisms with elastic links are tried with."""
 MOST_WINDOWS = 200
 """Of an integration: as many as a user may wait for take minutes."""
 MOMENT = "solve FILE --duration 0.01 --steps 4"
