@@ -97,6 +97,12 @@ class ReducedForm:
         """Of a turn of the driver."""
         return self.law.period_s
 
+    def about_origin(self, z: Array) -> Array:
+        """Coordinates with coefficients (T, m), and every frame at the origin, (T, n)."""
+        q = np.zeros((len(z), self.assembly.size))
+        q[:, self._free] = z * self._sizes
+        return q
+
     def near(self, time_s: Array) -> Array:
         """The coordinates of the rigid mechanism at times [s], (T, n)."""
         assembly = self.assembly

@@ -50,11 +50,9 @@ class Swing:
 
 def swings(form: ReducedForm, z: Array) -> dict[str, Swing]:
     """How the elastic links swing with coefficients (N, m) over a period, by name."""
-    found, at = {}, 0
+    found, every = {}, form.about_origin(z)
     for name, (body, own) in form.assembly.elastic.items():
-        count = own.stop - own.start - 3
-        q = np.concatenate([np.zeros((len(z), 3)), z[:, at : at + count]], axis=1)
-        at += count
+        q = every[:, own]
         bends = form.assembly.scene.elastic[name].bends
         x, length = np.linspace(0.0, body.length_m, PLACES), body.length_m
         across, extension = body.deflections(q, x), body.extension(q)

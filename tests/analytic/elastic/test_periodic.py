@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from analytic.elastic import periodic
-from analytic.elastic.discretisation import Modes
+from analytic.elastic.discretisation import Discretisation, Elements, Modes, Segments
 from analytic.elastic.elastic_motion import DrivenElasticMotion
 from analytic.elastic.linearised import linearise
 from analytic.elastic.monodromy import by_collocation, by_newmark
 from analytic.elastic.periodic import PeriodicMotion, instants, linear_motion, periodic_motion
+from analytic.elastic.swing import swings
 from analytic.elastic.vibration import vibrate
 from models.characteristics import Sine
 from models.errors import CrankcheckError
@@ -158,3 +159,15 @@ def test_what_kinks_leave_out_of_the_series_is_in_the_doubt(
     other = replace(motion, halved=1).history.at(time_s)[0]
     assert np.abs(motion.history.at(time_s)[0] - other).max() > 0.5 * true
     assert true > 1e-8 * np.abs(closely.z).max()
+
+
+@pytest.mark.parametrize("by", [Elements(4), Segments(8, corrected=True)])
+def test_links_swing_alike_by_coefficients_of_any_kind(by: Discretisation) -> None:
+    """By slopes and angles as well as by lengths."""
+    scene = fourbar(10.5)
+    known, other = (
+        swings(form, periodic_motion(form).z)["coupler"]
+        for form in (form_of(scene, Modes(3)), form_of(scene, by))
+    )
+    assert other.largest_m == pytest.approx(known.largest_m, rel=3e-2)
+    assert other.amplitudes[1] == pytest.approx(known.amplitudes[1], rel=3e-2)
