@@ -15,24 +15,29 @@ from models.scene import Scene
 
 
 def fastest_rad_s(scene: Scene, by: Discretisation) -> float:
-    """The highest angular frequency of the links in the position of the start, unloaded."""
-    return math.sqrt(float(_squares(scene, by).max()))
+    """The highest angular frequency of the links in the position of the start, unloaded, or what
+    dies off the fastest where damping_s makes that faster still."""
+    by_place, by_rate = _of_released(scene, by) if scene.is_free else _of_driven(scene, by)
+    highest = math.sqrt(float(np.linalg.eigvals(-by_place).real.max()))
+    if not any(own.damping_s for own in scene.elastic.values()):
+        return highest
+    still, one = np.zeros_like(by_place), np.eye(len(by_place))
+    whole = np.block([[still, one], [by_place, by_rate]])
+    return max(highest, float(np.abs(np.linalg.eigvals(whole)).max()))
 
 
-def _squares(scene: Scene, by: Discretisation) -> Array:
-    if scene.is_free:
-        return _of_released(scene, by)
+def _of_driven(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
+    """What accelerations of the coefficients are by these and by their rates, (m, m) each."""
     motion = DrivenElasticMotion(scene, 1.0, by, "straight", stiffened=True)
-    mass, stiffness = motion.first.mass[0], motion.form.stiffness
-    return np.asarray(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)
+    form, mass = motion.form, motion.first.mass[0]
+    return -np.linalg.solve(mass, form.stiffness), -np.linalg.solve(mass, form.damping)
 
 
-def _of_released(scene: Scene, by: Discretisation) -> Array:
-    """Of what nothing holds: all but the lowest, as many as there would be with rigid links."""
+def _of_released(scene: Scene, by: Discretisation) -> tuple[Array, Array]:
+    """The same where nothing holds the driver, of its angle too."""
     straight = replace(scene, start=replace(scene.start, shape="straight"))
     motion = release_elastic(straight, 1.0, by)
     form, tangent = motion.form, motion.form.tangent(motion.start[0])
     still = np.zeros(tangent.free.shape[1])
-    pulled = -form.derivatives(0.0, tangent, still, still)[:, : still.size]
-    squares = np.sort(np.linalg.eigvals(pulled).real)
-    return np.asarray(squares[still.size - len(motion.assembly.coefficients) :])
+    derived = form.derivatives(0.0, tangent, still, still)
+    return derived[:, : still.size], derived[:, still.size :]
