@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast, get_args
 
 from models.controlled import Controlled
@@ -14,8 +14,6 @@ from reports.face.arguments import is_true, one_of, whole_of
 
 if TYPE_CHECKING:  # a third of a second: not for scenes with rigid links
     from analytic.elastic.discretisation import Discretisation
-    from analytic.elastic.elastic_motion import DrivenElasticMotion
-    from analytic.elastic.released import ReleasedElasticMotion
     from analytic.elastic.sampled import ElasticHistory
 
 MOST_MODES, MOST_ELEMENTS = 20, 12
@@ -102,33 +100,15 @@ class ElasticChoice:
         return chosen
 
     def motion(self, scene: Scene, until_s: float) -> ElasticHistory:
-        """As `driven`, or as `released`, which a driver that is controlled is as well."""
-        gives_way = scene.is_free or isinstance(scene.driver.law, Controlled)
-        return (self.released if gives_way else self.driven)(scene, until_s)
-
-    def released(self, scene: Scene, until_s: float) -> ReleasedElasticMotion:
-        """The motion of a scene that is let go, or controlled, from 0 to a time [s].
+        """The motion of a scene from 0 to a time [s], whatever its driver does.
 
         Raises CrankcheckError for what can not be asked, and what it does not allow.
         """
-        from analytic.elastic.control import control_elastic
-        from analytic.elastic.released import release_elastic
-
-        stiffened = not is_true(self.linear, "--linear")
-        begun = replace(scene, start=replace(scene.start, shape=self.start(scene)))
-        follow = release_elastic if scene.is_free else control_elastic
-        return follow(begun, until_s, self.discretisation(scene), stiffened=stiffened)
-
-    def driven(self, scene: Scene, until_s: float) -> DrivenElasticMotion:
-        """The motion of a scene that follows its law, from 0 to a time [s].
-
-        Raises CrankcheckError for what can not be asked, and what it does not allow.
-        """
-        from analytic.elastic.elastic_motion import DrivenElasticMotion
+        from analytic.elastic.elastic_history import elastic_history
 
         stiffened = not is_true(self.linear, "--linear")
         by, start = self.discretisation(scene), self.start(scene)
-        return DrivenElasticMotion(scene, until_s, by, start, stiffened)
+        return elastic_history(scene, until_s, by, start, stiffened=stiffened)
 
 
 def _number(value: object, option: str, most: int) -> int:

@@ -134,7 +134,8 @@ def run(
     turns : float or None
         Turns (periods) of the driver (2), where one drives it.
     duration_s : float or None
-        Of a run that is let go: for how long (what the scene says; 10 turns of a driven one's law).
+        Of a run that is let go: for how long (what the scene says; 10 turns of a driven one's law;
+        with elastic links five swings of the slowest).
     every : int
         Log every so many steps.
     drive : str or None
