@@ -59,7 +59,9 @@ class RotatingArm:
         """With the velocity of the node [m/s], (2,)."""
         towards = -(self.omega(velocity) ** 2) * self._arm
         normal = Term(self.node + self.origin.name, "normal", towards)
-        return Way(self.origin.name, self.origin.acceleration, (normal,), self._turning("tangential"))
+        return Way(
+            self.origin.name, self.origin.acceleration, (normal,), self._turning("tangential")
+        )
 
     def omega(self, velocity: Array) -> float:
         """The rate of the link [rad/s]."""

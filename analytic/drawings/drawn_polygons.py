@@ -9,10 +9,9 @@ import numpy as np
 
 from analytic.drawings.arms import NodeMotion, Origin
 from analytic.drawings.body_rates import STILL, BodyRates
-from analytic.drawings.dyad_polygon import DyadPolygon, dyad_polygon
+from analytic.drawings.dyad_polygon import DyadPolygon, Known, dyad_polygon
 from analytic.drawings.placement import DriverState, Placement, quarter_turn
 from analytic.drawings.polygon import (
-    POLE,
     Polygon,
     Quantity,
     Step,
@@ -150,11 +149,10 @@ class _Table:
     def _missing(self, part: Group | Bridge) -> str:
         """A body that a part hangs on and that is not known."""
         structure = self.placement.structure
-        ends: Iterable[str]
         if isinstance(part, Bridge):
-            ends = (b for pin in part.pins for b in structure.pins[pin] if b != part.link)
-            known = [pin for pin in part.pins if any(b in self.rates for b in structure.pins[pin])]
-            return "" if len(known) > 1 else next((b for b in ends if b not in self.rates), "")
+            known = Known(self.placement, self.rates)
+            without = [pin for pin in part.pins if not known.has(pin)]
+            return "" if len(part.pins) - len(without) > 1 else f"pin {without[0]}"
         for kind, joint in zip(part.kind[::2], (part.outer1, part.outer2), strict=True):
             bodies = structure.pins[joint] if kind == "R" else structure.prismatics[joint]
             if not any(body in self.rates for body in bodies):
@@ -163,11 +161,8 @@ class _Table:
 
     def _bridge(self, part: Bridge) -> None:
         """A redundant link, by two of its pins."""
-        pins = self.placement.structure.pins
-        one, other = (
-            Origin(pin, self.placement.points[pin], next(self.rates[b] for b in pins[pin] if b in self.rates))
-            for pin in [p for p in part.pins if any(b in self.rates for b in pins[p])][:2]
-        )
+        known = Known(self.placement, self.rates)
+        one, other = [known.pin(pin) for pin in part.pins if known.has(pin)][:2]
         across = quarter_turn(other.place - one.place)
         size = float(across @ across)
         self.rates[part.link] = BodyRates(

@@ -23,6 +23,7 @@ from analytic.drawings.placement import Placement
 from analytic.structure.groups import Group
 from models.array import Array
 from models.joints import sliding_body
+from models.scene import GROUND
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,10 @@ class Known:
     def __init__(self, placement: Placement, rates: Mapping[str, BodyRates]) -> None:
         self.placement, self.rates = placement, rates
 
+    def has(self, point: str) -> bool:
+        """Whether a pin is on one of them."""
+        return any(body in self.rates for body in self.placement.structure.pins[point])
+
     def pin(self, point: str) -> Origin:
         """A pin of one of them."""
         body = next(b for b in self.placement.structure.pins[point] if b in self.rates)
@@ -58,7 +63,10 @@ class Known:
         ends = self.placement.structure.prismatics[slider]
         body = next(b for b in ends if b in self.rates)
         rates = self.rates[body]
-        return Origin(f"{point}({body})", self.placement.points[point], rates), rates
+        name = (
+            "" if body == GROUND else f"{point}({body})"
+        )  # the ground's has its image in the pole
+        return Origin(name, self.placement.points[point], rates), rates
 
     def rotating(self, outer: str, inner: str) -> RotatingArm:
         return RotatingArm(self.pin(outer), inner, self.placement.points[inner])
@@ -130,9 +138,7 @@ def _rates_rpr(d: DyadPolygon, placement: Placement, node: NodeMotion) -> dict[s
     rates, at = about.rates(node), along.origin
     slides = sliding_body(placement.scene.sliders[d.group.inner])
     guide = placement.scene.sliders[d.group.inner].on
-    carried = replace(
-        rates, place=at.place, velocity=at.velocity, acceleration=at.acceleration
-    )
+    carried = replace(rates, place=at.place, velocity=at.velocity, acceleration=at.acceleration)
     return {guide: rates, slides: carried}
 
 

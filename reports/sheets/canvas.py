@@ -47,9 +47,7 @@ class Canvas:
 
 def _layered(svg: str) -> str:
     """The drawing with its layers as those of a drawing program."""
-    marked = LAYER.sub(
-        r'<g id="layer-\1" inkscape:groupmode="layer" inkscape:label="\1">', svg
-    )
+    marked = LAYER.sub(r'<g id="layer-\1" inkscape:groupmode="layer" inkscape:label="\1">', svg)
     return marked.replace("<svg ", f'<svg xmlns:inkscape="{INKSCAPE}" ', 1)
 
 
@@ -77,4 +75,5 @@ def arrow(axes: Axes, start: Array, end: Array, gid: str, color: str, width: flo
 
 def text(axes: Axes, x: float, y: float, words: str, size: float = SMALL, **look: Any) -> None:
     """Words with the left end of their base line at a place [mm]."""
-    axes.text(x, y, words, **({"size": size, "ha": "left", "va": "baseline"} | look))
+    plain: dict[str, Any] = {"size": size, "ha": "left", "va": "baseline"}
+    axes.text(x, y, words, **(plain | look))

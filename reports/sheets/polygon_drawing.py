@@ -1,9 +1,10 @@
-"""A vector polygon in a box of the sheet: known vectors full, directions dashed, crossings marked."""
+"""A vector polygon in a box: known vectors full, directions dashed, crossings marked."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +16,7 @@ from analytic.drawings.polygon import POLE, Polygon, Vector
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.lettering import Label, place
-from reports.figures.style import INK, POINTS, QUIET, SIZE, width_in
+from reports.figures.style import INK, POINTS, SIZE, width_in
 from reports.sheets.canvas import Canvas, arrow, line, text
 from reports.sheets.paper import MM_PER_IN, Box
 
@@ -63,7 +64,16 @@ def fitted(polygon: Polygon, box: Box, scale: float | None = None) -> DrawnPolyg
 
     Raises CrankcheckError where a wanted scale makes it larger than the box.
     """
-    low, high = extent(polygon)
+    return DrawnPolygon(polygon, *frame_of([polygon], box, scale))
+
+
+def frame_of(
+    polygons: Sequence[Polygon], box: Box, scale: float | None = None
+) -> tuple[float, Array]:
+    """The scale, and the place of the pole [mm], of polygons in a box; as `fitted`."""
+    corners = [extent(polygon) for polygon in polygons]
+    low = np.min([each[0] for each in corners], axis=0)
+    high = np.max([each[1] for each in corners], axis=0)
     room = np.array([box.width, box.height]) - 2 * PADDING_MM
     if scale is None:
         wanted = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
@@ -71,10 +81,10 @@ def fitted(polygon: Polygon, box: Box, scale: float | None = None) -> DrawnPolyg
     elif np.any(high - low > scale * room):
         wide, tall = (high - low) / scale + 2 * PADDING_MM
         raise CrankcheckError(
-            f"the {polygon.quantity} polygon needs {wide:.0f} x {tall:.0f} mm at this scale, and "
-            f"has {box.width:.0f} x {box.height:.0f} mm; take larger paper, or a smaller --k"
+            f"the {polygons[0].quantity} polygon needs {wide:.0f} x {tall:.0f} mm at this scale, "
+            f"and has {box.width:.0f} x {box.height:.0f} mm; take larger paper, or a smaller --k"
         )
-    return DrawnPolygon(polygon, scale, np.array(box.middle) - (low + high) / 2 / scale)
+    return scale, np.array(box.middle) - (low + high) / 2 / scale
 
 
 def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
@@ -105,8 +115,8 @@ def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str)
         length = float(np.hypot(*along))
         if length > 1e-9:
             spare = BEYOND_MM * along / length
-            look = {"color": colour, "linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
-            line(axes, start - spare, end + spare, **look)
+            dashed: dict[str, Any] = {"linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
+            line(axes, start - spare, end + spare, color=colour, **dashed)
     arrow(axes, start, end, f"{quantity}-{vector.name}", colour)
 
 
@@ -121,7 +131,9 @@ def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     corner = np.array([box.left, box.bottom])
     names, spots = _together(at)
     labels = [
-        Label(name, (width_in(name, SIZE), SIZE / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03)
+        Label(
+            name, (width_in(name, SIZE), SIZE / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
+        )
         for name, spot in zip(names, spots, strict=True)
     ]
     dots = [_sampled(drawn.at(v.start), drawn.at(v.end)) for v in polygon.vectors]
@@ -130,8 +142,8 @@ def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
     centres = place(labels, obstacles, np.zeros((0, 2)), frame)
     for label, (x, y) in zip(labels, centres, strict=True):
-        place_mm = corner + MM_PER_IN * np.array([x, y])
-        text(axes, *place_mm, label.text, SIZE, ha="center", va="center")
+        at_x, at_y = corner + MM_PER_IN * np.array([x, y])
+        text(axes, at_x, at_y, label.text, SIZE, ha="center", va="center")
 
 
 def _together(at: dict[str, Array]) -> tuple[list[str], list[Array]]:
@@ -161,12 +173,3 @@ def lower_case(name: str) -> str:
 
 def _plain(title: str) -> str:
     return "".join(c if c.isalnum() else "-" for c in title).strip("-")
-
-
-def listed_vectors(polygons: Sequence[DrawnPolygon]) -> list[tuple[str, str, str]]:
-    """Name, length on paper [mm], and size with its unit, of every vector."""
-    return [
-        (vector.name, f"{vector.size / drawn.scale:.1f}", f"{vector.size:.4g}")
-        for drawn in polygons
-        for vector in drawn.polygon.vectors
-    ]

@@ -23,13 +23,14 @@ from matplotlib.axes import Axes
 from analytic.drawings.drawn_polygons import DrawnPolygons
 from analytic.drawings.paper_scale import book_scales, round_scale
 from analytic.drawings.polygon import UNITS
+from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
-from reports.figures.style import FRONT, LARGE, QUIET, SMALL, TINY, cut, width_in
+from reports.figures.style import FRONT, LARGE, QUIET, SMALL, TINY, cut
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.paper import MM_PER_IN, Box, Paper
-from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted
+from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
 from reports.sheets.scheme import draw_scheme
 
 MARGIN, HEAD, FOOT, GAP = 8.0, 9.0, 6.0, 4.0
@@ -41,12 +42,14 @@ COLUMN_MM = 52.0
 
 @dataclass(frozen=True)
 class PolygonSheet:
-    """What is on the sheet: the polygons, each with its scale, and the scale of lengths [m/mm]."""
+    """What is on the sheet: the polygons, each with its scale; the scale of lengths [m/mm], and
+    what stands in the middle of the scheme [m]."""
 
     drawn: DrawnPolygons
     velocity: DrawnPolygon
     acceleration: DrawnPolygon
     length_scale: float
+    middle: Array
     boxes: dict[str, Box]
     paper: Paper
 
@@ -57,9 +60,7 @@ def laid_out(drawn: DrawnPolygons, paper: Paper, k: float | None = None) -> Poly
     """
     boxes = _boxes(paper)
     places = np.array(list(drawn.placement.points.values()))
-    size = places.max(axis=0) - places.min(axis=0)
-    room = np.array([boxes["scheme"].width, boxes["scheme"].height]) - 2 * SCHEME_PADDING
-    length_scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
+    length_scale, middle = _scheme_frame(places, boxes["scheme"])
     scales: tuple[float | None, float | None] = (None, None)
     if k is not None:
         if drawn.placement.driver.alpha:
@@ -67,7 +68,35 @@ def laid_out(drawn: DrawnPolygons, paper: Paper, k: float | None = None) -> Poly
         scales = book_scales(length_scale, drawn.placement.driver.omega, k)
     velocity = fitted(drawn.velocity, boxes["velocity"], scales[0])
     acceleration = fitted(drawn.acceleration, boxes["acceleration"], scales[1])
-    return PolygonSheet(drawn, velocity, acceleration, length_scale, boxes, paper)
+    return PolygonSheet(drawn, velocity, acceleration, length_scale, middle, boxes, paper)
+
+
+def _scheme_frame(places: Array, box: Box) -> tuple[float, Array]:
+    """The scale of lengths [m/mm] for places (n, 2), and what is in the middle of the box [m]."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    room = np.array([box.width, box.height]) - 2 * SCHEME_PADDING
+    scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
+    return max(scales), (low + high) / 2
+
+
+def over_positions(drawn: Sequence[DrawnPolygons], paper: Paper) -> list[PolygonSheet]:
+    """A sheet for each position, all at the same scales and with the same pole."""
+    boxes = _boxes(paper)
+    places = np.array([list(each.placement.points.values()) for each in drawn]).reshape(-1, 2)
+    scheme = _scheme_frame(places, boxes["scheme"])
+    velocity = frame_of([each.velocity for each in drawn], boxes["velocity"])
+    acceleration = frame_of([each.acceleration for each in drawn], boxes["acceleration"])
+    return [
+        PolygonSheet(
+            each,
+            DrawnPolygon(each.velocity, *velocity),
+            DrawnPolygon(each.acceleration, *acceleration),
+            *scheme,
+            boxes,
+            paper,
+        )
+        for each in drawn
+    ]
 
 
 def _boxes(paper: Paper) -> dict[str, Box]:
@@ -105,7 +134,14 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
     )
     top = sheet.paper.height - MARGIN - 4.0
     text(axes, MARGIN, top, title, LARGE, weight="bold")
-    text(axes, MARGIN, MARGIN, cut(note, (sheet.paper.width - 2 * MARGIN) / MM_PER_IN, TINY), TINY, color=QUIET)
+    text(
+        axes,
+        MARGIN,
+        MARGIN,
+        cut(note, (sheet.paper.width - 2 * MARGIN) / MM_PER_IN, TINY),
+        TINY,
+        color=QUIET,
+    )
     captions = {
         "scheme": f"scheme, K_l = {sheet.length_scale:g} m/mm",
         "velocity": f"velocities, K_v = {sheet.velocity.scale:g} m/s per mm",
@@ -119,15 +155,15 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         ]  # fmt: skip
         for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
             line(axes, np.array(start), np.array(end), color=FRONT, linewidth=0.6)
-        text(axes, box.left + 1.5, box.bottom + box.height - 3.2, captions[name], SMALL, color=QUIET)
+        text(
+            axes, box.left + 1.5, box.bottom + box.height - 3.2, captions[name], SMALL, color=QUIET
+        )
 
 
 def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
     points, box = sheet.drawn.placement.points, sheet.boxes["scheme"]
-    all_of = np.array(list(points.values()))
-    middle = (all_of.min(axis=0) + all_of.max(axis=0)) / 2
-    places = {n: box.middle + (p - middle) / sheet.length_scale for n, p in points.items()}
-    draw_scheme(axes, sheet.drawn.placement, places, 1.0 / sheet.length_scale)
+    places = {n: box.middle + (p - sheet.middle) / sheet.length_scale for n, p in points.items()}
+    draw_scheme(axes, sheet.drawn.placement, places)
     for name, at in places.items():
         text(axes, at[0] + 1.6, at[1] + 1.6, name)
 
@@ -149,11 +185,17 @@ def _rows(sheet: PolygonSheet) -> Sequence[tuple[str, str, str]]:
     rows = []
     for drawn in (sheet.velocity, sheet.acceleration):
         unit = UNITS[drawn.polygon.quantity]
-        for vector in drawn.polygon.vectors:
-            rows.append(
-                (vector.name, f"{vector.size / drawn.scale:.2f} mm", f"{readable(vector.size)} {unit}")
-            )
+        rows += [
+            (each.name, f"{each.size / drawn.scale:.2f} mm", f"{readable(each.size)} {unit}")
+            for each in drawn.polygon.vectors
+        ]
     for name, body in sheet.drawn.rates.items():
         if name != GROUND and name in sheet.drawn.placement.scene.links:
-            rows.append((f"omega, alpha of {name}", "", f"{readable(body.omega)} rad/s, {readable(body.alpha)} rad/s²"))
+            rows.append(
+                (
+                    f"omega, alpha of {name}",
+                    "",
+                    f"{readable(body.omega)} rad/s, {readable(body.alpha)} rad/s²",
+                )
+            )
     return rows

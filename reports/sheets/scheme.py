@@ -22,8 +22,8 @@ FRONT = 6
 """Pins lie over everything."""
 
 
-def draw_scheme(axes: Axes, placement: Placement, places: Mapping[str, Array], per_m: float) -> None:
-    """The mechanism with its points at ``places`` [mm], at ``per_m`` mm to the metre."""
+def draw_scheme(axes: Axes, placement: Placement, places: Mapping[str, Array]) -> None:
+    """The mechanism with its points at ``places`` [mm]."""
     scene = placement.scene
     for name, slider in scene.sliders.items():
         along = placement.along(name)
@@ -67,10 +67,10 @@ def _flat(corners: Array) -> bool:
 
 def _foot(axes: Axes, place: Array) -> None:
     """A pin's support on hatched ground."""
-    left = place + (-0.6 * FOOT_MM, -FOOT_MM)
-    right = place + (0.6 * FOOT_MM, -FOOT_MM)
+    side, spare = np.array([0.6 * FOOT_MM, 0.0]), np.array([0.8, 0.0])
+    left, right = place - (0.0, FOOT_MM) - side, place - (0.0, FOOT_MM) + side
     axes.add_patch(Patch([place, left, right], closed=True, fc="white", ec=INK, lw=0.7))
-    _hatched(axes, left + (-0.8, 0.0), right + (0.8, 0.0))
+    _hatched(axes, left - spare, right + spare)
 
 
 def _hatched(axes: Axes, start: Array, end: Array) -> None:
@@ -90,7 +90,12 @@ def _block(axes: Axes, place: Array, along: Array, *, on_ground: bool) -> None:
     across = np.array([-along[1], along[0]])
     half = 0.5 * BLOCK_MM[0] * along
     aside = 0.5 * BLOCK_MM[1] * across
-    corners = [place + half + aside, place - half + aside, place - half - aside, place + half - aside]
+    corners = [
+        place + half + aside,
+        place - half + aside,
+        place - half - aside,
+        place + half - aside,
+    ]
     axes.add_patch(Patch(corners, closed=True, fc="white", ec=INK, lw=0.8, zorder=3))
     if on_ground:
         for side in (-1.0, 1.0):
@@ -99,9 +104,7 @@ def _block(axes: Axes, place: Array, along: Array, *, on_ground: bool) -> None:
             _hatched(axes, start, end)
 
 
-def _guide(
-    axes: Axes, placement: Placement, places: Mapping[str, Array], name: str
-) -> None:
+def _guide(axes: Axes, placement: Placement, places: Mapping[str, Array], name: str) -> None:
     """The line of a guide that moves, from its nearest point through the block."""
     slider = placement.scene.sliders[name]
     along, block = placement.along(name), places[slider.point]

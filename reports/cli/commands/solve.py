@@ -15,9 +15,9 @@ from models.array import Array
 from models.errors import CrankcheckError, harmless, suggestion
 from models.files import find_scene, load_scene
 from models.motion import Motion
-from models.passing import passing
 from models.scene import Scene
 from reports.cli.showing import SolveRequest
+from reports.describe.driver_at import MOST_DEG, driver_at
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
@@ -37,8 +37,6 @@ PAGE = ".html"
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
-MOST_DEG = 1e6
-"""As in a scene file: an angle that is larger has lost the digits that are within a turn."""
 ENDLESS = 10**15
 """Steps beyond which a float does not count them."""
 
@@ -185,15 +183,7 @@ def _along(scene: Scene, text: str) -> Along:
 
 def _at(scene: Scene, at_deg: float, *, clockwise: bool = False) -> Motion:
     """The mechanism with its driver at an angle, moving as its law moves it there."""
-    if not abs(at_deg) <= MOST_DEG:
-        raise CrankcheckError(
-            f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
-        )
-    theta = math.radians(at_deg)
-    try:
-        omega, alpha = passing(scene.driver.law, theta, clockwise=clockwise)
-    except ValueError as error:
-        raise CrankcheckError(f"--at-deg {at_deg:g}: the driver of {scene.name} {error}") from None
+    theta, omega, alpha = driver_at(scene, at_deg, clockwise=clockwise)
     return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
 
 
