@@ -11,8 +11,8 @@ from models.scene import Scene
 from reports.workbook.formula_table import Column, Input
 
 DRIVE_COLUMNS = (
-    Column("time", "time s", "[n]*RADIANS({step_deg})/ABS({omega})"),
     Column("n", "n", "[n-1]+1", first="0"),
+    Column("time", "time s", "[n]*RADIANS({step_deg})/ABS({omega})"),
     Column("phi", "phi rad", "RADIANS({start_deg})+{omega}*[time]"),
 )
 

@@ -33,7 +33,8 @@ class Input:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of formulas; ``head`` is what stands above it, its unit with it."""
+    """A column of formulas; ``head`` is what stands above it, its unit with it, or a formula of
+    inputs that says so."""
 
     name: str
     head: str
@@ -44,7 +45,7 @@ class Column:
 @dataclass(frozen=True)
 class FormulaTable:
     """Inputs and columns in ``count`` rows; ``charts`` are the names of the columns drawn over the
-    first one, by the title of their chart."""
+    time, by the title of their chart."""
 
     inputs: Sequence[Input]
     columns: Sequence[Column]
@@ -69,7 +70,7 @@ def write_inputs(sheet: Worksheet, inputs: Sequence[Input]) -> None:
 def write_columns(sheet: Worksheet, table: FormulaTable, inputs_of: str) -> None:
     """The columns, with the inputs in a sheet of the name ``inputs_of``."""
     places = {each.name: f"'{inputs_of}'!$B${row}" for row, each in enumerate(table.inputs, 2)}
-    sheet.append([each.head for each in table.columns])
+    sheet.append([_head(each.head, table, places) for each in table.columns])
     for number in range(table.count):
         row = number + HEAD_ROWS + 1
         cells = []
@@ -80,6 +81,11 @@ def write_columns(sheet: Worksheet, table: FormulaTable, inputs_of: str) -> None
     sheet.freeze_panes = "B2"
     for column in table.columns:
         sheet.column_dimensions[table.letter(column.name)].width = 16
+
+
+def _head(head: str, table: FormulaTable, inputs: Mapping[str, str]) -> str:
+    """A head; one that has an input in it shows what that is now."""
+    return _placed(head, table, inputs, 0) if head.startswith("=") else head
 
 
 def _placed(formula: str, table: FormulaTable, inputs: Mapping[str, str], row: int) -> str:

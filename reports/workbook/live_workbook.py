@@ -6,23 +6,19 @@ import io
 from collections.abc import Mapping
 
 from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
-from openpyxl.chart import (  # type: ignore[import-untyped]  # ships no stubs
-    Reference,
-    ScatterChart,
-    Series,
-)
 
 from analytic.structure.groups import Group
 from analytic.structure.mobility import analyse
 from models.laws import ConstantSpeed
 from models.scene import GROUND, Scene
+from reports.workbook.charts import Curves, add_chart
 from reports.workbook.formula_table import FormulaTable, write_columns, write_inputs
 from reports.workbook.four_bar_formulas import four_bar_table
 from reports.workbook.slider_crank_formulas import slider_crank_table
 from reports.workbook.slotted_lever_formulas import slotted_lever_table
 
-INPUTS, TABLE, CHARTS = "inputs", "live", "charts"
-WIDE_CM, HIGH_CM = 24.0, 9.0
+INPUTS, TABLE = "inputs", "live"
+TIME = "time"
 
 
 def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
@@ -54,26 +50,10 @@ def add_live(book: Workbook, table: FormulaTable) -> None:
     """Put inputs, formulas and charts into a workbook."""
     write_inputs(book.create_sheet(INPUTS), table.inputs)
     write_columns(book.create_sheet(TABLE), table, INPUTS)
-    add_charts(book, table)
-
-
-def add_charts(book: Workbook, table: FormulaTable) -> None:
-    """A chart below the other for each group of columns, over the first column."""
-    sheet, source = book.create_sheet(CHARTS), book[TABLE]
-    letters = {each.name: place for place, each in enumerate(table.columns, 1)}
-    across = Reference(source, min_col=1, min_row=2, max_row=table.count + 1)
+    places = {each.name: place for place, each in enumerate(table.columns, 1)}
     for number, (title, names) in enumerate(table.charts.items()):
-        chart = ScatterChart()
-        chart.title, chart.style, chart.scatterStyle = title, 2, "lineMarker"
-        chart.width, chart.height = WIDE_CM, HIGH_CM
-        chart.x_axis.title, chart.x_axis.delete, chart.y_axis.delete = "time [s]", False, False
-        chart.legend.position = "b"
-        for name in names:
-            drawn = Reference(source, min_col=letters[name], min_row=1, max_row=table.count + 1)
-            series = Series(drawn, across, title_from_data=True)
-            series.marker.symbol, series.smooth = "none", False
-            chart.series.append(series)
-        sheet.add_chart(chart, f"A{1 + 19 * number}")
+        drawn = [places[name] for name in names]
+        add_chart(book, number, title, Curves(TABLE, places[TIME], drawn, table.count))
 
 
 def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
