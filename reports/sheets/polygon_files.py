@@ -13,8 +13,8 @@ from PIL import Image
 
 from analytic.drawings.drawn_polygons import draw_polygons
 from models.errors import ReachError
-from reports.output.provenance import crankcheck_version
 from reports.sheets.polygon_sheet import PolygonSheet, draw_sheet, over_positions
+from reports.sheets.sheet_note import sheet_note
 
 ANIMATED = ".gif"
 ENDINGS = (".svg", ".pdf", ANIMATED)
@@ -24,7 +24,7 @@ DPI = 100
 
 def polygon_file(sheet: PolygonSheet, ending: str) -> bytes:
     """The sheet as a file of an ending in `ENDINGS`, animated step by step."""
-    canvas = draw_sheet(sheet, _note(sheet))
+    canvas = draw_sheet(sheet, sheet_note(sheet.drawn.placement.scene))
     name = sheet.drawn.placement.scene.name
     if ending != ANIMATED:
         return canvas.saved(ending[1:], f"Vector polygons of {name}")
@@ -52,13 +52,10 @@ def turning_file(sheet: PolygonSheet) -> bytes:
         except ReachError:  # the driver swings: what it reaches is shown
             continue
     sheets = over_positions(drawn, sheet.paper)
-    frames = [_picture(draw_sheet(each, _note(each)).figure) for each in sheets]
+    frames = [
+        _picture(draw_sheet(each, sheet_note(each.drawn.placement.scene)).figure) for each in sheets
+    ]
     return _animated(frames, [FRAME_S] * len(frames))
-
-
-def _note(sheet: PolygonSheet) -> str:
-    source = sheet.drawn.placement.scene.source
-    return f"crankcheck {crankcheck_version()}, closed form; {source}"
 
 
 def _picture(figure: Figure) -> Image.Image:
