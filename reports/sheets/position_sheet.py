@@ -20,6 +20,7 @@ from analytic.kinematics import reach, solve_driven
 from analytic.structure.groups import Group
 from models.array import Array
 from models.errors import CrankcheckError
+from models.laws import Oscillating
 from models.scene import Scene
 from reports.drawing.lettering import Label, place
 from reports.figures.style import FRONT, INK, LARGE, POINTS, QUIET, SMALL, TINY, cut, width_in
@@ -84,7 +85,11 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
 
 
 def _reach_about(scene: Scene, start: float) -> tuple[float, float]:
-    """The range of the driver's angles that holds its start."""
+    """The driver's angles: those that it swings through, or can reach from its start."""
+    law = scene.driver.law
+    if isinstance(law, Oscillating):
+        swing = abs(law.amplitude_rad)
+        return law.centre_rad - swing, law.centre_rad + swing
     for low, high in reach(scene):
         shift = math.tau * round((start - 0.5 * (low + high)) / math.tau)
         if low + shift - 1e-9 <= start <= high + shift + 1e-9:
