@@ -18,6 +18,31 @@ PaperSize = Annotated[
 
 
 @dataclass(frozen=True)
+class CentresRequest:
+    """What `centres` was asked for, as given."""
+
+    scene: SceneName
+    at_deg: Annotated[float, typer.Option(metavar="DEG", help="The driver's angle.")] = 60.0
+    link: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="Its poles, circles of curvature and centrodes as well."),
+    ] = ""
+    paper: PaperSize = "A4"
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Draw it: .svg in layers, or .pdf.")
+    ] = None
+
+
+@command
+def centres(request: CentresRequest) -> int:
+    """Show the instant centres of a position by the theorem of Aronhold and Kennedy, with the
+    inflection circle, Bresse's circles and the centrodes of a link."""
+    from reports.cli.commands import centres as verb
+
+    return verb.run_centres(request, terminal())
+
+
+@dataclass(frozen=True)
 class PolygonRequest:
     """What `polygon` was asked for, as given."""
 

@@ -25,7 +25,7 @@ def run_positions(request: PositionsRequest, console: Console) -> int:
     scene = load_scene(request.scene)
     sheet = positions(scene, request.divisions, paper)
     told = f"{request.divisions} positions of {scene.name}, K_l = {sheet.scale:g} m/mm"
-    _save(console, draw_positions(sheet, sheet_note(scene)), request.output, told)
+    save_sheet(console, draw_positions(sheet, sheet_note(scene)), request.output, told)
     return 0
 
 
@@ -38,7 +38,7 @@ def run_graph(request: GraphRequest, console: Console) -> int:
         f"{graph.symbol} off by up to {100 * graph.off:.2g} %" for graph in sheet.graphs[1:]
     )
     told = f"{request.of} of {scene.name} in {request.divisions} parts; {parts}"
-    _save(console, draw_graphs(sheet, sheet_note(scene)), request.output, told)
+    save_sheet(console, draw_graphs(sheet, sheet_note(scene)), request.output, told)
     return 0
 
 
@@ -48,6 +48,7 @@ def _checked(scene: str, output: Path, paper: str) -> Paper:
     return Paper.of(paper)
 
 
-def _save(console: Console, canvas: Canvas, path: Path, told: str) -> None:
+def save_sheet(console: Console, canvas: Canvas, path: Path, told: str) -> None:
+    """Write a sheet, and say so."""
     write(path, canvas.saved(path.suffix.lower()[1:], told))
     console.print(harmless(f"{path}: {told}"), highlight=False, markup=False, soft_wrap=True)
