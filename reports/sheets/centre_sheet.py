@@ -271,4 +271,6 @@ def _polygon(axes: Axes, sheet: CentreSheet) -> None:
     for body, k in numbers.items():
         at = corners[k]
         axes.add_patch(Round(tuple(at), 2.2, fc="white", ec=INK, lw=0.6, zorder=7))
-        axes.text(at[0], at[1], str(k), size=TINY, ha="center", va="center", zorder=8, gid=f"body-{body}")
+        axes.text(
+            at[0], at[1], str(k), size=TINY, ha="center", va="center", zorder=8, gid=f"body-{body}"
+        )
