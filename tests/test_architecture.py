@@ -27,7 +27,7 @@ ARROWS: Mapping[str, set[str]] = {
 FLOORS: Mapping[str, str] = {
     "reports": """
         cli
-        face
+        face sheets
         page figures
         own_model
         diff tune advise history verify selftest
@@ -42,7 +42,7 @@ FLOORS: Mapping[str, str] = {
         workers output
     """,
     "analytic": """
-        elastic
+        elastic drawings
         free regulation
         mechanism forces
         nearness kinematics

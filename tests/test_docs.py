@@ -24,6 +24,7 @@ OWN_MODEL = (DOCS / "own-model.md").read_text(encoding="utf-8")
 FORCES = (DOCS / "forces.md").read_text(encoding="utf-8")
 ELASTIC = (DOCS / "elastic.md").read_text(encoding="utf-8")
 FREE = (DOCS / "free.md").read_text(encoding="utf-8")
+DRAWINGS = (DOCS / "drawings.md").read_text(encoding="utf-8")
 Run = Callable[[Sequence[str], Path], "subprocess.CompletedProcess[str]"]
 END = "--- end of example {} ---"
 
@@ -73,6 +74,11 @@ def test_what_is_said_of_free_motion_is_true(tmp_path: Path) -> None:
     (text,) = (each for each in blocks(FREE, "toml") if each.startswith("name"))
     (tmp_path / "dropped.toml").write_text(text)
     assert not told_otherwise(FREE, tmp_path)
+
+
+def test_what_is_said_of_drawings_is_true(tmp_path: Path) -> None:
+    """Each sheet and table of the page: a command's start each, some 15 s in all."""
+    assert not told_otherwise(DRAWINGS, tmp_path)
 
 
 def test_what_is_said_of_elastic_links_is_true(tmp_path: Path) -> None:

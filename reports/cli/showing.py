@@ -93,6 +93,13 @@ class SolveRequest:
         bool,
         typer.Option("--linear", help="Elastic links: leave out that a bent link is shorter."),
     ] = False
+    family: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME=A,B,...",
+            help="With -o FILE.xlsx: formulas of mechanisms that differ in a length.",
+        ),
+    ] = None
 
 
 @command

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from reports.output.provenance import crankcheck_version
 from reports.output.write import clean, write
@@ -18,11 +18,18 @@ SHEET_ROWS = 1_048_575
 """Rows of a sheet below its head."""
 
 
-def write_frame(path: Path, frame: pd.DataFrame, sheet: str, origin: Mapping[str, str]) -> None:
+def write_frame(
+    path: Path,
+    frame: pd.DataFrame,
+    sheet: str,
+    origin: Mapping[str, str],
+    more: Callable[[Any], None] | None = None,
+) -> None:
     """Write a table whole, or not at all.
 
-    A workbook has it in ``sheet``, and beside it where it comes from; the other kinds have no room
-    for that. Raises CrankcheckError where the system refuses.
+    A workbook has it in ``sheet``, and beside it where it comes from, and what ``more`` puts into
+    the openpyxl workbook; the other kinds have no room for that. Raises CrankcheckError where the
+    system refuses.
     """
     ending = path.suffix.lower()
     if ending == ".csv":
@@ -30,7 +37,7 @@ def write_frame(path: Path, frame: pd.DataFrame, sheet: str, origin: Mapping[str
     elif ending == ".parquet":
         write(path, parquet(frame))
     else:
-        write(path, workbook(frame, sheet, origin))
+        write(path, workbook(frame, sheet, origin, more))
 
 
 def csv(frame: pd.DataFrame) -> str:
@@ -45,8 +52,13 @@ def parquet(frame: pd.DataFrame) -> bytes:
     return buffer.getvalue()
 
 
-def workbook(frame: pd.DataFrame, sheet: str, origin: Mapping[str, str]) -> bytes:
-    """The content of a workbook: the frame, and where it comes from."""
+def workbook(
+    frame: pd.DataFrame,
+    sheet: str,
+    origin: Mapping[str, str],
+    more: Callable[[Any], None] | None = None,
+) -> bytes:
+    """The content of a workbook: the frame, where it comes from, and what ``more`` puts into it."""
     facts = {**origin, "crankcheck": crankcheck_version()}
     buffer = io.BytesIO()
     import pandas as pd
@@ -64,4 +76,6 @@ def workbook(frame: pd.DataFrame, sheet: str, origin: Mapping[str, str]) -> byte
         for row in book.sheets["source"].iter_rows():
             for cell in row:
                 cell.data_type = "s"  # a text that begins with "=" is no formula
+        if more is not None:
+            more(book.book)
     return buffer.getvalue()

@@ -15,9 +15,9 @@ from models.array import Array
 from models.errors import CrankcheckError, harmless, suggestion
 from models.files import find_scene, load_scene
 from models.motion import Motion
-from models.passing import passing
 from models.scene import Scene
 from reports.cli.showing import SolveRequest
+from reports.describe.driver_at import MOST_DEG, driver_at
 from reports.describe.facts import speed_facts
 from reports.describe.frame import motion_frame
 from reports.describe.with_forces import with_forces
@@ -33,12 +33,10 @@ from reports.face.solution_text import (
 from reports.output.frame_file import ENDINGS, SHEET_ROWS, write_frame
 from reports.output.write import check_file, check_folder, write
 
-PAGE = ".html"
+PAGE, WORKBOOK = ".html", ".xlsx"
 ON_SCREEN = 12
 IN_A_FILE = 360
 MOST_SAMPLES = 1_000_000
-MOST_DEG = 1e6
-"""As in a scene file: an angle that is larger has lost the digits that are within a turn."""
 ENDLESS = 10**15
 """Steps beyond which a float does not count them."""
 
@@ -61,6 +59,11 @@ def run_solve(request: SolveRequest, console: Console) -> None:
         run_solve_free(scene, request, console)
         return
     _check_driven(scene, request)
+    if request.family is not None:
+        from reports.cli.commands.solve_family import run_family  # slow to import
+
+        run_family(scene, request, console)
+        return
     along = [_along(scene, text) for text in request.along]
     structure = analyse(scene)
     motion = (
@@ -108,7 +111,7 @@ def _tell_written(console: Console, scene: Scene, motion: Motion, request: Solve
 
         told.append(written_figures(scene, request.figures))
     if request.output is not None:
-        told.append(_write(request.output, scene, motion))
+        told.append(_write(request.output, scene, motion, is_turn=request.at_deg is None))
     for each in told:
         console.print(harmless(each), highlight=False, markup=False, soft_wrap=True)
 
@@ -185,15 +188,7 @@ def _along(scene: Scene, text: str) -> Along:
 
 def _at(scene: Scene, at_deg: float, *, clockwise: bool = False) -> Motion:
     """The mechanism with its driver at an angle, moving as its law moves it there."""
-    if not abs(at_deg) <= MOST_DEG:
-        raise CrankcheckError(
-            f"--at-deg {at_deg:g}: give an angle in degrees, such as 90, up to {MOST_DEG:g}"
-        )
-    theta = math.radians(at_deg)
-    try:
-        omega, alpha = passing(scene.driver.law, theta, clockwise=clockwise)
-    except ValueError as error:
-        raise CrankcheckError(f"--at-deg {at_deg:g}: the driver of {scene.name} {error}") from None
+    theta, omega, alpha = driver_at(scene, at_deg, clockwise=clockwise)
     return solve_driven(scene, np.array([theta]), np.array([omega]), np.array([alpha]))
 
 
@@ -213,7 +208,7 @@ def instants_of(scene: Scene, request: SolveRequest) -> Array:
     if steps < 1:
         raise CrankcheckError(f"--steps-per-turn {steps}: give at least 1")
     most = MOST_SAMPLES
-    if request.output is not None and request.output.suffix.lower() == ".xlsx":
+    if request.output is not None and request.output.suffix.lower() == WORKBOOK:
         most = SHEET_ROWS
     steps = min(steps, ENDLESS)
     last = turns * steps * (1 - 1e-12)  # may be infinite
@@ -227,7 +222,7 @@ def instants_of(scene: Scene, request: SolveRequest) -> Array:
     return step_s * np.arange(samples, dtype=np.float64)
 
 
-def _write(path: Path, scene: Scene, motion: Motion) -> str:
+def _write(path: Path, scene: Scene, motion: Motion, *, is_turn: bool) -> str:
     """The motion as a file of the kind that the ending says; returns what was written, in a
     line."""
     if path.suffix.lower() == PAGE:
@@ -236,5 +231,10 @@ def _write(path: Path, scene: Scene, motion: Motion) -> str:
         write(path, page_of(scene, with_forces=motion.forces is not None))
         return f"{path}: {scene.name} over one turn"
     origin = {"scene": scene.name, "source": scene.source}
-    write_frame(path, motion_frame(motion), "motion", origin)
+    frame, more = motion_frame(motion), None
+    if path.suffix.lower() == WORKBOOK and is_turn:
+        from reports.workbook.beside_values import beside_values
+
+        more = beside_values(scene, motion.time_s, list(frame.columns))
+    write_frame(path, frame, "motion", origin, more)
     return f"{path}: {motion.time_s.size} samples of {scene.name}"

@@ -1,0 +1,61 @@
+"""A mechanism as it stands at one instant: what a draughtsman has before the first vector."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic.kinematics import solve_driven
+from analytic.structure.mobility import Structure, analyse
+from models.array import Array
+from models.joints import sliding_angle, sliding_body
+from models.scene import GROUND, Scene
+
+
+@dataclass(frozen=True)
+class DriverState:
+    """Angle [rad], angular velocity [rad/s] and acceleration [rad/s^2] of the driver."""
+
+    theta: float
+    omega: float
+    alpha: float = 0.0
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The places of all points [m], (2,) each, and the angles of all bodies [rad], blocks and the
+    ground with them; no rates, which the polygons find."""
+
+    scene: Scene
+    structure: Structure
+    driver: DriverState
+    points: Mapping[str, Array]
+    angles: Mapping[str, float]
+
+    @staticmethod
+    def of(scene: Scene, driver: DriverState) -> Placement:
+        """The scene with its driver there. Raises as `analytic.kinematics.solve`."""
+        structure = analyse(scene)
+        one = np.ones(1)
+        motion = solve_driven(
+            scene, driver.theta * one, driver.omega * one, driver.alpha * one, bound=False
+        )
+        angles = {GROUND: 0.0} | {n: float(m.theta[0]) for n, m in motion.links.items()}
+        for slider in scene.sliders.values():
+            if slider.link is None:
+                angles[sliding_body(slider)] = angles[slider.on] + sliding_angle(slider)
+        points = {name: np.array(point.position[0]) for name, point in motion.points.items()}
+        return Placement(scene, structure, driver, points, angles)
+
+    def along(self, slider: str) -> Array:
+        """The unit vector along the line of a slider."""
+        guide = self.scene.sliders[slider]
+        angle = self.angles[guide.on] + guide.direction_rad
+        return np.array([np.cos(angle), np.sin(angle)])
+
+
+def quarter_turn(vector: Array) -> Array:
+    """The vector turned by a quarter turn counter-clockwise."""
+    return np.array([-vector[1], vector[0]])

@@ -1,0 +1,84 @@
+"""`crankcheck centres`: instant centres, and the circles of a link."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from analytic.drawings.drawn_polygons import draw_polygons
+from analytic.drawings.placement import DriverState
+from models.array import Array
+from models.files import find_scene, load_scene
+from reports.cli.commands.sheets import ENDINGS, save_sheet
+from reports.cli.drawing_sheets import CentresRequest
+from reports.describe.driver_at import angle_at
+from reports.output.columns import plain_table
+from reports.output.write import check_file
+from reports.sheets.centre_sheet import (
+    CentreSheet,
+    body_numbers,
+    centres_of,
+    draw_centres,
+    name_of,
+)
+from reports.sheets.paper import Paper
+from reports.sheets.sheet_note import sheet_note
+
+
+def run_centres(request: CentresRequest, console: Console) -> int:
+    """Show or draw centres. Raises CrankcheckError for what can not be asked."""
+    paper = Paper.of(request.paper)
+    if request.output is not None:
+        check_file(request.output, "-o", ENDINGS, inputs=[find_scene(request.scene)])
+    scene = load_scene(request.scene)
+    # Centres do not depend on the speed; circles ask for the acceleration at a constant one.
+    drawn = draw_polygons(scene, DriverState(angle_at(request.at_deg), 1.0))
+    sheet = centres_of(drawn, request.link, paper)
+    if request.output is not None:
+        told = f"instant centres of {scene.name} at {request.at_deg:g} deg"
+        save_sheet(console, draw_centres(sheet, sheet_note(scene)), request.output, told)
+        return 0
+    _show(console, sheet)
+    return 0
+
+
+def _show(console: Console, sheet: CentreSheet) -> None:
+    numbers = body_numbers(sheet.drawn)
+    bodies = ", ".join(f"{k} {body}" for body, k in numbers.items())
+    console.print(f"bodies: {bodies}", highlight=False, markup=False)
+    table = plain_table(gap=2)
+    for head in ("centre", "x m", "y m", "found"):
+        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    ranked = sorted(sheet.centres.items(), key=lambda each: sorted(numbers[b] for b in each[0]))
+    for pair, centre in ranked:
+        crossing = " and ".join(
+            "".join(f"{name_of(side, numbers)} " for side in sides).strip() for sides in centre.by
+        )
+        found = f"where {crossing} cross" if crossing else "a joint"
+        table.add_row(name_of(pair, numbers), *_place(centre.place), found)
+    console.print(table)
+    if sheet.circles is not None:
+        _show_circles(console, sheet)
+
+
+def _place(place: Array | None) -> tuple[str, str]:
+    return ("at infinity", "") if place is None else (f"{place[0]:.8g}", f"{place[1]:.8g}")
+
+
+def _show_circles(console: Console, sheet: CentreSheet) -> None:
+    """The poles and circles of the link that was named."""
+    circles = sheet.circles
+    assert circles is not None
+    table = plain_table(gap=2)
+    for head in (f"of {sheet.link}, driver steady", "x m", "y m", "radius m"):
+        table.add_column(head, justify="right" if head.endswith(" m") else "left")
+    table.add_row("velocity pole P", *_place(circles.pole), "")
+    table.add_row("acceleration pole Q", *_place(circles.acceleration_pole), "")
+    for name, circle in (
+        ("inflection circle, middle", circles.inflection),
+        ("second circle of Bresse, middle", circles.still_speed),
+    ):
+        if circle is None:
+            table.add_row(name, "a straight line, as its alpha is 0", "", "")
+        else:
+            table.add_row(name, *_place(circle.middle), f"{circle.radius:.8g}")
+    console.print("", table, sep="\n")

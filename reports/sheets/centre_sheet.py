@@ -1,0 +1,276 @@
+"""The sheet of instant centres, with the circles and centrodes of a link."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle as Round
+from matplotlib.patches import Rectangle
+
+from analytic.drawings.centrodes import Centrodes, centrodes
+from analytic.drawings.curvature_circles import CurvatureCircles, curvature_circles
+from analytic.drawings.drawn_polygons import DrawnPolygons
+from analytic.drawings.instant_centres import Centre, Pair, instant_centres
+from analytic.drawings.paper_scale import round_scale
+from analytic.kinematics import reach, solve_driven
+from models.array import Array
+from models.errors import CrankcheckError
+from models.scene import GROUND
+from reports.drawing.lettering import Label, place
+from reports.figures.style import FRONT, INK, LARGE, POINTS, QUIET, SMALL, TINY, cut, width_in
+from reports.sheets.canvas import Canvas, line, text
+from reports.sheets.paper import MM_PER_IN, Box, Paper
+from reports.sheets.scheme import draw_scheme
+
+MARGIN, HEAD, FOOT, PADDING = 8.0, 9.0, 6.0, 12.0
+POLYGON_MM = 42.0
+"""Room of the polygon of centres, in the upper right corner."""
+FAR = 1.5
+"""Centres that are further from the mechanism than so many times its size are told, not drawn."""
+POLE, INFLECTION, STILL = "#d1495b", "#2e6f9e", "#3a7d44"
+FIXED, MOVING, THEOREM = "#b7791f", "#6b4e9b", "#9aa5b1"
+DENSE = 1441
+
+
+@dataclass(frozen=True)
+class CentreSheet:
+    """The centres at one position, and what is drawn of the link that was named, if one was."""
+
+    drawn: DrawnPolygons
+    centres: Mapping[Pair, Centre]
+    link: str
+    circles: CurvatureCircles | None
+    ways: Centrodes | None
+    scale: float
+    middle: Array
+    paper: Paper
+
+    @property
+    def box(self) -> Box:
+        wide, high = self.paper.width - 2 * MARGIN, self.paper.height - 2 * MARGIN - HEAD - FOOT
+        return Box(MARGIN, MARGIN + FOOT, wide, high)
+
+    def at(self, places: Array) -> Array:
+        """Where places [m], (..., 2), stand on the sheet [mm]."""
+        return np.asarray(self.box.middle + (places - self.middle) / self.scale)
+
+    def is_near(self, place: Array | None) -> bool:
+        """Whether a place [m] is on the sheet."""
+        if place is None:
+            return False
+        away = np.abs(self.at(place) - self.box.middle)
+        return bool(np.all(away < (self.box.width / 2 - 3.0, self.box.height / 2 - 3.0)))
+
+
+def centres_of(drawn: DrawnPolygons, link: str, paper: Paper) -> CentreSheet:
+    """The sheet of a position; ``link`` is "" for the centres alone.
+
+    Raises CrankcheckError for a link that the scene has not, or that does not turn.
+    """
+    placement = drawn.placement
+    if drawn.undetermined:
+        raise CrankcheckError(
+            f"{placement.scene.name}: velocities are not determined here, and neither are centres "
+            f"({drawn.undetermined[0]}); take another angle"
+        )
+    centres = instant_centres(placement)
+    circles = ways = None
+    if link:
+        if link not in placement.scene.links:
+            known = ", ".join(placement.scene.links)
+            raise CrankcheckError(f"--link {link}: no such link; there are {known}")
+        circles = curvature_circles(drawn.rates[link], link)
+        ways = _ways(drawn, link)
+    scale, middle = _frame(drawn, centres, circles, paper)
+    return CentreSheet(drawn, centres, link, circles, ways, scale, middle, paper)
+
+
+def _ways(drawn: DrawnPolygons, link: str) -> Centrodes:
+    """The centrodes over what the driver reaches."""
+    scene = drawn.placement.scene
+    low, high = reach(scene)[0]
+    theta = np.linspace(low, high, DENSE)[1:-1]
+    ones = np.ones_like(theta)
+    motion = solve_driven(scene, theta, ones, 0.0 * ones, bound=False)
+    return centrodes(motion, link, next(iter(scene.links[link].points)))
+
+
+def _frame(
+    drawn: DrawnPolygons,
+    centres: Mapping[Pair, Centre],
+    circles: CurvatureCircles | None,
+    paper: Paper,
+) -> tuple[float, Array]:
+    """The scale [m/mm], and what is in the middle [m]: the mechanism, and what is near it."""
+    points = np.array(list(drawn.placement.points.values()))
+    low, high = points.min(axis=0), points.max(axis=0)
+    about, size = (low + high) / 2, float(np.max(high - low))
+    more = [centre.place for centre in centres.values() if centre.place is not None]
+    if circles is not None:
+        more += [circles.pole, circles.acceleration_pole, circles.inflection.middle]
+    near = [at for at in more if np.abs(at - about).max() < FAR * size]
+    places = np.array([*points, *near])
+    low, high = places.min(axis=0), places.max(axis=0)
+    room = np.array(
+        [
+            paper.width - 2 * (MARGIN + PADDING),
+            paper.height - 2 * (MARGIN + PADDING) - HEAD - FOOT,
+        ]
+    )
+    scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
+    return max(scales), (low + high) / 2
+
+
+def draw_centres(sheet: CentreSheet, note: str) -> Canvas:
+    """The sheet, in layers."""
+    canvas = Canvas(sheet.paper)
+    _head(canvas.layer("frame"), sheet, note)
+    if sheet.ways is not None:
+        _centrodes(canvas.layer("centrodes"), sheet, sheet.ways)
+    if sheet.circles is not None:
+        _circles(canvas.layer("circles"), sheet, sheet.circles)
+    points = {name: sheet.at(at) for name, at in sheet.drawn.placement.points.items()}
+    draw_scheme(canvas.layer("mechanism"), sheet.drawn.placement, points)
+    _centres(canvas.layer("centres"), sheet)
+    _letters(canvas.layer("letters"), sheet, points)
+    _polygon(canvas.layer("polygon-of-centres"), sheet)
+    return canvas
+
+
+def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
+    scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
+    angle = math.degrees(driver.theta) % 360.0
+    title = f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°"
+    text(axes, MARGIN, sheet.paper.height - MARGIN - 4.0, title, LARGE, weight="bold")
+    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN
+    text(axes, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
+    box = sheet.box
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * (box.width, box.height)
+    for start, end in itertools.pairwise(corners + np.array([box.left, box.bottom])):
+        line(axes, start, end, color=FRONT, linewidth=0.6)
+    told = [f"K_l = {sheet.scale:g} m/mm"]
+    if sheet.circles is not None:
+        told += [f"of {sheet.link}: P velocity pole, Q acceleration pole"]
+    for k, words in enumerate(told):
+        text(axes, box.left + 1.5, box.bottom + box.height - 3.5 - 3.5 * k, words, color=QUIET)
+    if sheet.circles is not None:
+        kinds = {
+            "inflection circle": INFLECTION, "second circle of Bresse": STILL,
+            "fixed centrode": FIXED, "moving centrode": MOVING,
+        }  # fmt: skip
+        for k, (words, colour) in enumerate(kinds.items()):
+            at = box.bottom + 2.0 + 3.5 * k
+            text(axes, box.left + 1.5, at, words, TINY, color=colour)
+
+
+def _centrodes(axes: Axes, sheet: CentreSheet, ways: Centrodes) -> None:
+    """Both ways of the pole, as far as they are on the sheet; the moving one as the link stands."""
+    theta = sheet.drawn.placement.angles[sheet.link]
+    first = next(iter(sheet.drawn.placement.scene.links[sheet.link].points))
+    c, s = math.cos(theta), math.sin(theta)
+    turned = ways.moving @ np.array([[c, s], [-s, c]])
+    moving = sheet.drawn.placement.points[first] + turned
+    for places, colour in ((ways.fixed, FIXED), (moving, MOVING)):
+        drawn = sheet.at(places)
+        inside = np.abs(drawn - sheet.box.middle) < (sheet.box.width / 2, sheet.box.height / 2)
+        drawn[~inside.all(axis=1)] = np.nan
+        axes.plot(drawn[:, 0], drawn[:, 1], color=colour, lw=0.7)
+
+
+def _circles(axes: Axes, sheet: CentreSheet, circles: CurvatureCircles) -> None:
+    box = sheet.box
+    edge = Rectangle((box.left, box.bottom), box.width, box.height, transform=axes.transData)
+    for circle, colour in ((circles.inflection, INFLECTION), (circles.still_speed, STILL)):
+        if circle is not None:
+            x, y = sheet.at(circle.middle)
+            drawn = axes.add_patch(
+                Round((x, y), circle.radius / sheet.scale, fill=False, ec=colour, lw=0.7)
+            )
+            drawn.set_clip_path(edge)
+
+
+def _centres(axes: Axes, sheet: CentreSheet) -> None:
+    """Every centre on the sheet, and the lines that cross in it, of the theorem."""
+    for centre in sheet.centres.values():
+        if not sheet.is_near(centre.place):
+            continue
+        assert centre.place is not None
+        here = sheet.at(centre.place)
+        for pairs in centre.by:
+            for pair in pairs:
+                other = sheet.centres[pair].place
+                if other is not None and sheet.is_near(other):
+                    line(axes, here, sheet.at(other), color=THEOREM, linewidth=0.4)
+        axes.add_patch(Round(tuple(here), 0.8, fc="white", ec=POLE, lw=0.8, zorder=7))
+
+
+def _letters(axes: Axes, sheet: CentreSheet, points: Mapping[str, Array]) -> None:
+    numbers = body_numbers(sheet.drawn)
+    spots: dict[str, Array] = {}
+    for pair, centre in sheet.centres.items():
+        if sheet.is_near(centre.place):
+            assert centre.place is not None
+            _add(spots, name_of(pair, numbers), sheet.at(centre.place))
+    if sheet.circles is not None and sheet.is_near(sheet.circles.acceleration_pole):
+        _add(spots, "Q", sheet.at(sheet.circles.acceleration_pole))
+    corner = np.array([sheet.box.left, sheet.box.bottom])
+    inches = {name: (at - corner) / MM_PER_IN for name, at in spots.items()}
+    labels = [
+        Label(name, (width_in(name, SMALL), SMALL / POINTS), at[None], 0.04)
+        for name, at in inches.items()
+    ]
+    heavy = (np.array(list(points.values())) - corner) / MM_PER_IN
+    thick = np.column_stack([heavy, np.full(len(heavy), 0.04)])
+    frame = (sheet.box.width / MM_PER_IN, sheet.box.height / MM_PER_IN)
+    centres = place(labels, thick, np.zeros((0, 2)), frame)
+    for label, at in zip(labels, centres, strict=True):
+        x, y = corner + MM_PER_IN * np.array(at)
+        text(axes, x, y, label.text, ha="center", va="center", color=INK)
+
+
+def _add(spots: dict[str, Array], name: str, at: Array) -> None:
+    """A name at a place; names of one place stand together."""
+    for other, there in spots.items():
+        if np.hypot(*(there - at)) < 0.5:
+            spots[f"{other}, {name}"] = spots.pop(other)
+            return
+    spots[name] = at
+
+
+def body_numbers(drawn: DrawnPolygons) -> dict[str, int]:
+    """The numbers of the bodies, as books have them: 0 the ground, 1 the driver, then the rest."""
+    placement = drawn.placement
+    driver = placement.scene.driver.link
+    rest = [body for body in placement.structure.bodies if body != driver]
+    return {body: k for k, body in enumerate([GROUND, driver, *rest])}
+
+
+def name_of(pair: Pair, numbers: Mapping[str, int]) -> str:
+    """P12 and the like, the lower number first."""
+    low, high = sorted(numbers[body] for body in pair)
+    return f"P{low}{high}" if high < 10 else f"P{low}.{high}"
+
+
+def _polygon(axes: Axes, sheet: CentreSheet) -> None:
+    """The polygon of centres: bodies as corners, centres of joints as full sides, others dashed."""
+    numbers = body_numbers(sheet.drawn)
+    box = sheet.box
+    middle = np.array([box.left + box.width, box.bottom + box.height]) - POLYGON_MM / 2
+    radius = POLYGON_MM / 2 - 5.0
+    angles = math.pi / 2 + math.tau * np.arange(len(numbers)) / len(numbers)
+    corners = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    for pair, centre in sheet.centres.items():
+        one, other = (corners[numbers[body]] for body in sorted(pair))
+        style = (0, (3, 2)) if centre.by else "-"
+        line(axes, one, other, color=THEOREM if centre.by else INK, linewidth=0.6, linestyle=style)
+    for body, k in numbers.items():
+        at = corners[k]
+        axes.add_patch(Round(tuple(at), 2.2, fc="white", ec=INK, lw=0.6, zorder=7))
+        axes.text(
+            at[0], at[1], str(k), size=TINY, ha="center", va="center", zorder=8, gid=f"body-{body}"
+        )

@@ -1,0 +1,175 @@
+"""A vector polygon in a box: known vectors full, directions dashed, crossings marked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle
+from matplotlib.patches import Polygon as Patch
+
+from analytic.drawings.paper_scale import round_scale
+from analytic.drawings.polygon import POLE, Polygon, Vector
+from models.array import Array
+from models.errors import CrankcheckError
+from reports.drawing.lettering import Label, place
+from reports.figures.style import INK, POINTS, SIZE, width_in
+from reports.sheets.canvas import Canvas, arrow, line, text
+from reports.sheets.paper import MM_PER_IN, Box
+
+PADDING_MM = 9.0
+"""Room for letters around a polygon."""
+BEYOND_MM = 6.0
+"""By how much a dashed direction goes on beyond the crossing."""
+COLOURS = {
+    "whole": INK,
+    "rotation": "#2e6f9e",
+    "normal": "#3a7d44",
+    "tangential": "#2e6f9e",
+    "coriolis": "#b7791f",
+    "sliding": "#d1495b",
+}
+IMAGE = "#8a94a0"
+LEAST_MM = 8.0
+"""A polygon that is drawn smaller can not be read."""
+
+
+@dataclass(frozen=True)
+class DrawnPolygon:
+    """A polygon, how much a millimetre of it stands for, and where its pole is [mm]."""
+
+    polygon: Polygon
+    scale: float
+    pole: Array
+
+    def at(self, vector: Array) -> Array:
+        """Where the end of a vector from the pole stands [mm]."""
+        return np.asarray(self.pole + vector / self.scale)
+
+
+def extent(polygon: Polygon) -> tuple[Array, Array]:
+    """The corners of the box that holds the polygon [its unit]."""
+    ends = [np.zeros(2), *polygon.nodes.values()]
+    ends += [v for image in polygon.images.values() for v in image.values()]
+    ends += [end for vector in polygon.vectors for end in (vector.start, vector.end)]
+    places = np.array(ends)
+    return places.min(axis=0), places.max(axis=0)
+
+
+def fitted(polygon: Polygon, box: Box, scale: float | None = None) -> DrawnPolygon:
+    """The polygon in the middle of a box, at a scale, or at the finest round one that fits.
+
+    Raises CrankcheckError where a wanted scale makes it larger than the box.
+    """
+    return DrawnPolygon(polygon, *frame_of([polygon], box, scale))
+
+
+def frame_of(
+    polygons: Sequence[Polygon], box: Box, scale: float | None = None
+) -> tuple[float, Array]:
+    """The scale, and the place of the pole [mm], of polygons in a box; as `fitted`."""
+    corners = [extent(polygon) for polygon in polygons]
+    low = np.min([each[0] for each in corners], axis=0)
+    high = np.max([each[1] for each in corners], axis=0)
+    room = np.array([box.width, box.height]) - 2 * PADDING_MM
+    if scale is None:
+        wanted = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
+        scale = max(wanted, default=1.0)
+    elif np.any(high - low > scale * room):
+        wide, tall = (high - low) / scale + 2 * PADDING_MM
+        raise CrankcheckError(
+            f"the {polygons[0].quantity} polygon needs {wide:.0f} x {tall:.0f} mm at this scale, "
+            f"and has {box.width:.0f} x {box.height:.0f} mm; take larger paper, or a smaller --k"
+        )
+    return scale, np.array(box.middle) - (low + high) / 2 / scale
+
+
+def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
+    """The polygon, a layer for each step of drawing, one for the images, one for the letters."""
+    quantity = drawn.polygon.quantity
+    for number, step in enumerate(drawn.polygon.steps, 1):
+        axes = canvas.layer(f"{quantity}-{number}-{_plain(step.title)}")
+        for vector in step.vectors:
+            _draw_vector(drawn, vector, axes, quantity)
+        for at in step.nodes.values():
+            axes.add_patch(Circle(tuple(drawn.at(at)), 0.55, fc="white", ec=INK, lw=0.7, zorder=6))
+    axes = canvas.layer(f"{quantity}-images")
+    for image in drawn.polygon.images.values():
+        corners = np.array([drawn.at(v) for v in image.values()])
+        if len(corners) > 1:
+            axes.add_patch(
+                Patch(corners, closed=len(corners) > 2, fill=False, ec=IMAGE, lw=0.6, zorder=1)
+            )
+    axes = canvas.layer(f"{quantity}-letters")
+    _letters(axes, drawn, box)
+
+
+def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:
+    start, end = drawn.at(vector.start), drawn.at(vector.end)
+    colour = COLOURS[vector.kind]
+    if vector.direction:
+        along = end - start
+        length = float(np.hypot(*along))
+        if length > 1e-9:
+            spare = BEYOND_MM * along / length
+            dashed: dict[str, Any] = {"linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
+            line(axes, start - spare, end + spare, color=colour, **dashed)
+    arrow(axes, start, end, f"{quantity}-{vector.name}", colour)
+
+
+def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
+    """The letters of the images and the pole, clear of lines and of one another."""
+    polygon = drawn.polygon
+    prime = "'" if polygon.quantity == "acceleration" else ""
+    at: dict[str, Array] = {f"{POLE[0]}{polygon.quantity[0]}": drawn.pole}
+    for image in polygon.images.values():
+        at |= {lower_case(name) + prime: drawn.at(v) for name, v in image.items() if np.any(v)}
+    at |= {lower_case(name) + prime: drawn.at(v) for name, v in polygon.nodes.items()}
+    corner = np.array([box.left, box.bottom])
+    names, spots = _together(at)
+    labels = [
+        Label(
+            name, (width_in(name, SIZE), SIZE / POINTS), ((spot - corner) / MM_PER_IN)[None], 0.03
+        )
+        for name, spot in zip(names, spots, strict=True)
+    ]
+    dots = [_sampled(drawn.at(v.start), drawn.at(v.end)) for v in polygon.vectors]
+    heavy = (np.vstack([*dots, *(s[None] for s in spots)]) - corner) / MM_PER_IN
+    obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
+    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
+    centres = place(labels, obstacles, np.zeros((0, 2)), frame)
+    for label, (x, y) in zip(labels, centres, strict=True):
+        at_x, at_y = corner + MM_PER_IN * np.array([x, y])
+        text(axes, at_x, at_y, label.text, SIZE, ha="center", va="center")
+
+
+def _together(at: dict[str, Array]) -> tuple[list[str], list[Array]]:
+    """Names of images that stand on one spot, as one label."""
+    names: list[str] = []
+    spots: list[Array] = []
+    for name, spot in at.items():
+        same = [i for i, other in enumerate(spots) if np.hypot(*(other - spot)) < 0.3]
+        if same:
+            names[same[0]] += f", {name}"
+        else:
+            names.append(name)
+            spots.append(spot)
+    return names, spots
+
+
+def _sampled(start: Array, end: Array) -> Array:
+    """Points along a line [mm], closely."""
+    return np.linspace(start, end, max(int(np.hypot(*(end - start))), 1) + 1)
+
+
+def lower_case(name: str) -> str:
+    """The image of a point is called by its small letter."""
+    point, bracket, body = name.partition("(")
+    return point.lower() + bracket + body
+
+
+def _plain(title: str) -> str:
+    return "".join(c if c.isalnum() else "-" for c in title).strip("-")

@@ -1,0 +1,33 @@
+"""What a workbook of a motion has beside its values: formulas where there are any, and charts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from models.array import Array
+from models.scene import Scene
+from reports.workbook.live_workbook import add_live, formulas_of
+from reports.workbook.value_charts import add_value_charts
+
+MOST_LIVE, MOST_DRAWN = 20_000, 100_000
+"""Rows that a spreadsheet computes, and draws, while one looks on."""
+
+
+def beside_values(scene: Scene, time_s: Array, columns: Sequence[str]) -> Callable[[Any], None]:
+    """What puts formulas and charts into the workbook of a motion over ``time_s``, evenly spaced
+    from 0, whose sheet ``motion`` has the ``columns``."""
+    count = time_s.size
+    table = None
+    if 1 < count <= MOST_LIVE:
+        step = math.degrees(float(time_s[1]) * scene.driver.law.peak_speed_rad_s)
+        table = formulas_of(scene, count, step)
+
+    def put(book: Any) -> None:
+        if table is not None:
+            add_live(book, table)
+        elif 1 < count <= MOST_DRAWN:
+            add_value_charts(book, "motion", columns, count)
+
+    return put

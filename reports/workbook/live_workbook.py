@@ -1,0 +1,73 @@
+"""A workbook that computes: inputs, their table of formulas, and charts of both."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+
+from openpyxl import Workbook  # type: ignore[import-untyped]  # ships no stubs
+
+from analytic.structure.groups import Group
+from analytic.structure.mobility import analyse
+from models.laws import ConstantSpeed
+from models.scene import GROUND, Scene
+from reports.workbook.charts import Curves, add_chart
+from reports.workbook.formula_table import FormulaTable, write_columns, write_inputs
+from reports.workbook.four_bar_formulas import four_bar_table
+from reports.workbook.slider_crank_formulas import slider_crank_table
+from reports.workbook.slotted_lever_formulas import slotted_lever_table
+
+INPUTS, TABLE = "inputs", "live"
+TIME = "time"
+
+
+def formulas_of(scene: Scene, count: int, step_deg: float) -> FormulaTable | None:
+    """The formulas of a four-bar, a slider-crank or a slotted lever at constant speed; None of any
+    other scene."""
+    if not isinstance(scene.driver.law, ConstantSpeed):
+        return None
+    order = analyse(scene).order
+    group = order[0] if len(order) == 1 else None
+    if not isinstance(group, Group):
+        return None
+    if group.kind == "RRR":
+        return four_bar_table(scene, group, count, step_deg)
+    if group.kind == "RRP" and scene.sliders[group.outer2].on == GROUND:
+        return slider_crank_table(scene, group, count, step_deg)
+    if group.kind == "RPR" and _is_slotted_lever(scene, group):
+        return slotted_lever_table(scene, group, count, step_deg)
+    return None
+
+
+def _is_slotted_lever(scene: Scene, group: Group) -> bool:
+    """Whether a block on the crank's pin slides on a lever that is pinned to the ground."""
+    slider = scene.sliders[group.inner]
+    crank = scene.links[scene.driver.link].points
+    return slider.link is None and slider.on in scene.links and slider.point in crank
+
+
+def add_live(book: Workbook, table: FormulaTable) -> None:
+    """Put inputs, formulas and charts into a workbook."""
+    write_inputs(book.create_sheet(INPUTS), table.inputs)
+    write_columns(book.create_sheet(TABLE), table, INPUTS)
+    places = {each.name: place for place, each in enumerate(table.columns, 1)}
+    for number, (title, names) in enumerate(table.charts.items()):
+        drawn = [places[name] for name in names]
+        add_chart(book, number, title, Curves(TABLE, places[TIME], drawn, table.count))
+
+
+def live_workbook(table: FormulaTable, origin: Mapping[str, str]) -> bytes:
+    """A workbook of the formulas alone, and where they come from."""
+    book = Workbook()
+    about = book.active
+    assert about is not None
+    about.title = "source"
+    for what, value in {"what": "value", **origin}.items():
+        about.append([what, value])
+    for row in about.iter_rows():
+        for cell in row:
+            cell.data_type = "s"  # a text that begins with "=" is no formula
+    add_live(book, table)
+    buffer = io.BytesIO()
+    book.save(buffer)
+    return buffer.getvalue()

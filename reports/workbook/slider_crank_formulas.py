@@ -1,0 +1,70 @@
+"""The slider-crank as formulas of a sheet, as the paper writes them.
+
+With t the angle of the crank from the line of the slider, R and L the lengths of crank and rod, e
+by how much the line passes the crank's pivot on its left, and f the rod's angle to the line::
+
+    sin f = (R sin t - e) / L       X = R cos t + L cos f
+    X'  = -w R sin t - f' (R sin t - e)
+    X'' = -w^2 R cos t - f'' (R sin t - e) - f' w R cos t
+
+With e = 0 these are X' = -(w + f') R sin t and X'' = -w^2 R [cos t + (f''/w^2) sin t + (f'/w) cos
+t]. Source: paper "Phan tich dong hoc co cau tay quay con truot bang phan mem Excel".
+"""
+
+from __future__ import annotations
+
+import math
+
+from analytic.structure.groups import Group
+from models.joints import less, turned
+from models.scene import Scene, span
+from reports.workbook.drive_inputs import DRIVE_COLUMNS, drive_inputs
+from reports.workbook.formula_table import Column, FormulaTable, Input
+
+COLUMNS = (
+    *DRIVE_COLUMNS,
+    Column("t", "t rad", "[phi]-RADIANS({line_deg})"),
+    Column("aside", "R sin t - e m", "{R}*SIN([t])-{e}"),
+    Column("cosine", "cos f", "{branch}*SQRT(1-([aside]/{L})^2)"),
+    Column("f", "f rad", "ATAN2([cosine],[aside]/{L})"),
+    Column("f_rate", "f' rad/s", "{omega}*{R}*COS([t])/({L}*[cosine])"),
+    Column(
+        "f_gain",
+        "f'' rad/s^2",
+        "([f_rate]^2*[aside]-{omega}^2*{R}*SIN([t]))/({L}*[cosine])",
+    ),
+    Column("X", "X m", "{R}*COS([t])+{L}*[cosine]"),
+    Column("X_rate", "X' m/s", "-{omega}*{R}*SIN([t])-[f_rate]*[aside]"),
+    Column(
+        "X_gain",
+        "X'' m/s^2",
+        "-({omega}^2)*{R}*COS([t])-[f_gain]*[aside]-[f_rate]*{omega}*{R}*COS([t])",
+    ),
+    Column("s", "displacement m", "[X]-{X0}"),
+    Column("omega_rod", "omega of the rod rad/s", "-[f_rate]"),
+    Column("alpha_rod", "alpha of the rod rad/s^2", "-[f_gain]"),
+)
+CHARTS = {
+    "position X [m]": ("X",),
+    "velocity X' [m/s]": ("X_rate",),
+    "acceleration X'' [m/s^2]": ("X_gain",),
+}
+
+
+def slider_crank_table(scene: Scene, group: Group, count: int, step_deg: float) -> FormulaTable:
+    """The table of a slider-crank at constant speed, whose one group is ``group``."""
+    slider, pivot = scene.sliders[group.outer2], scene.ground[scene.driver_pivot]
+    crank, rod = scene.links[scene.driver.link], scene.links[group.first]
+    ends = group.outer1, group.inner
+    x0, e = turned(less(slider.through_m, pivot), -slider.direction_rad)
+    radius = span({pin: crank.points[pin] for pin in (scene.driver_pivot, group.outer1)})
+    inputs = (
+        Input("R", radius, "m", "length of the crank"),
+        Input("L", span({pin: rod.points[pin] for pin in ends}), "m", "length of the rod"),
+        Input("e", e, "m", "the line of the slider passes the pivot so far on its left"),
+        Input("line_deg", math.degrees(slider.direction_rad), "deg", "direction of the line"),
+        Input("X0", x0, "m", "X from which the displacement counts"),
+        Input("branch", scene.branch.get(group.branch_key, 1), "", "+1: along the line; -1"),
+        *drive_inputs(scene, group.outer1, step_deg),
+    )
+    return FormulaTable(inputs, COLUMNS, count, CHARTS)

@@ -1,0 +1,141 @@
+"""The sheet of vector polygons, measured as one measures a drawing."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from analytic.drawings.drawn_polygons import draw_polygons
+from analytic.drawings.placement import DriverState
+from analytic.kinematics import solve_driven
+from models.errors import CrankcheckError
+from models.files import load_scene
+from reports.sheets.paper import Paper
+from reports.sheets.polygon_files import polygon_file, turning_file
+from reports.sheets.polygon_sheet import PolygonSheet, laid_out
+
+MM_PER_POINT = 25.4 / 72.0
+TENTH_MM = 0.1
+LECTURED = (
+    "fourbar-lecture-1",
+    "slider-crank-offset",
+    "slotted-lever",
+    "shaper",
+    "sixbar-stephenson",
+)
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def sheet_of(name: str, theta: float, paper: str = "A4", k: float | None = None) -> PolygonSheet:
+    return laid_out(draw_polygons(load_scene(name), DriverState(theta, 10.0)), Paper.of(paper), k)
+
+
+def drawn_lines(svg: bytes) -> dict[str, np.ndarray]:
+    """The straight lines of a drawing by name, from their start to their end [mm], y upwards."""
+    found = {}
+    for group in ElementTree.fromstring(svg).iter(f"{SVG}g"):
+        path = group.find(f"{SVG}path")
+        if path is not None and re.match(r"(velocity|acceleration)-", group.get("id", "")):
+            numbers = np.array(re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", path.get("d", "")), float)
+            start, end = numbers[:2], numbers[-2:]
+            found[group.get("id")] = (end - start) * (1.0, -1.0) * MM_PER_POINT
+    return found
+
+
+TURN = math.pi / 2 + np.arange(24) * math.tau / 24
+"""From 90 degrees on; a few of them, where not all are asked for."""
+
+
+@pytest.mark.parametrize("name", LECTURED)
+def test_measured_lengths_times_scales_are_the_reference(name: str) -> None:
+    for theta in TURN[::8]:
+        check_measured(name, float(theta))
+
+
+@pytest.mark.slow  # an SVG costs 0.15 s: at 24 angles no other fault is known than at three
+@pytest.mark.parametrize("name", LECTURED)
+def test_measured_lengths_are_the_reference_over_a_turn(name: str) -> None:
+    for theta in TURN:
+        check_measured(name, float(theta))
+
+
+def check_measured(name: str, theta: float) -> None:
+    """Every vector of both polygons to a tenth of a millimetre on paper."""
+    ones = np.ones(1)
+    sheet = sheet_of(name, theta)
+    measured = drawn_lines(polygon_file(sheet, ".svg"))
+    solved = solve_driven(load_scene(name), theta * ones, 10.0 * ones, 0.0 * ones, bound=False)
+    for drawn in (sheet.velocity, sheet.acceleration):
+        quantity, nodes = drawn.polygon.quantity, drawn.polygon.nodes
+        for vector in drawn.polygon.vectors:
+            length = measured[f"{quantity}-{vector.name}"]
+            assert length == pytest.approx(vector.value / drawn.scale, abs=TENTH_MM)
+        for point in nodes.keys() & solved.points.keys():
+            ways = [v for v in drawn.polygon.vectors if np.array_equal(v.end, nodes[point])]
+            assert ways or point == "A"
+            exact = getattr(solved.points[point], quantity)[0]
+            assert nodes[point] == pytest.approx(exact, abs=0.01 * TENTH_MM * drawn.scale)
+
+
+def test_layers_stand_in_the_order_of_drawing() -> None:
+    svg = polygon_file(sheet_of("shaper", 1.2), ".svg").decode()
+    layers = re.findall(r'inkscape:label="([^"]*)"', svg)
+    assert layers[:3] == ["frame", "scheme", "table"]
+    assert layers[3:6] == [
+        "velocity-1-driver-crank",
+        "velocity-2-RPR--lever--block-B",
+        "velocity-3-RRP--rod--block-F",
+    ]
+
+
+def test_the_same_sheet_has_the_same_bytes() -> None:
+    sheet = sheet_of("fourbar-lecture-1", 1.0)
+    assert polygon_file(sheet, ".svg") == polygon_file(sheet, ".svg")
+    assert polygon_file(sheet, ".pdf").startswith(b"%PDF")
+
+
+def test_an_animation_has_a_frame_for_each_layer_that_is_drawn() -> None:
+    sheet = sheet_of("fourbar-lecture-1", 1.0, "A5")
+    with Image.open(io.BytesIO(polygon_file(sheet, ".gif"))) as picture:
+        # nothing; the table; driver, group, image, letters of each polygon
+        assert picture.n_frames == 1 + 1 + 2 * 4
+
+
+@pytest.mark.slow  # 48 sheets: what it finds beside the others is that the scales stay
+def test_over_a_turn_all_sheets_have_one_scale() -> None:
+    with Image.open(io.BytesIO(turning_file(sheet_of("fourbar-lecture-1", 1.0, "A5")))) as picture:
+        assert picture.n_frames == 48
+
+
+def test_the_book_s_scale_draws_the_crank_s_vectors_k_times_the_crank() -> None:
+    sheet = sheet_of("fourbar-lecture-1", 1.0, k=2.0)
+    crank = 0.1 / sheet.length_scale
+    velocity, acceleration = sheet.velocity, sheet.acceleration
+    assert velocity.polygon.vectors[0].size / velocity.scale == pytest.approx(2.0 * crank)
+    assert acceleration.polygon.vectors[0].size / acceleration.scale == pytest.approx(2.0 * crank)
+
+
+def test_a_k_for_which_the_paper_is_too_small_is_refused_with_what_it_needs() -> None:
+    with pytest.raises(CrankcheckError, match=r"needs \d+ x \d+ mm .* larger paper, or a smaller"):
+        sheet_of("fourbar-lecture-1", 1.0, k=20.0)
+
+
+@pytest.mark.parametrize(
+    ("paper", "told"),
+    [
+        ("A7", "no size; use A5, A4"),
+        ("100x50", "needs 180 x 120 mm"),
+        ("0x0", "needs 180"),
+        ("99999x99999", "at most 2000 mm"),
+        ("nanx1", "no size"),
+    ],
+)
+def test_paper_that_can_not_be_drawn_on_is_refused(paper: str, told: str) -> None:
+    with pytest.raises(CrankcheckError, match=told):
+        Paper.of(paper)
