@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from models.controlled import Controlled
 from models.errors import CrankcheckError
+from models.released import Released
 from reports.judge.cell import Springs
 from reports.logs.channel import OwnLog
 
@@ -20,12 +22,17 @@ def bent_truth(log: OwnLog, segments: int, springs: Springs, drive: str) -> Elas
     Raises
     ------
     CrankcheckError
-        Another drive than that of the scene; a scene that engines are not held to; times before 0,
-        where its links do not come back after a period.
+        A scene that is let go; another drive than that of the scene; times before 0, where its
+        links do not come back after a period.
     """
     from reports.compare.elastic.elastic_truth import elastic_truth  # where links bend alone
 
-    name = log.scene.name
+    name, law = log.scene.name, log.scene.driver.law
+    if isinstance(law, Released | Controlled):
+        raise CrankcheckError(
+            f"{name}: {', '.join(log.scene.elastic)} bends, and logs of elastic links that are let "
+            "go are not judged yet; `crankcheck verify` runs engines on them"
+        )
     if drive != "scene":
         raise CrankcheckError(
             f"--drive {drive}: {name} has elastic links, and how these bend goes by the speed of "

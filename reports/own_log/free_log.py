@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from models.errors import CrankcheckError, few
-from models.scene import Scene
 from reports.compare.errors import Error, Errors
 from reports.compare.free.free_truth import FreeTruth, free_truth_until
 from reports.compare.free.kept_motion import BEYOND
@@ -40,10 +39,9 @@ def known_log(log: OwnLog, step_s: float, target: Mapping[str, float]) -> tuple[
     Raises
     ------
     CrankcheckError
-        Elastic links; times before 0, at which the scene is let go, or long after its end; a scene
+        Times before 0, at which the scene is let go, or long after its end; a scene
         that can not be let go; a truth that is lost before the second row.
     """
-    _refuse_elastic(log.scene)
     scene, lasts_s = log.scene, _lasts_s(log)
     refuse_unreleased(scene, lasts_s)
     phase = target.get("phase", target.get(EVERY))
@@ -157,12 +155,3 @@ def told_apart(errors: Errors) -> Iterator[str]:
 
 def _size(error: Error) -> str:
     return f"{error_text(error.maximum)} {error.unit}"
-
-
-def _refuse_elastic(scene: Scene) -> None:
-    """Refuse the log of elastic links that were let go. Raises CrankcheckError."""
-    if scene.elastic:
-        raise CrankcheckError(
-            f"{scene.name}: {', '.join(scene.elastic)} bends, and logs of elastic links that are "
-            "let go are not judged yet; `crankcheck verify` runs engines on them"
-        )

@@ -22,7 +22,7 @@ FAULTS = (
         rule="CC127",
     ),
     _fault(
-        name="loose-torque-reversed",
+        name="loose-torque-back",
         what="let go: it turns the other way",
         plant=in_chain(of_load("pulse", reversed_load)),
         rule="CC127",
@@ -36,7 +36,7 @@ FAULTS = (
         rule="CC132",
     ),
     _fault(
-        name="loose-spring-damping",
+        name="loose-damping",
         what="let go: the springs damp",
         plant=in_chain(springs(damped)),
         size=1e-3,

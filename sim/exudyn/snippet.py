@@ -105,6 +105,9 @@ def _alone(complete: Settings, defaults: Settings) -> list[str]:
     if complete["linear_solver"] != defaults["linear_solver"] and not by_need:
         solver = complete["linear_solver"]
         lines.append(f"#   {linear}.solverType = exu.LinearSolverType.{solver}")
+    if complete["beam_rounding"] != defaults["beam_rounding"]:
+        times = f"{float(complete['beam_rounding']):g}"
+        lines.append(f"#   with beams: Newton's tolerance at least {times} roundings of their pull")
     if complete["ignore_singular"] == "enable" and not by_need:
         lines.append(f"#   {linear}.ignoreSingularJacobian = True")
     title = "ONLY TO MEASURE AS WE DID, in a system with nothing else in it:"

@@ -175,13 +175,13 @@ def test_under_a_controller_a_run_of_segments_is_let_go_and_judged_as_such() -> 
 
 def test_what_rings_is_let_go_for_a_few_swings_of_it_unless_more_is_asked_for() -> None:
     own = scene(PULSE)
-    assert few_swings_s(own) == pytest.approx(0.97)
+    assert few_swings_s(own) == pytest.approx(1.0)
     dt_s, steps = counted_released(own, None, None, 16, "plain")
-    assert dt_s * steps == pytest.approx(0.97)
-    assert "let go for 0.97 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
+    assert dt_s * steps == pytest.approx(1.0)
+    assert "let go for 1 s of its 5 s, 5 swings" in shortened_note(own, dt_s * steps)
     assert counted_released(own, 1e-4, 2.0, 16, "plain") == (1e-4, 20_000)
     assert shortened_note(own, 2.0) == shortened_note(own, 0.3) == ""
-    assert shortened_note(load_scene("fourbar-pulse"), 0.97) == ""
+    assert shortened_note(load_scene("fourbar-pulse"), 1.0) == ""
 
 
 def test_what_starts_straight_is_off_by_its_fast_waves_too(checked: Checked) -> None:

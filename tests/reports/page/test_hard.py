@@ -280,8 +280,8 @@ def test_the_hard_cases_stand_in_the_report_and_change_no_other_section(
     small: Stored, hard_matrix: Matrix
 ) -> None:
     without, found = page(small), page(small, hard_matrix)
-    # Neither were forces asked for, nor is there a mechanism that was let go.
-    there = [name for name in SECTIONS if name not in ("reading_forces", "free")]
+    # Neither were forces asked for, nor was one let go, nor has one elastic links.
+    there = [name for name in SECTIONS if name not in ("reading_forces", "free", "elastic")]
     assert [each["id"] for each in Outline(found).named("section")] == there
     parts = [re.findall(r"<section.*?</section>", text, re.DOTALL) for text in (without, found)]
     assert parts[0] == [part for part in parts[1] if not part.startswith('<section id="hard"')]
