@@ -25,7 +25,6 @@ from models.scene import GROUND
 Quantity = Literal["velocity", "acceleration"]
 SYMBOLS: Mapping[Quantity, str] = {"velocity": "v", "acceleration": "a"}
 UNITS: Mapping[Quantity, str] = {"velocity": "m/s", "acceleration": "m/s^2"}
-POLE = "pole"
 
 
 @dataclass(frozen=True)

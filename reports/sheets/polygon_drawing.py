@@ -12,7 +12,7 @@ from matplotlib.patches import Circle
 from matplotlib.patches import Polygon as Patch
 
 from analytic.drawings.paper_scale import round_scale
-from analytic.drawings.polygon import POLE, Polygon, Vector
+from analytic.drawings.polygon import Polygon, Quantity, Vector
 from models.array import Array
 from models.errors import CrankcheckError
 from reports.drawing.lettering import Label, place
@@ -33,6 +33,7 @@ COLOURS = {
     "sliding": "#d1495b",
 }
 IMAGE = "#8a94a0"
+POLES: dict[Quantity, str] = {"velocity": "pᵥ", "acceleration": "pₐ"}
 LEAST_MM = 8.0
 """A polygon that is drawn smaller can not be read."""
 
@@ -110,21 +111,28 @@ def draw_polygon(canvas: Canvas, drawn: DrawnPolygon, box: Box) -> None:
 def _draw_vector(drawn: DrawnPolygon, vector: Vector, axes: Axes, quantity: str) -> None:
     start, end = drawn.at(vector.start), drawn.at(vector.end)
     colour = COLOURS[vector.kind]
-    if vector.direction:
-        along = end - start
-        length = float(np.hypot(*along))
-        if length > 1e-9:
-            spare = BEYOND_MM * along / length
-            dashed: dict[str, Any] = {"linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
-            line(axes, start - spare, end + spare, color=colour, **dashed)
+    if (dashes := _direction(drawn, vector)) is not None:
+        dashed: dict[str, Any] = {"linewidth": 0.5, "linestyle": (0, (4, 2)), "zorder": 1}
+        line(axes, *dashes, color=colour, **dashed)
     arrow(axes, start, end, f"{quantity}-{vector.name}", colour)
+
+
+def _direction(drawn: DrawnPolygon, vector: Vector) -> tuple[Array, Array] | None:
+    """The ends of the dashed line along a direction that crosses another [mm]; None of a vector
+    that was known."""
+    start, end = drawn.at(vector.start), drawn.at(vector.end)
+    length = float(np.hypot(*(end - start)))
+    if not vector.direction or length < 1e-9:
+        return None
+    spare = BEYOND_MM * (end - start) / length
+    return start - spare, end + spare
 
 
 def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     """The letters of the images and the pole, clear of lines and of one another."""
     polygon = drawn.polygon
     prime = "'" if polygon.quantity == "acceleration" else ""
-    at: dict[str, Array] = {f"{POLE[0]}{polygon.quantity[0]}": drawn.pole}
+    at: dict[str, Array] = {POLES[polygon.quantity]: drawn.pole}
     for image in polygon.images.values():
         at |= {lower_case(name) + prime: drawn.at(v) for name, v in image.items() if np.any(v)}
     at |= {lower_case(name) + prime: drawn.at(v) for name, v in polygon.nodes.items()}
@@ -140,7 +148,9 @@ def _letters(axes: Axes, drawn: DrawnPolygon, box: Box) -> None:
     heavy = (np.vstack([*dots, *(s[None] for s in spots)]) - corner) / MM_PER_IN
     obstacles = np.column_stack([heavy, np.full(len(heavy), 0.01)])
     frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
-    centres = place(labels, obstacles, np.zeros((0, 2)), frame)
+    crossing = [each for v in polygon.vectors if (each := _direction(drawn, v)) is not None]
+    light = np.vstack([np.zeros((0, 2)), *(_sampled(*each) for each in crossing)])
+    centres = place(labels, obstacles, (light - corner) / MM_PER_IN, frame)
     for label, (x, y) in zip(labels, centres, strict=True):
         at_x, at_y = corner + MM_PER_IN * np.array([x, y])
         text(axes, at_x, at_y, label.text, SIZE, ha="center", va="center")

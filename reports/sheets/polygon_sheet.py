@@ -31,7 +31,7 @@ from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
-from reports.sheets.scheme import draw_scheme
+from reports.sheets.scheme import bars, draw_scheme, write_letters
 
 MARGIN, HEAD, FOOT, GAP = 8.0, 9.0, 6.0, 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5
@@ -164,8 +164,7 @@ def _scheme(axes: Axes, sheet: PolygonSheet) -> None:
     points, box = sheet.drawn.placement.points, sheet.boxes["scheme"]
     places = {n: box.middle + (p - sheet.middle) / sheet.length_scale for n, p in points.items()}
     draw_scheme(axes, sheet.drawn.placement, places)
-    for name, at in places.items():
-        text(axes, at[0] + 1.6, at[1] + 1.6, name)
+    write_letters(axes, places, bars(sheet.drawn.placement, places), box)
 
 
 def _table(axes: Axes, sheet: PolygonSheet) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping
 
@@ -10,11 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from matplotlib.patches import Polygon as Patch
 
-from analytic.drawings.placement import Placement
+from analytic.drawings.placement import Placement, quarter_turn
 from models.array import Array
 from models.scene import GROUND
-from reports.figures.style import INK, QUIET
-from reports.sheets.canvas import line
+from reports.drawing.lettering import Label, place
+from reports.figures.style import INK, POINTS, QUIET, SMALL, width_in
+from reports.sheets.canvas import line, text
+from reports.sheets.paper import MM_PER_IN, Box
 
 PIN_MM, BLOCK_MM, FOOT_MM = 0.9, (5.0, 3.0), 3.2
 HATCH_MM, HATCHES = 1.1, 5
@@ -45,10 +48,10 @@ def draw_scheme(axes: Axes, placement: Placement, places: Mapping[str, Array]) -
     for point in scene.ground:
         if point in pinned:
             _foot(axes, places[point])
-    for point, place in places.items():
+    for point, at in places.items():
         radius = PIN_MM if point in pinned else 0.5 * PIN_MM
         face = "white" if point in pinned else INK
-        axes.add_patch(Circle(tuple(place), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
+        axes.add_patch(Circle(tuple(at), radius, fc=face, ec=INK, lw=0.7, zorder=FRONT))
 
 
 def _segments(corners: Array) -> Iterator[tuple[Array, Array]]:
@@ -112,3 +115,37 @@ def _guide(axes: Axes, placement: Placement, places: Mapping[str, Array], name: 
     shares = [float((end - block) @ along) for end in ends]
     low, high = min([*shares, -4.0]), max([*shares, 4.0])
     line(axes, block + low * along, block + high * along, linewidth=1.0, color=QUIET, zorder=1)
+
+
+def bars(placement: Placement, places: Mapping[str, Array]) -> Array:
+    """Points along everything that is drawn (n, 2) [mm]: links, blocks, feet."""
+    drawn = [np.array(list(places.values()))]
+    for link in placement.scene.links.values():
+        corners = [places[point] for point in link.points]
+        drawn += [_along(a, b) for a, b in itertools.combinations(corners, 2)]
+    for name, slider in placement.scene.sliders.items():
+        reach = 1.3 * BLOCK_MM[0] * placement.along(name)
+        block, aside = places[slider.point], 0.5 * BLOCK_MM[1] * quarter_turn(placement.along(name))
+        drawn += [_along(block + s * aside - reach, block + s * aside + reach) for s in (-1, 1)]
+    drawn += [places[point][None] - (0.0, FOOT_MM) for point in placement.scene.ground]
+    return np.vstack(drawn)
+
+
+def _along(start: Array, end: Array) -> Array:
+    return np.linspace(start, end, max(int(np.hypot(*(end - start))), 1) + 1)
+
+
+def write_letters(
+    axes: Axes, places: Mapping[str, Array], drawn: Array, box: Box, size: float = SMALL
+) -> None:
+    """Letters beside their points, clear of what is ``drawn`` (n, 2) and of one another [mm]."""
+    corner = np.array([box.left, box.bottom])
+    labels = [
+        Label(name, (width_in(name, size), size / POINTS), ((at - corner) / MM_PER_IN)[None], 0.05)
+        for name, at in places.items()
+    ]
+    heavy = np.column_stack([(drawn - corner) / MM_PER_IN, np.full(len(drawn), 0.03)])
+    frame = (box.width / MM_PER_IN, box.height / MM_PER_IN)
+    for label, at in zip(labels, place(labels, heavy, np.zeros((0, 2)), frame), strict=True):
+        x, y = corner + MM_PER_IN * np.array(at)
+        text(axes, x, y, label.text, size, ha="center", va="center")
