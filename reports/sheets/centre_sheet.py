@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,12 +21,13 @@ from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
 from reports.drawing.lettering import Label, place
-from reports.figures.style import FRONT, INK, LARGE, POINTS, QUIET, SMALL, TINY, cut, width_in
+from reports.figures.style import INK, POINTS, QUIET, SMALL, TINY, width_in
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.scheme import draw_scheme
+from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
-MARGIN, HEAD, FOOT, PADDING = 8.0, 9.0, 6.0, 12.0
+PADDING = 12.0
 POLYGON_MM = 42.0
 """Room of the polygon of centres, in the upper right corner."""
 FAR = 1.5
@@ -52,8 +52,7 @@ class CentreSheet:
 
     @property
     def box(self) -> Box:
-        wide, high = self.paper.width - 2 * MARGIN, self.paper.height - 2 * MARGIN - HEAD - FOOT
-        return Box(MARGIN, MARGIN + FOOT, wide, high)
+        return inner_box(self.paper)
 
     def at(self, places: Array) -> Array:
         """Where places [m], (..., 2), stand on the sheet [mm]."""
@@ -116,12 +115,8 @@ def _frame(
     near = [at for at in more if np.abs(at - about).max() < FAR * size]
     places = np.array([*points, *near])
     low, high = places.min(axis=0), places.max(axis=0)
-    room = np.array(
-        [
-            paper.width - 2 * (MARGIN + PADDING),
-            paper.height - 2 * (MARGIN + PADDING) - HEAD - FOOT,
-        ]
-    )
+    box = inner_box(paper)
+    room = np.array([box.width, box.height]) - 2 * PADDING
     scales = [round_scale(s, r) for s, r in zip(high - low, room, strict=True) if s > 0.0]
     return max(scales), (low + high) / 2
 
@@ -146,13 +141,9 @@ def _head(axes: Axes, sheet: CentreSheet, note: str) -> None:
     scene, driver = sheet.drawn.placement.scene, sheet.drawn.placement.driver
     angle = math.degrees(driver.theta) % 360.0
     title = f"{scene.name}: instant centres, {scene.driver.link} at {angle:.6g}°"
-    text(axes, MARGIN, sheet.paper.height - MARGIN - 4.0, title, LARGE, weight="bold")
-    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN
-    text(axes, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
+    write_head(axes, sheet.paper, title, note)
     box = sheet.box
-    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * (box.width, box.height)
-    for start, end in itertools.pairwise(corners + np.array([box.left, box.bottom])):
-        line(axes, start, end, color=FRONT, linewidth=0.6)
+    draw_border(axes, box)
     told = [f"K_l = {sheet.scale:g} m/mm"]
     if sheet.circles is not None:
         told += [f"of {sheet.link}: P velocity pole, Q acceleration pole"]

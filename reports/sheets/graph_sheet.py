@@ -22,13 +22,14 @@ from analytic.drawings.paper_scale import round_scale
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import Scene
-from reports.figures.style import FRONT, INK, LARGE, QUIET, SMALL, TINY, cut
+from reports.figures.style import FRONT, INK, QUIET, SMALL, TINY
 from reports.output.numbers import readable
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.graph_series import GraphSeries, sampled
-from reports.sheets.paper import MM_PER_IN, Box, Paper
+from reports.sheets.paper import Box, Paper
+from reports.sheets.sheet_frame import inner_box, write_head
 
-MARGIN, HEAD, FOOT, GAP = 8.0, 9.0, 6.0, 4.0
+GAP = 4.0
 POLE_ROOM = 48.0
 """Room on the left of the axes for poles and numbers [mm]."""
 POLES_MM = (40.0, 30.0, 25.0, 20.0, 15.0, 10.0, 8.0, 6.0, 5.0, 4.0, 3.0)
@@ -123,10 +124,9 @@ def _pole(largest: float, scale_x: float, scale_y: float, room: float) -> float:
 
 def _boxes(paper: Paper) -> list[Box]:
     """Three, the upper first."""
-    inner = paper.height - 2 * MARGIN - HEAD - FOOT
-    high = (inner - 2 * GAP) / 3
-    wide = paper.width - 2 * MARGIN
-    return [Box(MARGIN, MARGIN + FOOT + k * (high + GAP), wide, high) for k in (2, 1, 0)]
+    box = inner_box(paper)
+    high = (box.height - 2 * GAP) / 3
+    return [Box(box.left, box.bottom + k * (high + GAP), box.width, high) for k in (2, 1, 0)]
 
 
 def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
@@ -134,9 +134,7 @@ def draw_graphs(sheet: GraphSheet, note: str) -> Canvas:
     canvas = Canvas(sheet.paper)
     frame = canvas.layer("frame")
     title = f"{sheet.scene.name}: {sheet.name} over a period, {sheet.divisions} parts"
-    text(frame, MARGIN, sheet.paper.height - MARGIN - 4.0, title, LARGE, weight="bold")
-    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN
-    text(frame, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
+    write_head(frame, sheet.paper, title, note)
     boxes = _boxes(sheet.paper)
     for graph, box in zip(sheet.graphs, boxes, strict=True):
         _axes(frame, sheet, graph, box)

@@ -26,14 +26,15 @@ from analytic.drawings.polygon import UNITS
 from models.array import Array
 from models.errors import CrankcheckError
 from models.scene import GROUND
-from reports.figures.style import FRONT, LARGE, QUIET, SMALL, TINY, cut
+from reports.figures.style import QUIET, SMALL, TINY
 from reports.output.numbers import readable
-from reports.sheets.canvas import Canvas, line, text
-from reports.sheets.paper import MM_PER_IN, Box, Paper
+from reports.sheets.canvas import Canvas, text
+from reports.sheets.paper import Box, Paper
 from reports.sheets.polygon_drawing import DrawnPolygon, draw_polygon, fitted, frame_of
 from reports.sheets.scheme import bars, draw_scheme, write_letters
+from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
-MARGIN, HEAD, FOOT, GAP = 8.0, 9.0, 6.0, 4.0
+GAP = 4.0
 LEFT_SHARE, SCHEME_SHARE = 0.38, 0.5
 SCHEME_PADDING = 9.0
 ROW_MM = 3.1
@@ -100,14 +101,14 @@ def over_positions(drawn: Sequence[DrawnPolygons], paper: Paper) -> list[Polygon
 
 
 def _boxes(paper: Paper) -> dict[str, Box]:
-    inner = paper.width - 2 * MARGIN, paper.height - 2 * MARGIN - HEAD - FOOT
-    left, bottom = MARGIN, MARGIN + FOOT
-    wide, tall = LEFT_SHARE * inner[0], SCHEME_SHARE * inner[1]
-    right, rest = left + wide + GAP, inner[0] - wide - GAP
-    half = (inner[1] - GAP) / 2
+    inner = inner_box(paper)
+    left, bottom = inner.left, inner.bottom
+    wide, tall = LEFT_SHARE * inner.width, SCHEME_SHARE * inner.height
+    right, rest = left + wide + GAP, inner.width - wide - GAP
+    half = (inner.height - GAP) / 2
     return {
-        "scheme": Box(left, bottom + inner[1] - tall, wide, tall),
-        "table": Box(left, bottom, wide, inner[1] - tall - GAP),
+        "scheme": Box(left, bottom + inner.height - tall, wide, tall),
+        "table": Box(left, bottom, wide, inner.height - tall - GAP),
         "velocity": Box(right, bottom + half + GAP, rest, half),
         "acceleration": Box(right, bottom, rest, half),
     }
@@ -132,16 +133,7 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         f"{scene.name}: {scene.driver.link} at {angle:.6g}°, omega {readable(driver.omega)} rad/s"
         + (f", alpha {readable(driver.alpha)} rad/s²" if driver.alpha else "")
     )
-    top = sheet.paper.height - MARGIN - 4.0
-    text(axes, MARGIN, top, title, LARGE, weight="bold")
-    text(
-        axes,
-        MARGIN,
-        MARGIN,
-        cut(note, (sheet.paper.width - 2 * MARGIN) / MM_PER_IN, TINY),
-        TINY,
-        color=QUIET,
-    )
+    write_head(axes, sheet.paper, title, note)
     captions = {
         "scheme": f"scheme, K_l = {sheet.length_scale:g} m/mm",
         "velocity": f"velocities, K_v = {sheet.velocity.scale:g} m/s per mm",
@@ -149,12 +141,7 @@ def _frame(axes: Axes, sheet: PolygonSheet, note: str) -> None:
         "table": "lengths on paper, and values",
     }
     for name, box in sheet.boxes.items():
-        corners = [
-            (box.left, box.bottom), (box.left + box.width, box.bottom),
-            (box.left + box.width, box.bottom + box.height), (box.left, box.bottom + box.height),
-        ]  # fmt: skip
-        for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
-            line(axes, np.array(start), np.array(end), color=FRONT, linewidth=0.6)
+        draw_border(axes, box)
         text(
             axes, box.left + 1.5, box.bottom + box.height - 3.2, captions[name], SMALL, color=QUIET
         )

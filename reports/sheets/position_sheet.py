@@ -23,12 +23,13 @@ from models.errors import CrankcheckError
 from models.laws import Oscillating
 from models.scene import Scene
 from reports.drawing.lettering import Label, place
-from reports.figures.style import FRONT, INK, LARGE, POINTS, QUIET, SMALL, TINY, cut, width_in
+from reports.figures.style import INK, POINTS, QUIET, SMALL, TINY, width_in
 from reports.sheets.canvas import Canvas, line, text
 from reports.sheets.paper import MM_PER_IN, Box, Paper
 from reports.sheets.scheme import draw_scheme
+from reports.sheets.sheet_frame import draw_border, inner_box, write_head
 
-MARGIN, HEAD, FOOT, PADDING = 8.0, 9.0, 6.0, 12.0
+PADDING = 12.0
 LEAST_APART_MM = 2.5
 """Divisions of the crank circle that stand closer can not be numbered."""
 LOCUS = 361
@@ -52,8 +53,7 @@ class PositionSheet:
 
     @property
     def box(self) -> Box:
-        wide, high = self.paper.width - 2 * MARGIN, self.paper.height - 2 * MARGIN - HEAD - FOOT
-        return Box(MARGIN, MARGIN + FOOT, wide, high)
+        return inner_box(self.paper)
 
     def at(self, place: Array) -> Array:
         """Where places [m], (..., 2), stand on the sheet [mm]."""
@@ -76,7 +76,8 @@ def positions(scene: Scene, divisions: int, paper: Paper) -> PositionSheet:
     points, loci = (_points(scene, each) for each in (angles, dense))
     places = np.concatenate(list(loci.values()))
     corner, size = places.min(axis=0), np.ptp(places, axis=0)
-    room = np.array([paper.width, paper.height]) - 2 * (MARGIN + PADDING) - (0.0, HEAD + FOOT)
+    box = inner_box(paper)
+    room = np.array([box.width, box.height]) - 2 * PADDING
     scale = max(round_scale(s, r) for s, r in zip(size, room, strict=True) if s > 0.0)
     placement = Placement.of(scene, DriverState(float(angles[0]), 1.0))
     sheet = PositionSheet(scene, placement, angles, points, loci, scale, corner + size / 2, paper)
@@ -135,14 +136,8 @@ def draw_positions(sheet: PositionSheet, note: str) -> Canvas:
 def _frame(axes: Axes, sheet: PositionSheet, note: str) -> None:
     count, law = len(sheet.angles), sheet.scene.driver.link
     told = f"{sheet.scene.name}: {count} positions of {law}, K_l = {sheet.scale:g} m/mm"
-    text(axes, MARGIN, sheet.paper.height - MARGIN - 4.0, told, LARGE, weight="bold")
-    room = (sheet.paper.width - 2 * MARGIN) / MM_PER_IN
-    text(axes, MARGIN, MARGIN, cut(note, room, TINY), TINY, color=QUIET)
-    box = sheet.box
-    x, y = box.left, box.bottom
-    corners = np.array([[0, 0], [box.width, 0], [box.width, box.height], [0, box.height], [0, 0]])
-    for start, end in itertools.pairwise(corners + np.array([x, y])):
-        line(axes, start, end, color=FRONT, linewidth=0.6)
+    write_head(axes, sheet.paper, told, note)
+    draw_border(axes, sheet.box)
 
 
 def _loci(axes: Axes, sheet: PositionSheet) -> None:
