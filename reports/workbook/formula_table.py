@@ -62,7 +62,7 @@ def write_inputs(sheet: Worksheet, inputs: Sequence[Input]) -> None:
     """The inputs, one a row: name, value, unit, and what it is."""
     sheet.append(["name", "value", "unit", "what it is"])
     for each in inputs:
-        sheet.append([each.name, each.value, each.unit, each.told])
+        sheet.append([each.name, each.value, each.unit or None, each.told])
     for letter, width in zip("ABCD", (14, 24, 10, 70), strict=True):
         sheet.column_dimensions[letter].width = width
 

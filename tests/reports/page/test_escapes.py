@@ -114,8 +114,11 @@ def test_a_table_of_the_motion_holds_no_formula(scene: Path, tmp_path: Path, end
         assert all(name[0].isalpha() for name in pd.read_csv(path).columns)
         return
     book = openpyxl.load_workbook(path)
-    cells = [cell for sheet in book for row in sheet.iter_rows() for cell in row]
+    cells = [cell for name in ("motion", "source") for row in book[name] for cell in row]
     assert {cell.data_type for cell in cells} == {"s", "n"}
+    own = [cell.value for row in book["live"] for cell in row if cell.data_type == "f"]
+    assert own
+    assert not any(NASTY in formula for formula in own)
     assert NASTY in [cell.value for cell in book["source"]["B"]]
 
 
