@@ -69,10 +69,11 @@ def chain_iterations(model: SpaceModel) -> int:
 
 
 def left_over(model: SpaceModel) -> float:
-    """rho: the share of the slowest error of its joints that an iteration leaves."""
-    made = [model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()]
+    """rho: the share of the slowest error of its joints that an iteration leaves, which takes them
+    in the order of the space. Friction and springs, which give way, are none."""
+    made = {model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()}
     column = {body: 3 * k for k, body in enumerate(model.bodies.values())}
-    blocks = [_rows(joint, column) for joint in made if joint is not None]
+    blocks = [_rows(joint, column) for joint in model.space.constraints if joint in made]
     weight = np.concatenate([_inverse_masses(body) for body in model.bodies.values()])
     rows = np.concatenate(blocks)
     answers = (rows * weight) @ rows.T
