@@ -18,9 +18,11 @@ from models.segmented import SegmentedScene
 from sim.engine import Run
 from sim.pymunk import convergence
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
+from sim.pymunk.engine import ENGINE, PymunkSession
 from sim.pymunk.space import SpaceModel, build
 from sim.remedies import remedies
 from sim.run import run
+from sim.settings import resolved
 
 SEGMENTS = 6
 NO_BIAS = 1.0
@@ -186,3 +188,18 @@ def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
         2 * held,
         5 * held,
     ]
+
+
+def opened(scene: Scene, state: State, **settings: float) -> PymunkSession:
+    profile = resolved(ENGINE.profiles["tuned"], settings)
+    return PymunkSession(scene, state, profile, 1e-3, "prescribed")
+
+
+@pytest.mark.parametrize("name", ["shaper", "fourbar-elastic"])
+@pytest.mark.parametrize("found", [3, 160])
+def test_a_space_tells_the_iterations_that_it_has(name: str, found: int) -> None:
+    session = opened(*start_of(name))
+    session._space.iterations = found
+    told = session.facts().settings
+    assert told["iterations"] == found
+    assert "iterations_of_segments" not in told
