@@ -41,6 +41,12 @@ REDUNDANT = 1e-12
 """What an iteration may take of an error at most that no impulse can change."""
 
 
+def held_by_iterations(scene: Scene, settings: Settings) -> bool:
+    """Whether a scene has a chain that enough iterations hold: with a bias that mends little of an
+    error in a step it comes apart with no number of them."""
+    return float(settings["error_bias"]) == 0.0 and bool(chain_springs(scene))
+
+
 def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
     """Those of the settings, or more where the chain of a scene needs them.
 
@@ -50,8 +56,7 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
         More than `MOST` are needed, and fewer asked for.
     """
     asked = int(settings["iterations"])
-    # A bias that mends little of an error in a step comes apart with no number of them.
-    if float(settings["error_bias"]) > 0.0 or not chain_springs(scene):
+    if not held_by_iterations(scene, settings):
         return asked
     needed = chain_iterations(model)
     if needed > max(asked, MOST):

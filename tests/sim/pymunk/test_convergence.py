@@ -190,6 +190,23 @@ def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
     ]
 
 
+def test_the_remedies_of_a_chain_with_a_bias_are_those_of_any_scene() -> None:
+    scene, state = chain_of("slider-crank-elastic", 16)
+    settings = {"iterations": 10, "error_bias": 0.0018}
+    found = [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)]
+    assert found == [300, 700, 2000]
+
+
+@pytest.mark.parametrize(("asked", "found"), [(150, []), (300_000, [600_000])])
+def test_a_chain_has_no_remedy_that_can_not_be_run(
+    asked: int, found: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(convergence, "MOST", 500)
+    scene, state = chain_of("slider-crank-elastic", 16)
+    settings = {"iterations": asked, "error_bias": 0.0}
+    assert [one["iterations"] for one in remedies("pymunk", scene, state, settings)] == found
+
+
 def opened(scene: Scene, state: State, **settings: float) -> PymunkSession:
     profile = resolved(ENGINE.profiles["tuned"], settings)
     return PymunkSession(scene, state, profile, 1e-3, "prescribed")
