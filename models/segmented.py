@@ -21,7 +21,7 @@ from models.elastic import ElasticLink
 from models.elastic_line import Line, line_of
 from models.errors import CrankcheckError
 from models.scene import Link, Point, Scene
-from models.springs import PinSpring
+from models.springs import SegmentSpring
 
 
 @dataclass(frozen=True)
@@ -87,13 +87,15 @@ class SegmentedScene(CutScene):
             for i, name in enumerate(self.segments(link.name))
         }
 
-    def _springs(self, link: str) -> dict[str, PinSpring]:
+    def _springs(self, link: str) -> dict[str, SegmentSpring]:
         """In all pins between segments."""
         own, line = self.scene.elastic[link], line_of(self.scene, link)
         names, nodes = self.segments(link), self.nodes(link)
         rate = segment_spring(own, line.length_m, self.count, corrected=self.corrected)
         return {
-            node: PinSpring(node, rate, rate * own.damping_s, 0.0, node, (names[i], names[i + 1]))
+            node: SegmentSpring(
+                node, rate, rate * own.damping_s, 0.0, node, (names[i], names[i + 1])
+            )
             for i, node in enumerate(nodes[1:-1])
         }
 

@@ -50,6 +50,11 @@ class PinSpring(_Elastic):
 
 
 @dataclass(frozen=True)
+class SegmentSpring(PinSpring):
+    """In a pin between two segments of an elastic link (`models.segmented`)."""
+
+
+@dataclass(frozen=True)
 class SlideSpring(_Elastic):
     """Along the line of a slider, between what slides and the body that the line is on."""
 

@@ -5,7 +5,6 @@ One by one, as `sim.pymunk.spring_steps` has them, they would take most of the t
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,7 +13,7 @@ import pymunk.batch
 from models.array import Array
 from models.scene import Scene
 from models.spring_ends import whole_turns
-from models.springs import PinSpring
+from models.springs import SegmentSpring
 from sim.pymunk.body_rows import rows_of
 from sim.pymunk.space import SpaceModel
 
@@ -22,18 +21,15 @@ TURNING = pymunk.batch.BodyFields.ANGLE | pymunk.batch.BodyFields.ANGULAR_VELOCI
 TORQUE = pymunk.batch.BodyFields.TORQUE
 
 
-def chain_springs(scene: Scene) -> tuple[PinSpring, ...]:
-    """The springs in the pins of a scene where a link has two of them, as segments of an elastic
-    link have; none where no link has."""
-    springs = tuple(spring for spring in scene.springs.values() if isinstance(spring, PinSpring))
-    held = Counter(body for one in springs for body in one.bodies)
-    return springs if max(held.values(), default=0) > 1 else ()
+def chain_springs(scene: Scene) -> tuple[SegmentSpring, ...]:
+    """The springs between the segments of the elastic links of a scene; no others that it has."""
+    return tuple(one for one in scene.springs.values() if isinstance(one, SegmentSpring))
 
 
 class ChainSprings:
     """What springs in pins do, with the angles and rates of the end of each step."""
 
-    def __init__(self, model: SpaceModel, springs: Sequence[PinSpring], dt_s: float) -> None:
+    def __init__(self, model: SpaceModel, springs: Sequence[SegmentSpring], dt_s: float) -> None:
         self._space, self._dt, self._rows = model.space, dt_s, rows_of(model)
         self.numbers = {one.name: (one.rate, one.damping, one.free) for one in springs}
         """Rate, damping and the angle at which it is slack, of each by name."""

@@ -41,6 +41,12 @@ REDUNDANT = 1e-12
 """What an iteration may take of an error at most that no impulse can change."""
 
 
+def held_by_iterations(scene: Scene, settings: Settings) -> bool:
+    """Whether a scene has a chain that enough iterations hold: with a bias that mends little of an
+    error in a step it comes apart with no number of them."""
+    return float(settings["error_bias"]) == 0.0 and bool(chain_springs(scene))
+
+
 def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
     """Those of the settings, or more where the chain of a scene needs them.
 
@@ -50,8 +56,7 @@ def iterations(scene: Scene, settings: Settings, model: SpaceModel) -> int:
         More than `MOST` are needed, and fewer asked for.
     """
     asked = int(settings["iterations"])
-    # A bias that mends little of an error in a step comes apart with no number of them.
-    if float(settings["error_bias"]) > 0.0 or not chain_springs(scene):
+    if not held_by_iterations(scene, settings):
         return asked
     needed = chain_iterations(model)
     if needed > max(asked, MOST):
@@ -69,10 +74,11 @@ def chain_iterations(model: SpaceModel) -> int:
 
 
 def left_over(model: SpaceModel) -> float:
-    """rho: the share of the slowest error of its joints that an iteration leaves."""
-    made = [model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()]
+    """rho: the share of the slowest error of its joints that an iteration leaves, which takes them
+    in the order of the space. Friction and springs, which give way, are none."""
+    made = {model.motor, *model.hinges.values(), *model.lines.values(), *model.gears.values()}
     column = {body: 3 * k for k, body in enumerate(model.bodies.values())}
-    blocks = [_rows(joint, column) for joint in made if joint is not None]
+    blocks = [_rows(joint, column) for joint in model.space.constraints if joint in made]
     weight = np.concatenate([_inverse_masses(body) for body in model.bodies.values()])
     rows = np.concatenate(blocks)
     answers = (rows * weight) @ rows.T

@@ -56,7 +56,8 @@ class PymunkSession:
             delay_s=VELOCITY_SHIFT * dt_s,
         )
         self._space = self._model.space
-        self._space.iterations = iterations(scene, settings, self._model)
+        self._iterations = iterations(scene, settings, self._model)
+        self._space.iterations = self._iterations
         self._space.damping = float(settings["damping"])
         for constraint in self._space.constraints:
             constraint.error_bias = float(settings["error_bias"])
@@ -89,7 +90,7 @@ class PymunkSession:
             settings=dict(self._settings)
             | {
                 "timestep_s": self._dt,
-                **held_iterations(self._settings, int(space.iterations)),
+                **held_iterations(self._settings, self._iterations, int(space.iterations)),
                 "damping": float(space.damping),
                 **({"error_bias": biases.pop()} if len(biases) == 1 else {}),
             },

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from models.errors import EngineError
 from models.motion import State
 from models.scene import Scene
 from sim.engine import Settings
-from sim.pymunk.chain_springs import chain_springs
-from sim.pymunk.convergence import iterations
+from sim.pymunk.convergence import held_by_iterations, iterations
+from sim.pymunk.settings import RANGES
 from sim.pymunk.space import build
 from sim.remedies import Remedies
 
@@ -17,11 +18,16 @@ TIMES = (2, 5)
 
 
 def pymunk_remedies(scene: Scene, state: State, settings: Settings) -> list[Settings]:
-    """More iterations than there were."""
-    if chain_springs(scene):
+    """More iterations than there were; none for a chain that is given none (`iterations`)."""
+    if not held_by_iterations(scene, settings):
+        asked = int(settings["iterations"])
+        return [{"iterations": count} for count in ITERATIONS if count > asked]
+    try:
         held = iterations(scene, settings, build(scene, state))
-        return [{"iterations": times * held} for times in TIMES]
-    return [{"iterations": count} for count in ITERATIONS if count > int(settings["iterations"])]
+    except EngineError:
+        return []
+    _, most = RANGES["iterations"]
+    return [{"iterations": times * held} for times in TIMES if times * held <= most]
 
 
 REMEDIES: Remedies = pymunk_remedies

@@ -65,11 +65,13 @@ def checked(settings: Settings) -> None:
     check_ranges(settings, RANGES)
 
 
-def held_iterations(settings: Settings, found: int) -> dict[str, SettingValue]:
-    """The iterations that a space was ``found`` with, as settings: those asked for, and beside them
-    those that a chain of segments was given (`sim.pymunk.convergence`)."""
+def held_iterations(settings: Settings, given: int, found: int) -> dict[str, SettingValue]:
+    """The iterations that a space was ``found`` with, as settings: where it has those that a chain
+    of segments was ``given`` (`sim.pymunk.convergence`), they stand beside those asked for."""
     asked = int(settings["iterations"])
-    return {"iterations": asked, **({"iterations_of_segments": found} if found > asked else {})}
+    if found == given > asked:
+        return {"iterations": asked, "iterations_of_segments": found}
+    return {"iterations": found}
 
 
 def in_seconds(settings: Settings) -> tuple[str, ...]:

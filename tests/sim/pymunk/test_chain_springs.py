@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from analytic.elastic.segment_start import segment_start
+from analytic.kinematics import solve
 from models.files import load_scene
 from models.motion import State
-from models.scene import Scene
+from models.scene import GROUND, Scene
 from models.segmented import SegmentedScene
-from models.springs import LineSpring
+from models.springs import LineSpring, PinSpring, Spring
 from sim.engine import Run
 from sim.pymunk import acting
 from sim.pymunk.chain_springs import chain_springs
@@ -62,6 +63,41 @@ def test_a_run_tells_of_each(damping_s: float) -> None:
     session = ENGINE.open(scene, state, resolved(ENGINE.profiles["tuned"], {}), dt_s, "prescribed")
     told = session.facts().springs
     assert told == {n: (s.rate, s.damping, s.free) for n, s in scene.springs.items()}
+
+
+def in_pins(**bodies: tuple[str, str]) -> dict[str, Spring]:
+    """Springs of a user in the pins of these names."""
+    return {pin: PinSpring(pin, 1.0, 0.01, 0.3, pin, pair) for pin, pair in bodies.items()}
+
+
+@pytest.mark.parametrize(
+    "springs",
+    [
+        in_pins(A=(GROUND, "crank"), D=(GROUND, "rocker")),
+        in_pins(B=("crank", "coupler"), C=("coupler", "rocker")),
+    ],
+    ids=["in the ground", "of a link"],
+)
+def test_two_springs_in_pins_of_rigid_links_are_no_chain(springs: dict[str, Spring]) -> None:
+    """With a light coupler and a heavy rocker, for which a chain would be given 343 iterations."""
+    scene = load_scene("fourbar-lecture-1")
+    links = {name: replace(link, mass_kg=0.005) for name, link in scene.links.items()}
+    links["rocker"] = replace(links["rocker"], mass_kg=3.0)
+    scene = replace(scene, links=links, springs=springs)
+    done = ran(scene, solve(scene, np.zeros(1)).state())
+    assert done.status == "ok", done.reason
+    assert done.settings["iterations"] == 150
+    assert "iterations_of_segments" not in done.settings
+    assert chain_springs(scene) == ()
+
+
+def test_a_spring_in_a_ground_pin_acts_beside_a_chain() -> None:
+    scene = load_scene("fourbar-elastic")
+    own = SegmentedScene(replace(scene, springs=in_pins(D=(GROUND, "rocker"))), 4)
+    assert len(chain_springs(own.rigid)) == 3
+    done = ran(own.rigid, segment_start(own, "straight"))
+    assert done.status == "ok", done.reason
+    assert max(float(gap.max()) for gap in done.gaps.values()) < 1e-5
 
 
 def test_springs_alone_make_no_chain() -> None:

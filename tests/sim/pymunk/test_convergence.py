@@ -11,16 +11,18 @@ import pytest
 from analytic.elastic.segment_start import segment_start
 from analytic.kinematics import solve
 from models.errors import EngineError
-from models.files import load_scene
+from models.files import load_scene, parse_scene
 from models.motion import State
 from models.scene import Scene
 from models.segmented import SegmentedScene
 from sim.engine import Run
 from sim.pymunk import convergence
 from sim.pymunk.convergence import HALVINGS, chain_iterations, iterations, left_over
+from sim.pymunk.engine import ENGINE, PymunkSession
 from sim.pymunk.space import SpaceModel, build
 from sim.remedies import remedies
 from sim.run import run
+from sim.settings import resolved
 
 SEGMENTS = 6
 NO_BIAS = 1.0
@@ -73,6 +75,41 @@ def test_chipmunk_s_iterations_leave_the_share_that_is_told(name: str) -> None:
         1.0 / count
     )
     assert math.log(measured) == pytest.approx(math.log(told), rel=0.02)
+
+
+SLEEVES = """
+name = "two-sleeves"
+source = "Two sleeves on a slotted lever; the data are ours"
+
+[ground]
+points = { A = [0.0, 0.3], C = [0.0, 0.0] }
+
+[links]
+crank = { bar = ["A", "B"], length_m = 0.1 }
+lever = { bar = ["C", "E"], length_m = 0.6 }
+
+[sliders]
+B = { on = "lever", mass_kg = 1.0, inertia_kg_m2 = 0.01 }
+sleeve = { point = "P", on = "lever", mass_kg = 1.0, inertia_kg_m2 = 0.001 }
+P = { on = "ground", through_m = [0.0, 0.5], mass_kg = 0.5 }
+
+[driver]
+link = "crank"
+speed_rad_s = 10.0
+start_deg = 0.0
+
+[branch]
+B = 1
+"""
+
+
+def test_the_share_is_that_of_the_joints_in_the_order_of_the_space() -> None:
+    """The line and the gear of each slider by turns: all lines first would leave 0.3 % more."""
+    scene = parse_scene(SLEEVES, "here")
+    state = solve(scene, np.zeros(1)).state()
+    told, count = left_over(build(scene, state)), 100
+    measured = left_after(2 * count, scene, state) / left_after(count, scene, state)
+    assert math.log(measured) / count == pytest.approx(math.log(told), rel=1e-4)
 
 
 def test_the_iterations_grow_with_the_square_of_the_segments() -> None:
@@ -151,3 +188,35 @@ def test_the_remedies_of_a_chain_are_more_than_it_has_anyway() -> None:
         2 * held,
         5 * held,
     ]
+
+
+def test_the_remedies_of_a_chain_with_a_bias_are_those_of_any_scene() -> None:
+    scene, state = chain_of("slider-crank-elastic", 16)
+    settings = {"iterations": 10, "error_bias": 0.0018}
+    found = [remedy["iterations"] for remedy in remedies("pymunk", scene, state, settings)]
+    assert found == [300, 700, 2000]
+
+
+@pytest.mark.parametrize(("asked", "found"), [(150, []), (300_000, [600_000])])
+def test_a_chain_has_no_remedy_that_can_not_be_run(
+    asked: int, found: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(convergence, "MOST", 500)
+    scene, state = chain_of("slider-crank-elastic", 16)
+    settings = {"iterations": asked, "error_bias": 0.0}
+    assert [one["iterations"] for one in remedies("pymunk", scene, state, settings)] == found
+
+
+def opened(scene: Scene, state: State, **settings: float) -> PymunkSession:
+    profile = resolved(ENGINE.profiles["tuned"], settings)
+    return PymunkSession(scene, state, profile, 1e-3, "prescribed")
+
+
+@pytest.mark.parametrize("name", ["shaper", "fourbar-elastic"])
+@pytest.mark.parametrize("found", [3, 160])
+def test_a_space_tells_the_iterations_that_it_has(name: str, found: int) -> None:
+    session = opened(*start_of(name))
+    session._space.iterations = found
+    told = session.facts().settings
+    assert told["iterations"] == found
+    assert "iterations_of_segments" not in told
