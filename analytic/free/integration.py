@@ -17,9 +17,11 @@ from analytic.free.coordinate_history import CoordinateHistory, Window
 from analytic.free.gauss import Gauss, sums
 from analytic.free.kinks import heeds_direction, is_kinked
 from analytic.free.machine import Machine
+from analytic.free.rest import TINY, rest_until, way_out
 from analytic.free.window import Scale, WindowSolution, solve_window
+from analytic.free.window_count import check_count
 from analytic.free.window_kinks import BEYOND, SHORT_OF, WindowKinks
-from analytic.multibody.runaway import SHARE, check_runaway
+from analytic.multibody.runaway import Pace
 from analytic.multibody.switches import edges
 from models.array import Array
 from models.errors import CrankcheckError
@@ -29,14 +31,6 @@ GROWTH, LEAST = 2.0, 0.15
 """By how much a window may be longer than the one before it, and shorter when tried again."""
 SHORTEST = 1e-12
 """A window, over the whole time, that is not to be had shorter."""
-LOOKS, LOOKED = 257, 7
-"""Instants at which an end of rest is looked for, and how often between two of them."""
-MOST_WINDOWS = 50_000
-"""A thousand seconds of a crank's length of a tenth of a metre take half of them, and minutes."""
-FIRST_WINDOWS, FAR = 300, 4.0
-"""After so many it is told how many all take, and refused where they are so many times too many."""
-TINY = 1e-150
-"""A rate that only says which way the machine is about to move."""
 AIMS = 30
 """Windows that are tried so as to end at a change of formula."""
 
@@ -58,14 +52,17 @@ class Integration:
     now_s: float = 0.0
     long_s: float = 0.0
     fastest: float = 0.0
+    pace: Pace = field(default_factory=Pace)
     windows: list[Window] = field(default_factory=list)
     edges_s: list[float] = field(default_factory=list)
 
     def run(self) -> CoordinateHistory:
         """All windows. Raises CrankcheckError where it fails."""
         self.long_s = self.until_s / 100.0
+        self.pace.note(self.now_s, abs(self.v))
         for border in edges(self.scene, self.until_s)[1:]:
             self._to(border)
+            self.pace.end_at_edge()
             if border < self.until_s:
                 self.edges_s.append(border)
         return CoordinateHistory(tuple(self.windows))
@@ -82,22 +79,7 @@ class Integration:
                 way = math.copysign(1.0, self.v)
             self._step(border_s, way)
             self._hop()
-            self._check_count()
-
-    def _check_count(self) -> None:
-        """Raises CrankcheckError where the time takes more windows than can be worked out."""
-        made = len(self.windows)
-        if made >= FIRST_WINDOWS:
-            lasted_s = self.now_s - self.windows[-FIRST_WINDOWS].start_s
-            if (self.until_s - self.now_s) * FIRST_WINDOWS > FAR * MOST_WINDOWS * lasted_s:
-                self._check_runaway()
-        ahead = made * self.until_s / self.now_s
-        if made >= MOST_WINDOWS or (made >= FIRST_WINDOWS and ahead > FAR * MOST_WINDOWS):
-            raise CrankcheckError(
-                f"{self.scene.name}: free for {self.until_s:g} s, of which {self.now_s:.3g} s took "
-                f"{made} windows of the integration; at most {MOST_WINDOWS} are made: give a time "
-                f"of {self.now_s * MOST_WINDOWS / made:.2g} s or less"
-            )
+            check_count(self.scene, self.until_s, self.pace)
 
     def _step(self, border_s: float, way: float) -> None:
         """One window."""
@@ -125,6 +107,7 @@ class Integration:
         )  # fmt: skip
         self.windows.append(window)
         self.now_s, (self.u, self.v) = end_s, solved.after(lasts_s)
+        self.pace.note(self.now_s, abs(self.v))
         self.fastest = max(self.fastest, abs(self.v), abs(float(series[1][0])))
         if self.wound:
             ends = self.machine.lengths(np.array([self.u]), self.wound)
@@ -166,18 +149,12 @@ class Integration:
                 return solved, long_s, False
             long_s *= max(LEAST, min(share, 0.8)) if solved.converged else 0.5
             aimed, rough = 0, None
-        self._check_runaway()
+        self.pace.check_runaway(self.scene, self.now_s)
         raise failed or CrankcheckError(
             f"{self.scene.name}: its free motion is lost at {self.now_s:.6g} s, with "
             f"{self.scene.driver.link} at {self._driver_deg():.6g} deg: what acts, or what moves, "
             "is not smooth there, or has no mass"
         )
-
-    def _check_runaway(self) -> None:
-        """Raises CrankcheckError where the speed has gone to infinity."""
-        speeds = [abs(one.v[0]) for one in self.windows if one.start_s >= SHARE * self.now_s]
-        if speeds:
-            check_runaway(self.scene, self.now_s, abs(self.v) / max(float(min(speeds)), TINY))
 
     def _start(self, long_s: float, way: float) -> tuple[float, float]:
         """The acceleration with which a window starts, or hardly another, and its slope [1/s]."""
@@ -240,41 +217,23 @@ class Integration:
         return math.degrees(float(self.machine.chart.driver(np.array([self.u]))[0][0]))
 
     def _way(self, time_s: Array) -> Array:
-        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,).
-
-        Where a load on one stroke lets it leave both ways, that in which it is pushed without: at
-        rest no stroke has begun.
-        """
-        u, v = np.full_like(time_s, self.u), np.full_like(time_s, TINY)
-        ahead = self._acceleration(time_s, u, v)
-        back = self._acceleration(time_s, u, -v)
-        way = np.where(ahead > 0.0, 1.0, np.where(back < 0.0, -1.0, 0.0))
-        either = (ahead > 0.0) & (back < 0.0)
-        if either.any():
-            still = self._acceleration(time_s, u, np.zeros_like(v))
-            way[either & (still < 0.0)] = -1.0
-        return way
+        """Which way the machine leaves its rest, 0 where it is held, at times [s], (T,)."""
+        return way_out(self._acceleration, self.u, time_s)
 
     def _rest(self, border_s: float) -> None:
         """A window at rest, until something moves the machine, or to an instant."""
-        low, high = self.now_s, border_s
-        for _ in range(LOOKED):
-            looks = np.linspace(low, high, LOOKS)
-            moved = np.flatnonzero(self._way(looks[1:]) != 0.0)
-            if not moved.size:
-                break
-            k = int(moved[0])
-            low, high = float(looks[k]), float(looks[k + 1])
+        end_s = rest_until(self._way, self.now_s, border_s)
         n = self.rule.count
         still = Window(
-            self.machine.chart, self.now_s, high, high - self.now_s,
+            self.machine.chart, self.now_s, end_s, end_s - self.now_s,
             np.array([self.u, 0.0]), np.zeros(1), np.zeros(1),
             np.diag([1.0, 0.0]), np.stack([np.ones(n), np.zeros(n)]), self.wound,
         )  # fmt: skip
         self.windows.append(still)
-        self.now_s = high
-        if high < border_s:
-            self.edges_s.append(high)
+        self.now_s = end_s
+        self.pace.note(self.now_s, 0.0)
+        if end_s < border_s:
+            self.edges_s.append(end_s)
 
     def _hop(self) -> None:
         """Take the chart of the other limit where the motion is nearer to it."""

@@ -18,7 +18,7 @@ from scipy.optimize import brentq  # type: ignore[import-untyped]
 
 from analytic.multibody.dynamics import Dynamics
 from analytic.multibody.generalised_forces import Strokes
-from analytic.multibody.runaway import SHARE, check_runaway
+from analytic.multibody.runaway import Pace
 from analytic.multibody.singular_passage import (
     CLOSE,
     LEAST,
@@ -66,11 +66,13 @@ class Adaptive:
         """The motion from a state to a time [s]. Raises CrankcheckError where it cannot go on."""
         forces = self.dynamics.forces
         own, state = switches(forces), np.concatenate([q, rates, [0.0]])
-        steps = Steps([0.0], until_s)
+        steps = Steps(Pace(), until_s)
+        steps.pace.note(0.0, self._speed(state))
         times = edges(forces.scene, until_s)
         cells = self._first_cells(own, state)
         for begin, end in itertools.pairwise(times):
             state, cells = self._between_edges(steps, own, cells, begin, end, state)
+            steps.pace.end_at_edge()
         return StateHistory(steps.solution, len(steps.within), tuple(steps.passages))
 
     def _first_cells(self, own: tuple[Switch, ...], state: Array) -> Array:
@@ -149,7 +151,7 @@ class Adaptive:
         if passage is None or passage.end_s >= solver.t_bound:
             return solver
         state = self.dynamics.closed_state(passage.state(np.array([passage.end_s]))[:, 0])
-        steps.add(passage.end_s, passage.state)
+        steps.add(passage.end_s, passage.state, self._speed(state))
         steps.passages.append(passage)
         steps.clear_s = passage.end_s
         return self._solver(steps, passage.end_s, float(solver.t_bound), state, own, None)
@@ -203,26 +205,23 @@ class Adaptive:
         with np.errstate(all="ignore"):
             trouble = solver.step()
         if solver.status == "failed" or not np.isfinite(solver.y).all():
-            self._check_runaway(steps, solver)
+            steps.pace.check_runaway(self.dynamics.assembly.scene, float(solver.t))
             raise CrankcheckError(f"{name}: the integration fails at {solver.t:g} s: {trouble}")
         if steps.crowded:
-            self._check_runaway(steps, solver)
+            steps.pace.check_runaway(self.dynamics.assembly.scene, float(solver.t))
         steps.check_count(name, float(solver.t))
 
-    def _check_runaway(self, steps: Steps, solver: DOP853) -> None:
-        """Raises CrankcheckError where the speed has gone to infinity."""
-        if not steps.within:
-            return
-        rates, units = slice(self.dynamics.assembly.size, -1), self._units()
-        looked = steps.solution(np.array([SHARE * steps.times[-1], steps.times[-1]])).T
-        before, now = (float(np.abs(state / units)[rates].max()) for state in looked)
-        check_runaway(self.dynamics.assembly.scene, float(solver.t), now / max(before, EPS))
+    def _speed(self, state: Array) -> float:
+        """The largest rate of a state, in the units of its coordinates."""
+        rates = slice(self.dynamics.assembly.size, -1)
+        return float(np.abs(state / self._units())[rates].max())
 
     def _take(self, steps: Steps, solver: DOP853) -> None:
         """Keep a step, and put the state back onto the constraints."""
-        steps.add(float(solver.t), solver.dense_output())
+        within = solver.dense_output()
         if self.projected:
             solver.y = self.dynamics.closed_state(solver.y)
+        steps.add(float(solver.t), within, self._speed(solver.y))
 
     def _crossing(self, own: tuple[Switch, ...], cells: Array, solver: DOP853) -> _Crossing | None:
         """The switch that the last step goes over first; ``at_s`` is the start of the step for a

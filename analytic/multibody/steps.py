@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from scipy.integrate import OdeSolution  # type: ignore[import-untyped]  # ships no stubs
 
+from analytic.multibody.runaway import Pace
 from analytic.multibody.singular_passage import SingularPassage
 from models.array import Array
 from models.errors import CrankcheckError
@@ -22,11 +23,12 @@ CROWD = 200
 
 @dataclass
 class Steps:
-    """The steps of an integration: the times between them, and what is within; ``clear_s`` is the
-    time since which nothing has jumped. ``careful`` if a change point may be near, ``tried`` the
-    smallest singular value from which on a passage through it was looked for in vain."""
+    """The steps of an integration: their ``pace`` with the times between them, and what is within
+    each; ``clear_s`` is the time since which nothing has jumped. ``careful`` if a change point may
+    be near, ``tried`` the smallest singular value from which on a passage through it was looked for
+    in vain."""
 
-    times: list[float]
+    pace: Pace
     until_s: float
     within: list[Callable[[Array], Array]] = field(default_factory=list)
     passages: list[SingularPassage] = field(default_factory=list)
@@ -34,9 +36,13 @@ class Steps:
     careful: bool = False
     tried: float = math.inf
 
-    def add(self, end_s: float, within: Callable[[Array], Array]) -> None:
-        self.times.append(end_s)
+    def add(self, end_s: float, within: Callable[[Array], Array], speed: float) -> None:
+        self.pace.note(end_s, speed)
         self.within.append(within)
+
+    @property
+    def times(self) -> list[float]:
+        return self.pace.times_s
 
     @property
     def solution(self) -> OdeSolution:
@@ -46,11 +52,10 @@ class Steps:
     def crowded(self) -> bool:
         """Whether the time that is left would take too many steps, as short as the last ones; it is
         looked at now and then."""
-        made = len(self.times) - 1
+        made, now_s = self.pace.made, self.times[-1]
         if made < CROWD or made % CROWD:
             return False
-        lasted_s = self.times[-1] - self.times[-CROWD]
-        return (self.until_s - self.times[-1]) * CROWD > FAR * MOST_STEPS * lasted_s
+        return (self.until_s - now_s) * CROWD > FAR * MOST_STEPS * self.pace.lasted_s(CROWD)
 
     def check_count(self, name: str, now_s: float) -> None:
         """Raises CrankcheckError where the time of a scene takes more steps than can be made."""
