@@ -24,7 +24,8 @@ from reports.face.shown import Shown
 from reports.face.solution import ROWS, drawn, thinned
 from reports.face.told import told_at_the_call
 from reports.judge.cell import SEGMENTS, Springs
-from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps, under_control
+from reports.plan.elastic import GivenAs, counted_released, given_of, held_steps
+from reports.plan.free import under_control
 from reports.plan.steps import TURNS, counted, counted_free
 from sim import run as stepping
 from sim.engine import Drive, Run, SettingValue

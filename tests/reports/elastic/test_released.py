@@ -21,8 +21,8 @@ from reports.plan.elastic import (
     counted_released,
     few_swings_s,
     shortened_note,
-    under_control,
 )
+from reports.plan.free import under_control
 from sim.engine import Run
 from sim.run import run
 
